@@ -1,7 +1,7 @@
 //! A running check-up: which step is next, when one is over, what ends it early. Sends nothing and reads no clock.
 
 use crate::checkup::measure::{Figures, Measured, Reading, StepRecord, measured};
-use crate::checkup::steps::{CheckupPlan, PRESS_WITHIN, REST, Step, Way, slow, steps};
+use crate::checkup::steps::{CheckupPlan, PRESS_TIMEOUT, REST, Step, Way, slow, steps};
 use crate::checkup::tips::TipReading;
 use crate::hand::grip::FreeForce;
 use crate::hand::{
@@ -28,16 +28,16 @@ const LEAST_G: i64 = 20;
 /// A joint is not moved whose threshold cannot stand between these above its zero, g: it would stop at nothing, or press too hard.
 const OWN_STOP_G: RangeInclusive<f64> = 60.0..=200.0;
 /// How long the hand may take to confirm a speed and a threshold.
-const CONFIRMS_WITHIN: Duration = Duration::from_secs(3);
+const CONFIRM_TIMEOUT: Duration = Duration::from_secs(3);
 /// A joint stands still that stayed so long within [`STILL`], and that had so long to begin.
-const STILL_FOR: Duration = Duration::from_millis(300);
-const BEGINS_WITHIN: Duration = Duration::from_millis(1000);
+const STILL_DURATION: Duration = Duration::from_millis(300);
+const START_DELAY: Duration = Duration::from_millis(1000);
 /// Units of ANGLE_ACT.
 const STILL: i16 = 1;
 /// A joint this near to its target has arrived.
 const ARRIVED: i16 = 3;
 /// A joint this near to its open end did not begin to close.
-const STUCK_WITHIN: i16 = 10;
+const STUCK_TOLERANCE: i16 = 10;
 /// A joint may have been stopped by its own offset that rests so far below its threshold at most, g: more than the noise of a
 /// worn sensor.
 const OFFSET_STOPS_WITHIN_G: f64 = 40.0;
@@ -260,7 +260,7 @@ impl Checkup {
         self.counts_zero = PerDof::from_fn(|dof| self.counts_zero[dof] || stopped[dof]);
         self.left.push_front(step);
         // Its figures are those of a whole stroke.
-        let is_open = |dof: Dof| pose[dof] >= Angle::MAX.get() - STUCK_WITHIN;
+        let is_open = |dof: Dof| pose[dof] >= Angle::MAX.get() - STUCK_TOLERANCE;
         let moved = |dof: &Dof| running.targets[*dof].is_some();
         if !Dof::ALL.into_iter().filter(moved).all(is_open) {
             self.left.push_front(Step::Open);
@@ -281,7 +281,7 @@ impl Checkup {
         };
         let mut moved = Dof::ALL.into_iter().filter(|dof| targets[*dof].is_some());
         if let Some(dof) = moved.find(|dof| !holds(*dof)) {
-            if now.since(since) >= CONFIRMS_WITHIN {
+            if now.since(since) >= CONFIRM_TIMEOUT {
                 self.fail(Abort::LimitsRefused { dof });
             }
             return None;
@@ -345,7 +345,7 @@ impl Checkup {
             return None;
         };
         let is_let_go = last.is_some_and(|last| now.since(last) >= LET_GO);
-        if !is_let_go && now.since(running.record.told) < PRESS_WITHIN {
+        if !is_let_go && now.since(running.record.told) < PRESS_TIMEOUT {
             return None;
         }
         if let Some(running) = self.running.take() {
@@ -482,14 +482,14 @@ impl Checkup {
                 let targets = running.targets;
                 let still = running
                     .pose
-                    .filter(|(since, _)| now.since(*since) >= STILL_FOR);
+                    .filter(|(since, _)| now.since(*since) >= STILL_DURATION);
                 let near = |pose: &PerDof<i16>, dof: Dof| {
                     let target = targets[dof].map(Angle::get);
                     target.is_none_or(|target| (target - pose[dof]).abs() <= ARRIVED)
                 };
                 let arrived = |pose: &PerDof<i16>| Dof::ALL.iter().all(|dof| near(pose, *dof));
                 let waited = now.since(told);
-                still.is_some_and(|(_, pose)| arrived(&pose) || waited >= BEGINS_WITHIN)
+                still.is_some_and(|(_, pose)| arrived(&pose) || waited >= START_DELAY)
                     || waited >= STROKE_MAX
             }
         };

@@ -12,7 +12,7 @@ const TOGETHER: i16 = 700;
 /// How long nothing moves where it rests.
 pub(crate) const REST: Duration = Duration::from_secs(3);
 /// How long a fingertip may wait for its press.
-pub(crate) const PRESS_WITHIN: Duration = Duration::from_secs(12);
+pub(crate) const PRESS_TIMEOUT: Duration = Duration::from_secs(12);
 /// Units of ANGLE_ACT a second for each unit of SPEED_SET, of the slower of the hands that were measured.
 const UNITS_PER_SPEED: f64 = 1.52;
 /// What confirming limits before a motion and standing still after it take.
@@ -82,7 +82,7 @@ impl Step {
     pub(crate) fn expected(self) -> Duration {
         let way = match self {
             Self::Rest => return REST,
-            Self::Press(_) => return PRESS_WITHIN,
+            Self::Press(_) => return PRESS_TIMEOUT,
             // Mostly they are open.
             Self::Open => 0,
             Self::Stroke(..) => Angle::MAX.get(),

@@ -14,18 +14,18 @@ use std::time::Duration;
 use tokio::time::{Instant, sleep, timeout};
 
 /// So long the hand is tried for: its port may be busy, and its socket taken, until the system has cleared up.
-const REACHED_WITHIN: Duration = Duration::from_secs(5);
+const REACH_TIMEOUT: Duration = Duration::from_secs(5);
 /// So long feedback may take to show rest after that.
-const RESTS_WITHIN: Duration = Duration::from_secs(5);
+const REST_TIMEOUT: Duration = Duration::from_secs(5);
 /// How often a port that is busy is tried again.
-const DIAL_EACH: Duration = Duration::from_millis(10);
+const DIAL_INTERVAL: Duration = Duration::from_millis(10);
 /// A hand that closes the connection at once is dialled again after this, so many times; then as seldom as a hand needs that takes
 /// no connection for a while after the last one.
 const RETRY_DELAY: Duration = Duration::from_millis(20);
 const RETRIES_AT_ONCE: u32 = 25;
 const RETRY_DELAY_LATER: Duration = Duration::from_millis(320);
 /// How often it is looked how far the link is.
-const LOOK_EACH: Duration = Duration::from_millis(2);
+const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
 /// Only where the joints are is read.
 const MOTION_ONLY: PollRates = PollRates {
@@ -93,9 +93,9 @@ pub(crate) async fn run(args: &HoldArgs) -> anyhow::Result<()> {
         wake: Arc::new(|| ()),
     };
     let (link, _records) = link::open(config, &tokio::runtime::Handle::current());
-    let how = match timeout(REACHED_WITHIN, reached(&link)).await {
+    let how = match timeout(REACH_TIMEOUT, reached(&link)).await {
         Err(_late) => "could not be reached: switch off its 24 V supply if it moves",
-        Ok(()) => match timeout(RESTS_WITHIN, held(&link)).await {
+        Ok(()) => match timeout(REST_TIMEOUT, held(&link)).await {
             Err(_late) => session::NOT_CONFIRMED,
             Ok(()) => {
                 let ms = died.elapsed().as_millis();
@@ -120,7 +120,7 @@ async fn reached(link: &LinkHandle) {
         if status.state.is_live() && status.hold != Hold::None {
             return;
         }
-        sleep(LOOK_EACH).await;
+        sleep(POLL_INTERVAL).await;
     }
 }
 
@@ -132,7 +132,7 @@ async fn held(link: &LinkHandle) {
             Hold::Asked { .. } | Hold::Alarm { .. } => {}
             Hold::None => drop(link.stop()),
         }
-        sleep(LOOK_EACH).await;
+        sleep(POLL_INTERVAL).await;
     }
 }
 
@@ -142,11 +142,11 @@ struct Insistent(SystemDial);
 impl Dial for Insistent {
     fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>> {
         let (system, endpoint) = (self.0, endpoint.clone());
-        let until = Instant::now() + REACHED_WITHIN;
+        let until = Instant::now() + REACH_TIMEOUT;
         Box::pin(async move {
             loop {
                 match system.dial(&endpoint).await {
-                    Err(_) if Instant::now() < until => sleep(DIAL_EACH).await,
+                    Err(_) if Instant::now() < until => sleep(DIAL_INTERVAL).await,
                     dialled => return dialled,
                 }
             }

@@ -2,7 +2,7 @@
 
 use crate::cli::out::{Out, say};
 use crate::cli::parse;
-use crate::cli::session::{self, ANSWER_WITHIN, ONLY_WHAT_IS_ASKED};
+use crate::cli::session::{self, ANSWER_TIMEOUT, ONLY_WHAT_IS_ASKED};
 use crate::cli::value::{value_json, value_text};
 use crate::hand::{Register, Span};
 use crate::link::{LinkHandle, RequestError};
@@ -60,11 +60,11 @@ async fn ask(link: &LinkHandle, row: &Register) -> Result<Vec<u8>, RequestError>
     let end = row.address + row.len;
     for address in (row.address..end).step_by(PIECE.into()) {
         let piece = Span::new(address, PIECE.min(end - address));
-        let got = timeout(ANSWER_WITHIN, link.read(piece)).await;
+        let got = timeout(ANSWER_TIMEOUT, link.read(piece)).await;
         bytes.extend(got.unwrap_or_else(|_elapsed| {
             Err(RequestError::Timeout {
                 address: row.address,
-                after_ms: u64::try_from(ANSWER_WITHIN.as_millis()).unwrap_or(u64::MAX),
+                after_ms: u64::try_from(ANSWER_TIMEOUT.as_millis()).unwrap_or(u64::MAX),
             })
         })?);
     }

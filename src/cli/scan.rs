@@ -21,7 +21,7 @@ use tokio::runtime::Handle;
 use tokio::time::{MissedTickBehavior, interval};
 
 /// How often progress is printed.
-const SAY_EACH: Duration = Duration::from_secs(5);
+const REPORT_INTERVAL: Duration = Duration::from_secs(5);
 /// Ids asked by default: a bus seldom has more hands, and each id costs about half a second a port.
 const IDS_UP_TO: u8 = 10;
 
@@ -139,7 +139,7 @@ struct ScanPrinter<'a> {
 
 impl ScanPrinter<'_> {
     async fn run(mut self, mut interrupt: Interrupt) -> anyhow::Result<()> {
-        let mut tick = interval(SAY_EACH);
+        let mut tick = interval(REPORT_INTERVAL);
         tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
         // The first tick comes at once, when nothing is known yet.
         tick.tick().await;

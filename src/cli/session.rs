@@ -19,11 +19,11 @@ use std::time::Duration;
 use tokio::time::{Instant, sleep};
 
 /// A hand that is there answers long before; after this the user is told why nothing comes.
-pub(crate) const ANSWER_WITHIN: Duration = Duration::from_secs(3);
+pub(crate) const ANSWER_TIMEOUT: Duration = Duration::from_secs(3);
 /// While something answers and is being identified, the wait lasts this long: a way to a hand may be slow.
-const IDENTIFIED_WITHIN: Duration = Duration::from_secs(6);
+const IDENTIFY_TIMEOUT: Duration = Duration::from_secs(6);
 /// How often the wait checks.
-const LOOK_EACH: Duration = Duration::from_millis(10);
+const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
 /// What is told where feedback does not show that a stopped hand rests, and where none comes any more.
 pub(crate) const NOT_CONFIRMED: &str =
@@ -144,15 +144,15 @@ pub(crate) async fn answered(link: &LinkHandle, endpoint: &Endpoint) -> anyhow::
         if begun.elapsed() >= patience(&status) {
             bail!(unanswered(endpoint));
         }
-        sleep(LOOK_EACH).await;
+        sleep(POLL_INTERVAL).await;
     }
 }
 
 /// How long a link in this state is waited for.
 pub(crate) fn patience(status: &LinkStatus) -> Duration {
     match status.state {
-        LinkState::Identifying => IDENTIFIED_WITHIN,
-        _ => ANSWER_WITHIN,
+        LinkState::Identifying => IDENTIFY_TIMEOUT,
+        _ => ANSWER_TIMEOUT,
     }
 }
 
@@ -174,7 +174,7 @@ pub(crate) fn no_hand(endpoint: &Endpoint, trouble: &LinkTrouble) -> String {
 pub(crate) fn unanswered(endpoint: &Endpoint) -> String {
     format!(
         "no hand at {endpoint}: nothing came within {} s; check power, cable, address and id",
-        ANSWER_WITHIN.as_secs()
+        ANSWER_TIMEOUT.as_secs()
     )
 }
 
@@ -192,7 +192,7 @@ mod tests {
     fn the_cause_is_known_before_the_wait_is_over_and_the_wait_is_three_seconds() {
         // Three requests of a tenth of a second each, and the line's rest between them.
         let asked = Duration::from_millis(3 * (100 + 60));
-        assert!(CONNECT_DEADLINE + asked < ANSWER_WITHIN);
-        assert!(ANSWER_WITHIN <= Duration::from_secs(3));
+        assert!(CONNECT_DEADLINE + asked < ANSWER_TIMEOUT);
+        assert!(ANSWER_TIMEOUT <= Duration::from_secs(3));
     }
 }

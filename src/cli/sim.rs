@@ -15,7 +15,7 @@ use std::time::Duration;
 use tokio::time::{Instant, interval};
 
 /// The hand goes on when nobody asks, so that its first answer after an hour has nothing to catch up on.
-const LIVE_EACH: Duration = Duration::from_millis(10);
+const LIVE_INTERVAL: Duration = Duration::from_millis(10);
 
 /// How long a hand stays silent during a power cycle. The manual gives no start-up time; the user at the switch takes about as
 /// long.
@@ -125,7 +125,7 @@ fn hands(args: &SimArgs) -> Option<SimHands> {
 }
 
 async fn live(hands: &SimHands) {
-    let mut tick = interval(LIVE_EACH);
+    let mut tick = interval(LIVE_INTERVAL);
     loop {
         tick.tick().await;
         hands.with_each(SimHand::advance_to);

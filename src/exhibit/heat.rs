@@ -1,6 +1,6 @@
 //! Keeps drives cool: from measured temperature, its slope and the current, how much the hand may do.
 
-use crate::hand::heat::{FRESH_FOR, WARM};
+use crate::hand::heat::{MAX_AGE, WARM};
 use crate::hand::{Dof, HandSample, Moment, PerDof};
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -18,7 +18,7 @@ const AHEAD_S: f32 = 20.0;
 /// The slope is that of so long.
 const SLOPE_OVER: Duration = Duration::from_secs(20);
 /// So often a temperature is kept: twenty values of each drive at most.
-const KEEP_EACH: Duration = Duration::from_secs(1);
+const SAMPLE_INTERVAL: Duration = Duration::from_secs(1);
 /// Heating of a drive, °C/s for each A²: half more than was reckoned of a sister hand, which says nothing of it.
 const HEATING: f32 = 0.66;
 /// Over so long the current is averaged.
@@ -78,7 +78,7 @@ impl HeatGovernor {
         let at = temperature.received;
         self.newest = Some((at, celsius));
         let last = self.temperatures.back().map(|(last, _)| at.since(*last));
-        if last.is_none_or(|last| last >= KEEP_EACH) {
+        if last.is_none_or(|last| last >= SAMPLE_INTERVAL) {
             self.temperatures.push_back((at, celsius));
         }
         while let Some((first, _)) = self.temperatures.front()
@@ -108,7 +108,7 @@ impl HeatGovernor {
     }
 
     fn fresh(&self, now: Moment) -> Option<PerDof<f32>> {
-        let newest = self.newest.filter(|(at, _)| now.since(*at) <= FRESH_FOR);
+        let newest = self.newest.filter(|(at, _)| now.since(*at) <= MAX_AGE);
         newest.map(|(_, celsius)| celsius)
     }
 

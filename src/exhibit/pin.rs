@@ -6,7 +6,7 @@ use std::time::Duration;
 /// Wrong PINs before nothing is taken for a while.
 pub const TRIES: u8 = 5;
 /// How long that is the first time; each time twice as long.
-pub const LOCKED_FOR: Duration = Duration::from_secs(60);
+pub const LOCK_DURATION: Duration = Duration::from_secs(60);
 /// It grows no longer than this: staff who mistyped get in on the same day.
 pub const LOCKED_MAX: Duration = Duration::from_secs(3600);
 /// Digits of a PIN.
@@ -67,7 +67,7 @@ impl WrongPins {
         let rounds = self.count / u32::from(TRIES);
         let is_due = rounds > 0 && self.count.is_multiple_of(u32::from(TRIES));
         let doubled = 2_u32.saturating_pow(rounds.saturating_sub(1));
-        is_due.then(|| LOCKED_FOR.saturating_mul(doubled).min(LOCKED_MAX))
+        is_due.then(|| LOCK_DURATION.saturating_mul(doubled).min(LOCKED_MAX))
     }
 }
 

@@ -11,25 +11,25 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// A page that was not drawn for this long shows no STOP: the hand is held.
-pub const DRAWN_WITHIN: Duration = Duration::from_secs(1);
+pub const DRAWN_TIMEOUT: Duration = Duration::from_secs(1);
 /// A tile that is held this long arms again, where visitors may.
-pub const HELD_FOR: Duration = Duration::from_secs(2);
+pub const HOLD_DURATION: Duration = Duration::from_secs(2);
 /// Faults that may be cleared by themselves …
 const CLEARED_MAX: usize = 3;
 /// … within this time.
-const CLEARED_WITHIN: Duration = Duration::from_secs(600);
+const CLEAR_WINDOW: Duration = Duration::from_secs(600);
 /// A fault that is there so long after clearing was not cleared.
-const CLEARS_WITHIN: Duration = Duration::from_secs(3);
+const CLEAR_TIMEOUT: Duration = Duration::from_secs(3);
 /// Arming takes a few readings.
-const ARMS_WITHIN: Duration = Duration::from_secs(3);
+const ARM_TIMEOUT: Duration = Duration::from_secs(3);
 /// A visitor who presses nothing for this long has gone.
-const GONE_AFTER: Duration = Duration::from_secs(25);
+const GONE_TIMEOUT: Duration = Duration::from_secs(25);
 /// Between two visitors.
-const NEXT_AFTER: Duration = Duration::from_secs(5);
+const NEXT_VISITOR_DELAY: Duration = Duration::from_secs(5);
 /// Between two pieces of the attract loop.
 const PAUSE: Duration = Duration::from_millis(1200);
 /// The least rest of a hand that grew warm.
-const COOLS_FOR: Duration = Duration::from_secs(120);
+const COOLING_DURATION: Duration = Duration::from_secs(120);
 
 /// Why the hand stands still until staff come, or a visitor holds a tile where that is allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -422,7 +422,7 @@ impl ExhibitRun {
         self.heat.take(seen.sample);
         self.level = self.heat.level(now);
         self.watch_link(seen);
-        if self.permitted && now.since(seen.drawn) >= DRAWN_WITHIN {
+        if self.permitted && now.since(seen.drawn) >= DRAWN_TIMEOUT {
             self.halt(HaltReason::NotShown);
         }
         self.watch_faults(seen, now);
@@ -533,13 +533,13 @@ impl ExhibitRun {
         }
         // The link may know of a fault a moment before it is read here; nothing passes meanwhile.
         let is_waiting = match self.phase {
-            Phase::Clearing { since } => now.since(since) < CLEARS_WITHIN,
+            Phase::Clearing { since } => now.since(since) < CLEAR_TIMEOUT,
             _ => faults.is_empty(),
         };
         if is_waiting {
             return;
         }
-        self.cleared.retain(|at| now.since(*at) < CLEARED_WITHIN);
+        self.cleared.retain(|at| now.since(*at) < CLEAR_WINDOW);
         if self.cleared.len() >= CLEARED_MAX {
             self.halt(HaltReason::Fault);
             return;
@@ -562,7 +562,7 @@ impl ExhibitRun {
         if let Some((tile, since)) = self.held
             && self.plan.visitor_restart
             && is_halted
-            && now.since(since) >= HELD_FOR
+            && now.since(since) >= HOLD_DURATION
         {
             self.permit(now);
             self.press(tile, now);
@@ -579,12 +579,12 @@ impl ExhibitRun {
                 self.quiet_since = now;
             }
             Phase::Cooling { .. } => {
-                let until = now.plus(COOLS_FOR / 2);
+                let until = now.plus(COOLING_DURATION / 2);
                 self.phase = Phase::Cooling { until };
             }
             _ if self.level == HeatLevel::Hot => {
                 self.events.push(ExhibitEvent::Rest);
-                let until = now.plus(COOLS_FOR);
+                let until = now.plus(COOLING_DURATION);
                 self.phase = Phase::Cooling { until };
                 self.rest(now);
             }
@@ -592,7 +592,7 @@ impl ExhibitRun {
                 self.go_idle(now);
             }
             Phase::Visit { until, .. } if now >= until => {
-                self.next_from = now.plus(NEXT_AFTER);
+                self.next_from = now.plus(NEXT_VISITOR_DELAY);
                 self.go_idle(now);
             }
             Phase::Visit { tile, .. } => self.go_on_visiting(tile, now),
@@ -612,7 +612,9 @@ impl ExhibitRun {
         let reacts = piece.is_some_and(|piece| piece.plan.reaction.is_some());
         match self.motion {
             Playback::Done { .. } if again => self.play_tile(tile),
-            Playback::Done { .. } if now.since(self.quiet_since) >= GONE_AFTER => self.go_idle(now),
+            Playback::Done { .. } if now.since(self.quiet_since) >= GONE_TIMEOUT => {
+                self.go_idle(now)
+            }
             // It has no end of its own at which it would be played more slowly.
             Playback::Plays if reacts && self.level > self.played_at => self.play_tile(tile),
             // The hand was not armed in time.
@@ -664,7 +666,7 @@ impl ExhibitRun {
             self.asked = None;
             self.epoch = status.armed;
         }
-        let is_late = |at| now.since(at) >= ARMS_WITHIN;
+        let is_late = |at| now.since(at) >= ARM_TIMEOUT;
         if self.asked.take_if(|at| is_late(*at)).is_some() {
             self.motion = Playback::None;
             // Nor is it armed later.

@@ -11,7 +11,7 @@ pub const WARM: u8 = 60;
 /// From here on a hand that moves is held, °C.
 pub const HOT: u8 = 70;
 /// A temperature older than this is unknown.
-pub const FRESH_FOR: Duration = Duration::from_secs(5);
+pub const MAX_AGE: Duration = Duration::from_secs(5);
 
 /// A drive that is warm, or whose temperature is implausible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -25,9 +25,7 @@ pub struct DriveHeat {
 impl DriveHeat {
     /// The drive with the highest reading, if that is warm or implausible, by what was read last.
     pub fn warmest(sample: &HandSample, now: Moment) -> Option<Self> {
-        let read = sample
-            .temperature
-            .filter(|read| read.age(now) <= FRESH_FOR)?;
+        let read = sample.temperature.filter(|read| read.age(now) <= MAX_AGE)?;
         let all = read.value.iter();
         let all = all.map(|(dof, read)| (dof, read.raw()));
         let (dof, celsius) = all.max_by_key(|(_, celsius)| *celsius)?;
@@ -92,7 +90,7 @@ mod tests {
             let wanted = warmest.map(|(dof, celsius)| DriveHeat { dof, celsius });
             assert_eq!(seen, wanted, "{celsius:?}");
             assert_eq!(seen.is_some_and(DriveHeat::is_hot), is_hot, "{celsius:?}");
-            let later = at.plus(FRESH_FOR + Duration::from_micros(1));
+            let later = at.plus(MAX_AGE + Duration::from_micros(1));
             assert_eq!(DriveHeat::warmest(&sample, later), None);
         }
     }

@@ -113,7 +113,7 @@ impl HandId {
 
 impl Angle {
     /// A joint this near to its target, in counts, has arrived.
-    pub const ARRIVED_WITHIN: u16 = 20;
+    pub const ARRIVED_TOLERANCE: u16 = 20;
     /// Degrees of this joint at this angle, by the linear map of [`Dof::degrees`].
     pub fn degrees(self, dof: Dof) -> f32 {
         let (low, high) = dof.degrees();

@@ -9,21 +9,21 @@ use crate::record::LinkState;
 use std::time::Duration;
 
 /// A source that says nothing new for this long is held …
-pub const HOLDS_AFTER: Duration = Duration::from_millis(200);
+pub const HOLD_TIMEOUT: Duration = Duration::from_millis(200);
 /// … and after this it may move the hand no more.
-pub const ENDS_AFTER: Duration = Duration::from_secs(1);
+pub const END_TIMEOUT: Duration = Duration::from_secs(1);
 /// Targets that are the same to the last bit for this long, away from the ends of the range: tracking is frozen?
-pub const FROZEN_AFTER: Duration = Duration::from_millis(500);
+pub const FREEZE_TIMEOUT: Duration = Duration::from_millis(500);
 /// A hold follows the hand for this long, as it acts late; then it stays.
 const HOLD_FOLLOWS: Duration = Duration::from_millis(120);
 /// Arming is asked for again after this.
-const ARMS_AGAIN_AFTER: Duration = Duration::from_millis(500);
+const REARM_DELAY: Duration = Duration::from_millis(500);
 /// A look that comes late moves no further than one in time.
 const STEP_LONGEST: Duration = Duration::from_millis(40);
 
 /// True if who was heard last at `last` still speaks at `now`.
 pub(crate) fn is_fresh(last: Moment, now: Moment) -> bool {
-    now.since(last) < HOLDS_AFTER
+    now.since(last) < HOLD_TIMEOUT
 }
 
 /// How far ahead of a joint its target may be, and how fast it may go.
@@ -169,11 +169,11 @@ impl Follow {
     /// Time goes on.
     pub fn tick(&mut self, seen: FollowInput, now: Moment) -> Option<FollowOrder> {
         let age = now.since(self.newest.map_or(self.began, |offer| offer.at));
-        if age >= ENDS_AFTER {
+        if age >= END_TIMEOUT {
             return Some(FollowOrder::End);
         }
         let offer = self.newest?;
-        let is_silent = age >= HOLDS_AFTER;
+        let is_silent = age >= HOLD_TIMEOUT;
         let is_let_go = [offer.held, seen.held].contains(&Some(false));
         if is_let_go || is_silent && offer.held.is_some() {
             let phase = if is_silent {
@@ -189,7 +189,7 @@ impl Follow {
         if seen.state != LinkState::Armed {
             self.enter();
             self.phase = FollowPhase::Waiting;
-            let is_due = |at| now.since(at) >= ARMS_AGAIN_AFTER;
+            let is_due = |at| now.since(at) >= REARM_DELAY;
             if seen.state == LinkState::Monitoring && self.asked_to_arm.is_none_or(is_due) {
                 self.asked_to_arm = Some(now);
                 return Some(FollowOrder::Arm);
@@ -203,7 +203,7 @@ impl Follow {
         // A gap is one number, which may rightly stay the same for long.
         let is_frozen = offer.mark.is_some()
             && offer.gap.is_none()
-            && now.since(self.same_since) >= FROZEN_AFTER
+            && now.since(self.same_since) >= FREEZE_TIMEOUT
             && is_away_from_ends(&offer.aims);
         self.phase = if is_frozen {
             FollowPhase::Frozen
@@ -231,7 +231,7 @@ impl Follow {
     /// Where the hand is becomes its target.
     fn hold(&mut self, seen: FollowInput, age: Duration) -> Option<FollowOrder> {
         let steered = self.targets.map(|target| target.is_some());
-        let follows = age < HOLDS_AFTER + HOLD_FOLLOWS;
+        let follows = age < HOLD_TIMEOUT + HOLD_FOLLOWS;
         let was_silent = std::mem::replace(&mut self.phase, FollowPhase::Silent);
         if seen.state != LinkState::Armed || !follows && was_silent == FollowPhase::Silent {
             self.enter();

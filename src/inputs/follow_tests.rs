@@ -3,8 +3,8 @@
 use crate::hand::gap::{Gap, gap_on_path, pad_distance};
 use crate::hand::{Angle, Dof, Moment, PerDof};
 use crate::inputs::follow::{
-    ENDS_AFTER, FROZEN_AFTER, Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase,
-    HOLDS_AFTER,
+    END_TIMEOUT, FREEZE_TIMEOUT, Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase,
+    HOLD_TIMEOUT,
 };
 use crate::inputs::offer::{Offer, OfferLimits};
 use crate::record::LinkState;
@@ -216,7 +216,7 @@ fn a_silent_source_is_held_and_then_ended() {
     follow.offer(offer(0, 0));
     let _entered = follow.tick(at(800), ms(0));
     let _moved = follow.tick(at(795), ms(30));
-    let held = HOLDS_AFTER.as_micros().try_into().unwrap();
+    let held = HOLD_TIMEOUT.as_micros().try_into().unwrap();
     let held = Moment::from_micros(held);
     assert_eq!(index(follow.tick(at(760), held)), Some(760));
     assert_eq!(follow.phase(), FollowPhase::Silent);
@@ -230,7 +230,7 @@ fn a_silent_source_is_held_and_then_ended() {
     let mut back = follow.clone();
     back.offer(offer(400, 0));
     assert_eq!(index(back.tick(at(752), ms(400))), Some(752));
-    let end = Moment::from_duration(ENDS_AFTER);
+    let end = Moment::from_duration(END_TIMEOUT);
     assert_eq!(follow.tick(at(750), end), Some(FollowOrder::End));
 }
 
@@ -257,7 +257,7 @@ fn repeat(aim: i16, mark: Option<u64>, for_ms: u64) -> (Follow, FollowPhase) {
 
 #[test]
 fn targets_that_repeat_to_the_last_bit_are_called_frozen_and_the_next_one_is_entered_to() {
-    let frozen_ms = u64::try_from(FROZEN_AFTER.as_millis()).unwrap();
+    let frozen_ms = u64::try_from(FREEZE_TIMEOUT.as_millis()).unwrap();
     assert_eq!(
         repeat(450, Some(1), frozen_ms - 10).1,
         FollowPhase::Following
@@ -432,14 +432,14 @@ fn no_schedule_moves_a_hand_beyond_its_limits_or_after_the_end() {
                 Some(FollowOrder::End) => {
                     ends += 1;
                     let last = offered.map_or(ms(0), |offer| offer.at);
-                    assert!(now.since(last) >= ENDS_AFTER, "seed {seed}");
+                    assert!(now.since(last) >= END_TIMEOUT, "seed {seed}");
                     break;
                 }
                 Some(FollowOrder::Aim(targets)) => {
                     assert_eq!(hand.state, LinkState::Armed, "seed {seed}");
                     let offer = offered.unwrap();
                     assert_ne!(offer.held, Some(false), "seed {seed}");
-                    let is_fresh = now.since(offer.at) < HOLDS_AFTER;
+                    let is_fresh = now.since(offer.at) < HOLD_TIMEOUT;
                     for (dof, to) in targets.iter() {
                         let Some(to) = *to else { continue };
                         aims += 1;

@@ -2,7 +2,7 @@
 
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
-use crate::inputs::follow::ENDS_AFTER;
+use crate::inputs::follow::END_TIMEOUT;
 use crate::inputs::line::{LineFault, LineField, LineRefusal, StreamLine};
 use crate::link::rate::EventRate;
 use std::collections::BTreeMap;
@@ -98,7 +98,7 @@ impl Intake {
             return Ok(());
         }
         if let Some((sender, last)) = self.view.sender
-            && now.since(last) < ENDS_AFTER
+            && now.since(last) < END_TIMEOUT
         {
             if sender != from {
                 return Err(LineFault::OtherSender.into());

@@ -26,9 +26,9 @@ const CONNECTIONS_MAX: usize = 8;
 /// Further ones, which may only stop the hand: the first other line closes them. More are closed at once.
 const STOPPERS_MAX: usize = 24;
 /// A connection that sends no whole line for so long is closed.
-const LINE_WITHIN: Duration = Duration::from_secs(10);
+const LINE_TIMEOUT: Duration = Duration::from_secs(10);
 /// How often it is told what came in.
-const TELL_EACH: Duration = Duration::from_millis(50);
+const REPORT_INTERVAL: Duration = Duration::from_millis(50);
 /// Lines that may wait to be looked at.
 const LINES_MAX: usize = 64;
 /// Longest datagram that the network carries: one that is too long for a line may still say stop.
@@ -185,7 +185,7 @@ impl Listening {
     async fn datagrams(mut self, socket: UdpSocket) {
         let mut datagram = vec![0; DATAGRAM_MAX];
         let door = self.door();
-        let mut tell = interval(TELL_EACH);
+        let mut tell = interval(REPORT_INTERVAL);
         loop {
             tokio::select! {
                 received = socket.recv_from(&mut datagram) => {
@@ -202,7 +202,7 @@ impl Listening {
     async fn connections(mut self, listener: TcpListener) {
         let (lines, mut heard) = mpsc::channel(LINES_MAX);
         let mut readers = JoinSet::new();
-        let mut tell = interval(TELL_EACH);
+        let mut tell = interval(REPORT_INTERVAL);
         loop {
             tokio::select! {
                 accepted = listener.accept() => match accepted {
@@ -217,7 +217,7 @@ impl Listening {
                     }
                     Ok(_too_many) => {}
                     // The system is out of something: it may have it again soon.
-                    Err(_error) => tokio::time::sleep(TELL_EACH).await,
+                    Err(_error) => tokio::time::sleep(REPORT_INTERVAL).await,
                 },
                 Some(_ended) = readers.join_next() => {}
                 Some((line, from)) = heard.recv() => self.take(line, from),
@@ -280,7 +280,7 @@ impl LineReader {
         let mut cutter = LineCutter::new(LONGEST);
         let mut piece = [0; LINE_MAX];
         loop {
-            let Ok(Ok(len @ 1..)) = timeout(LINE_WITHIN, stream.read(&mut piece)).await else {
+            let Ok(Ok(len @ 1..)) = timeout(LINE_TIMEOUT, stream.read(&mut piece)).await else {
                 break;
             };
             for cut in cutter.push(piece.get(..len).unwrap_or_default()) {

@@ -5,7 +5,7 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 /// A shorter sleep is one that nobody notices.
-const SLEPT_AFTER: Duration = Duration::from_secs(1);
+const MIN_SLEEP: Duration = Duration::from_secs(1);
 
 /// A clock that never goes back, counted from its start. Copies count from the same start.
 #[derive(Debug, Clone, Copy)]
@@ -78,7 +78,7 @@ impl SleepWatch {
     fn slept_at(&mut self, asleep: Option<Duration>) -> Option<Duration> {
         let before = std::mem::replace(&mut self.asleep, asleep)?;
         let slept = asleep?.saturating_sub(before);
-        (slept > SLEPT_AFTER).then_some(slept)
+        (slept > MIN_SLEEP).then_some(slept)
     }
 }
 
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn a_thread_that_stands_still_is_no_sleep() {
         let mut watch = SleepWatch::start(Clock::start());
-        std::thread::sleep(SLEPT_AFTER + Duration::from_millis(50));
+        std::thread::sleep(MIN_SLEEP + Duration::from_millis(50));
         assert_eq!(watch.slept(), None);
     }
 }

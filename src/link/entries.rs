@@ -10,9 +10,9 @@ use std::time::Duration;
 use tokio::time::{Interval, MissedTickBehavior, interval};
 
 /// How often the wire and the state of the link are looked at.
-const LOOK_EACH: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// How often the link's figures are told.
-const FIGURES_EACH: Duration = Duration::from_secs(1);
+const FIGURES_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The entries of one link, from the moment on at which it was observed.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ pub struct LinkEntries {
 impl LinkEntries {
     /// Of this link. Must be called within a tokio runtime.
     pub fn new(observed: LinkObserver, clock: Clock) -> Self {
-        let mut tick = interval(LOOK_EACH);
+        let mut tick = interval(POLL_INTERVAL);
         tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
         Self {
             observed,
@@ -110,7 +110,7 @@ impl LinkEntries {
         }
         let is_due = self
             .figures_at
-            .is_none_or(|at| now.since(at) >= FIGURES_EACH);
+            .is_none_or(|at| now.since(at) >= FIGURES_INTERVAL);
         if text.is_empty() && !is_due {
             return None;
         }

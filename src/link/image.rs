@@ -13,7 +13,7 @@ const AREA_FRESH: Duration = Duration::from_millis(500);
 /// However seldom a part is read, nothing older than this is given.
 const OLDEST: Duration = Duration::from_secs(1);
 /// What is read by itself and does not come within this is asked for.
-const JOIN_WITHIN: Duration = Duration::from_millis(250);
+const JOIN_WINDOW: Duration = Duration::from_millis(250);
 /// Stretches that were asked for which are remembered; the oldest makes room. Clients of one hand ask for the same few.
 const AREAS_MAX: usize = 16;
 /// Stretches that are read as a whole.
@@ -233,8 +233,8 @@ impl Block {
     /// Until when it is worth waiting for its next turn; none if that is far off.
     fn comes_by(&self, since: Moment) -> Option<Moment> {
         match &self.came {
-            Some(came) => Some(came.asked.plus(self.lasts(came) + JOIN_WITHIN)),
-            None => (self.period < JOIN_WITHIN).then(|| since.plus(JOIN_WITHIN)),
+            Some(came) => Some(came.asked.plus(self.lasts(came) + JOIN_WINDOW)),
+            None => (self.period < JOIN_WINDOW).then(|| since.plus(JOIN_WINDOW)),
         }
     }
 }

@@ -13,7 +13,7 @@ use tokio::sync::{Mutex, watch};
 use tokio::time::{Instant, sleep_until, timeout};
 
 /// Whoever waits so long is told that the hand did not answer.
-pub const RECENT_WITHIN: Duration = Duration::from_secs(3);
+pub const RECENT_WINDOW: Duration = Duration::from_secs(3);
 /// After a read that the session would not have made, so many times its length go by until the next: they take the link
 /// 4 of 100 parts of its time.
 const PAUSE_TIMES: u32 = 24;
@@ -53,13 +53,13 @@ impl RecentReads {
     /// Memory that is not older than the session's reads of it are apart, or that is read now.
     ///
     /// # Errors
-    /// As [`LinkHandle::read`], and [`RequestError::Timeout`] after [`RECENT_WITHIN`].
+    /// As [`LinkHandle::read`], and [`RequestError::Timeout`] after [`RECENT_WINDOW`].
     pub async fn read(&self, span: Span) -> Result<Vec<u8>, RequestError> {
-        let read = timeout(RECENT_WITHIN, self.wait_for(span)).await;
+        let read = timeout(RECENT_WINDOW, self.wait_for(span)).await;
         read.unwrap_or_else(|_late| {
             Err(RequestError::Timeout {
                 address: span.address,
-                after_ms: u64::try_from(RECENT_WITHIN.as_millis()).unwrap_or(u64::MAX),
+                after_ms: u64::try_from(RECENT_WINDOW.as_millis()).unwrap_or(u64::MAX),
             })
         })
     }

@@ -13,9 +13,9 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 /// A grip that is empty for so long is no finger that is just about to touch.
-const EMPTY_FOR: Duration = Duration::from_millis(300);
+const EMPTY_DURATION: Duration = Duration::from_millis(300);
 /// Until then, readings may show what the hand did before it was told something: it takes 66 ms, and is read every 25.
-const REACTS_WITHIN: Duration = Duration::from_millis(150);
+const REACTION_TIME: Duration = Duration::from_millis(150);
 
 /// A grip by size that is taken alone may take so much longer than the stroke at its speed.
 const SPARE: Duration = Duration::from_secs(4);
@@ -350,7 +350,7 @@ impl Player {
 
     /// What closes on an object never arrives: the grip that the step waits for ends its way. One of before does not.
     fn took_hold(&self, since: Moment, grasp: &GripEstimate) -> bool {
-        let is_new = grasp.since >= since.plus(REACTS_WITHIN);
+        let is_new = grasp.since >= since.plus(REACTION_TIME);
         let is_held = grasp.state == GripState::Holding && is_new;
         let closes = |part: &WayPart| part.is_pinching || self.parts.len() == 1;
         is_held && self.until().is_some() && self.parts.front().is_some_and(closes)
@@ -368,9 +368,8 @@ impl Player {
         };
         let there = |dof: Dof| match part.targets[dof] {
             None => true,
-            Some(target) => {
-                seen[dof].is_some_and(|seen| target.get().abs_diff(seen) <= Angle::ARRIVED_WITHIN)
-            }
+            Some(target) => seen[dof]
+                .is_some_and(|seen| target.get().abs_diff(seen) <= Angle::ARRIVED_TOLERANCE),
         };
         let is_there = Dof::ALL.into_iter().all(there);
         let too_late = now.since(since) >= cue.limit;
@@ -402,7 +401,7 @@ impl Player {
         let Some(until) = self.until() else {
             return;
         };
-        let is_empty = grasp.state == GripState::Empty && now.since(grasp.since) >= EMPTY_FOR;
+        let is_empty = grasp.state == GripState::Empty && now.since(grasp.since) >= EMPTY_DURATION;
         if grasp.state == GripState::Holding {
             self.arrive(now);
         } else if is_empty && self.view.retries < until.retries.get() {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// A fingertip counts as let go once it was for this long: a hand that trembles does not make the finger tremble.
-const LET_GO_FOR: Duration = Duration::from_millis(300);
+const RELEASE_DURATION: Duration = Duration::from_millis(300);
 /// A fingertip counts as let go below this share of the threshold.
 const LET_GO_SHARE: f32 = 0.5;
 
@@ -88,7 +88,7 @@ impl TouchWatch {
             return None;
         }
         let since = *tip.below_since.get_or_insert(now);
-        if now.since(since) < LET_GO_FOR {
+        if now.since(since) < RELEASE_DURATION {
             return None;
         }
         tip.is_touched = false;

@@ -22,7 +22,7 @@ pub fn way(from: &PerDof<Option<i16>>, to: &Targets) -> Vec<Targets> {
     let ends = |dof: Dof| {
         let from = from[dof].unwrap_or(0);
         let to = to[dof].map_or(from, Angle::get);
-        if from.abs_diff(to) <= Angle::ARRIVED_WITHIN {
+        if from.abs_diff(to) <= Angle::ARRIVED_TOLERANCE {
             (to, to)
         } else {
             (from, to)

@@ -1,7 +1,7 @@
 //! Why a program that moved the hand was aborted.
 
 use crate::hand::{Dof, Fault, Faults};
-use crate::record::{Disarmed, SetpointConflict};
+use crate::record::state::{Disarmed, SetpointConflict};
 use std::time::Duration;
 
 /// Why a program that moved the hand was aborted. The hand was stopped, unless another controller moves it now. Only the user who

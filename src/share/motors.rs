@@ -11,9 +11,9 @@ use std::time::Duration;
 
 const JOINTS: usize = Dof::ALL.len();
 /// The other hand is unknown if nothing was heard of it for so long: some twenty states.
-const OTHER_FRESH_FOR: Duration = Duration::from_millis(250);
+const OTHER_MAX_AGE: Duration = Duration::from_millis(250);
 /// While another program tells both hands there, this one does not.
-const DRIVER_FRESH_FOR: Duration = Duration::from_secs(2);
+const DRIVER_MAX_AGE: Duration = Duration::from_secs(2);
 /// In the spare words of a motor that its sender has measured, and not passed on.
 const MEASURED: u32 = 0x4853_0001;
 
@@ -113,7 +113,7 @@ impl MotorPair {
         celsius: &[u8; JOINTS],
         now: Moment,
     ) -> Option<Vec<u8>> {
-        let is_told = |at: Moment| now.since(at) < DRIVER_FRESH_FOR;
+        let is_told = |at: Moment| now.since(at) < DRIVER_MAX_AGE;
         if self.driver.is_some_and(is_told) {
             return None;
         }
@@ -127,7 +127,7 @@ impl MotorPair {
             ..*motor
         };
         let other = self.other.as_ref();
-        let other = other.filter(|(_, at)| now.since(*at) < OTHER_FRESH_FOR);
+        let other = other.filter(|(_, at)| now.since(*at) < OTHER_MAX_AGE);
         let other = other.map_or([Motor::UNKNOWN; JOINTS], |(half, _)| {
             half.each_ref().map(passed_on)
         });

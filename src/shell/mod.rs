@@ -16,11 +16,11 @@ use crate::ui::{View, Window};
 use std::time::Duration;
 
 /// News come faster than a display shows them: one frame serves all that come within this time.
-const FRAME_WITHIN: Duration = Duration::from_millis(16);
+const FRAME_INTERVAL: Duration = Duration::from_millis(16);
 /// The same while no hand moves: only curves go on then, a pixel or two.
-pub const FRAME_AT_REST_WITHIN: Duration = Duration::from_millis(100);
+pub const REST_FRAME_INTERVAL: Duration = Duration::from_millis(100);
 /// The same where the processor draws each pixel.
-pub const SOFTWARE_FRAME_AT_REST_WITHIN: Duration = Duration::from_millis(180);
+pub const SOFTWARE_REST_FRAME_INTERVAL: Duration = Duration::from_millis(180);
 
 /// Draws what `ui` draws at a time in seconds, in a size in points, into the bytes of a PNG file; `None` if it cannot.
 pub type Snap =
@@ -97,7 +97,7 @@ impl DesktopApp {
             hand.connection.status.rest == Rest::Moving || Mover::of(hand, state.now).is_some()
         };
         if state.hands.iter().any(moves) {
-            FRAME_WITHIN
+            FRAME_INTERVAL
         } else {
             at_rest
         }

@@ -42,7 +42,7 @@ const SAME_ANGLE: f64 = 1.0;
 const RELAXED_PART: f64 = 0.92;
 const HELD_PART: f64 = 0.9;
 /// A joint this near to its open end makes room for another object, counts.
-const OPEN_WITHIN: f64 = 20.0;
+const OPEN_TOLERANCE: f64 = 20.0;
 
 /// What a joint is told.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -364,7 +364,7 @@ impl Drive {
 
     /// What was pressed too hard is broken until the joint is open again.
     fn watch_object(&mut self) {
-        if self.position < OPEN_WITHIN {
+        if self.position < OPEN_TOLERANCE {
             self.broken = false;
         }
         let most = self.contact.and_then(|contact| contact.breaks_at_g);

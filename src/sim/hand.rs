@@ -35,7 +35,7 @@ const CREEP: f64 = 5.0;
 /// Writes that the journal keeps; twice as many are held before the older half goes.
 pub const JOURNAL_KEEPS: usize = 8192;
 /// Way of a joint, counts of its stroke, after which feedback freezes in that scenario.
-const FREEZES_AFTER: f64 = 100.0;
+const FREEZE_TRAVEL: f64 = 100.0;
 /// Where the time of a read stands when the personality stamps it.
 const STAMP: Span = Span::new(GAP.address, 8);
 
@@ -513,7 +513,7 @@ impl SimHand {
     fn freeze_in_motion(&mut self) {
         let has_moved = |dof: &Dof| {
             let way = self.body.drives()[*dof].position() - self.began_at[*dof];
-            way.abs() >= FREEZES_AFTER
+            way.abs() >= FREEZE_TRAVEL
         };
         if Dof::ALL.iter().any(has_moved) {
             self.publish(|_| true);

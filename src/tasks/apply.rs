@@ -9,7 +9,7 @@ use crate::params::danger::worse;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::record::{NotSent, Verdict, Written};
-use crate::tasks::hand::{REACHED_WITHIN, TaskHand, answers, once_at_rest};
+use crate::tasks::hand::{REACH_TIMEOUT, TaskHand, answers, once_at_rest};
 use crate::tasks::save::back_up;
 use crate::tasks::{Consent, ParamStep, Risks, TaskError, read};
 use std::path::PathBuf;
@@ -140,7 +140,7 @@ async fn write_one<H: TaskHand>(hand: &H, setting: Setting) -> Result<Written, R
     if !matches!(written.verdict, Verdict::Unverified { .. }) {
         return Ok(written);
     }
-    if !answers(hand, REACHED_WITHIN).await {
+    if !answers(hand, REACH_TIMEOUT).await {
         return Ok(written);
     }
     Ok(match read::group(hand, written.span).await {

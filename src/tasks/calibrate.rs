@@ -15,15 +15,15 @@ pub const FREE_BELOW_G: u16 = 400;
 /// A fingertip that feels more than this is touched, N.
 pub const TOUCH_N: f32 = 0.3;
 /// How long the force has to be steady.
-const STEADY_FOR: Duration = Duration::from_secs(2);
+const STEADY_DURATION: Duration = Duration::from_secs(2);
 /// By how much it may change in that time, g.
 const STEADY_G: i16 = 20;
 /// Samples that are looked at: two seconds of the fastest wire.
 const SAMPLES_MAX: usize = 512;
 /// Samples older than this do not count.
-const FRESH_FOR: Duration = Duration::from_millis(500);
+const MAX_AGE: Duration = Duration::from_millis(500);
 /// How long the new offset is measured after the end.
-const MEASURE_FOR: Duration = Duration::from_millis(1500);
+const MEASURE_DURATION: Duration = Duration::from_millis(1500);
 
 /// What it takes at most. Manual: 2.6.6 names no time; hands in use were seen to take 2 to 6 s.
 pub const TAKES: Duration = Duration::from_secs(8);
@@ -80,7 +80,7 @@ impl Checks {
         self.forces.push_back((force.asked, grams));
         let from = force.asked;
         while let Some((at, _)) = self.forces.front()
-            && from.since(*at) > STEADY_FOR + FRESH_FOR
+            && from.since(*at) > STEADY_DURATION + MAX_AGE
         {
             self.forces.pop_front();
         }
@@ -94,7 +94,7 @@ impl Checks {
         link: &LinkStatus,
         now: Moment,
     ) -> Option<bool> {
-        let fresh = |asked: Moment| link.state.is_live() && now.since(asked) <= FRESH_FOR;
+        let fresh = |asked: Moment| link.state.is_live() && now.since(asked) <= MAX_AGE;
         match check {
             Check::Disarmed => match link.state {
                 LinkState::Offline | LinkState::Identifying => None,
@@ -125,7 +125,7 @@ impl Checks {
 
     fn is_steady(&self, now: Moment) -> Option<bool> {
         let (first, last) = (self.forces.front()?, self.forces.back()?);
-        if now.since(last.0) > FRESH_FOR || last.0.since(first.0) < STEADY_FOR {
+        if now.since(last.0) > MAX_AGE || last.0.since(first.0) < STEADY_DURATION {
             return None;
         }
         Some(Dof::ALL.into_iter().all(|dof| {
@@ -188,7 +188,7 @@ pub async fn calibrate<H: TaskHand>(
         let since = clock.now();
         let mut records = hand.records();
         let mut checks = Checks::default();
-        let until = Instant::now() + MEASURE_FOR;
+        let until = Instant::now() + MEASURE_DURATION;
         while let Ok(Some(record)) = timeout_at(until, records.next()).await {
             if let Record::Reading { sample, .. } = record
                 && sample.force.is_some_and(|force| force.asked >= since)

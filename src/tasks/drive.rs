@@ -3,7 +3,7 @@
 
 use crate::hand::{ArmEpoch, HandSample, Moment, Setpoints};
 use crate::link::{Clock, Lease, LeaseRefusal, LinkStatus, PollRates, Records, Stop};
-use crate::record::{Abort, Disarmed, LinkState, Record, SetpointConflict};
+use crate::record::{Abort, Disarmed, LinkState, Record, SetpointConflict, WriteCause};
 use crate::tasks::hand::TaskHand;
 use crate::tasks::program::{Ended, Order, Program, Seen};
 use crate::trials::limits::{Stall, fault, heat_reason};
@@ -28,6 +28,41 @@ pub struct Armed {
     pub seen: HandSample,
     /// The program's clock.
     pub clock: Clock,
+}
+
+/// What a program starts with.
+#[derive(Debug, Clone, Copy)]
+pub struct DriveStart {
+    /// Who arms the hand.
+    pub arming: Arming,
+    /// The right to move the hand.
+    pub lease: Lease,
+    /// What was read until now.
+    pub seen: HandSample,
+    /// The program's clock.
+    pub clock: Clock,
+}
+
+/// Who arms the hand for a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Arming {
+    /// The user did. The program ends with this arming.
+    ByUser(ArmEpoch),
+    /// The program does, as often as it needs. It ends with its lease.
+    ByProgram,
+    /// Nobody: the program disarmed the hand, which must not move.
+    Off,
+}
+
+impl From<Armed> for DriveStart {
+    fn from(armed: Armed) -> Self {
+        Self {
+            arming: Arming::ByUser(armed.epoch),
+            lease: armed.lease,
+            seen: armed.seen,
+            clock: armed.clock,
+        }
+    }
 }
 
 /// A program that is over.
@@ -64,18 +99,19 @@ pub struct EndReport {
 /// what is new; if not, the program is aborted. If `inputs` ends, whoever ran the program moves the hand in another way.
 pub async fn drive<H: TaskHand, P: Program>(
     hand: &H,
-    armed: Armed,
+    start: impl Into<DriveStart>,
     mut program: P,
     inputs: impl Stream<Item = P::Input>,
     mut report: impl FnMut(&mut P, Option<&Setpoints>) -> bool,
 ) -> Driven<P> {
-    let clock = armed.clock;
+    let start = start.into();
+    let clock = start.clock;
     let mut at = Driving {
         hand,
         records: hand.records(),
-        sample: armed.seen,
-        armed: Some(armed.epoch),
-        lease: armed.lease,
+        sample: start.seen,
+        arming: start.arming,
+        lease: start.lease,
         foreign: None,
         turns: Turns::from(clock.now()),
     };
@@ -85,17 +121,16 @@ pub async fn drive<H: TaskHand, P: Program>(
     let mut inputs = pin!(inputs);
     let mut stop = None;
     while program.ended().is_none() {
-        let mut input = tokio::select! {
+        let (mut input, record) = tokio::select! {
             biased;
-            input = inputs.next() => Some(input),
-            record = timeout(TICK, at.records.next()) => {
-                if let Some(stall) = at.turns.turn(clock.now()) {
-                    program.stalled(stall);
-                }
-                at.read(&mut program, record.ok().flatten(), clock.now());
-                None
-            }
+            // Whoever sends without a pause keeps no reading waiting.
+            input = inputs.next() => (Some(input), at.records.try_next()),
+            record = timeout(TICK, at.records.next()) => (None, record.ok().flatten()),
         };
+        if let Some(stall) = at.turns.turn(clock.now()) {
+            program.stalled(stall);
+        }
+        at.read(&mut program, record, clock.now());
         let status = hand.status();
         let is_broken = at.broken(&status);
         if is_broken {
@@ -105,26 +140,25 @@ pub async fn drive<H: TaskHand, P: Program>(
                 at.read(&mut program, Some(record), clock.now());
             }
         }
+        let sample = at.sample;
         let seen = Seen {
             status: &status,
-            sample: &at.sample,
+            sample: &sample,
             stall: at.turns.stall,
             now: clock.now(),
         };
         let mut order = match input {
             Some(Some(input)) => program.input(input, &seen),
-            Some(None) => {
-                program.abort(Abort::TakenOver, clock.now());
-                None
-            }
+            Some(None) => program.input_ended(&seen),
             None => None,
         };
+        let mut sent = order.and_then(|order| at.obey(order, &status));
         if program.ended().is_none() && is_broken {
             program.abort(at.cause(&status, clock.now()), clock.now());
-        } else if program.ended().is_none() && order.is_none() {
+        } else if program.ended().is_none() && sent.is_none() {
             order = program.tick(&seen);
+            sent = order.and_then(|order| at.obey(order, &status));
         }
-        let sent = order.and_then(|order| at.obey(order, &status));
         if !report(&mut program, sent.as_ref()) {
             program.abort(Abort::NotKept, clock.now());
         }
@@ -132,10 +166,10 @@ pub async fn drive<H: TaskHand, P: Program>(
         if !is_early && order != Some(Order::Stop) {
             continue;
         }
-        if !P::STAYS_ARMED {
+        if P::WAITS_FOR_REST {
             stop = Some(hand.stopped().await);
-        } else if hand.check(at.lease).is_err() {
-            // Under a lease that outlasts it the session disarmed and stopped the hand, and its holder decides what follows.
+        } else if hand.check(at.lease).is_err() || hand.status().armed.is_some() {
+            // Where control outlasts the arming, the session has stopped the hand already.
             hand.stop();
         }
     }
@@ -151,8 +185,7 @@ struct Driving<'a, H> {
     hand: &'a H,
     records: Records,
     sample: HandSample,
-    /// The arming of the program; `None` once it disarmed the hand, which must not move from then on.
-    armed: Option<ArmEpoch>,
+    arming: Arming,
     lease: Lease,
     /// What another controller was seen to write until the program disarmed.
     foreign: Option<SetpointConflict>,
@@ -161,41 +194,55 @@ struct Driving<'a, H> {
 
 impl<H: TaskHand> Driving<'_, H> {
     fn read<P: Program>(&mut self, program: &mut P, record: Option<Record>, now: Moment) {
-        if let Some(Record::Reading { sample, fresh }) = record {
-            self.sample = *sample;
-            program.read(&self.sample, fresh, now);
+        match record {
+            Some(Record::Reading { sample, fresh }) => {
+                self.sample = *sample;
+                program.read(&self.sample, fresh, now);
+            }
+            Some(Record::Sent { at, cause, .. }) if cause == WriteCause::Setpoint => {
+                program.sent(at);
+            }
+            _ => {}
         }
     }
 
     /// Does it; what was sent, if something was.
     fn obey(&mut self, order: Order, status: &LinkStatus) -> Option<Setpoints> {
-        match order {
-            Order::Set(setpoints) if setpoints.is_empty() => None,
-            // Under a lease that ended nothing is sent, and the next step ends the program.
+        let (hand, lease) = (self.hand, self.lease);
+        // Under a lease that ended nothing is done, and the next step ends the program.
+        let _done = match order {
+            Order::Set(setpoints) if setpoints.is_empty() => Ok(()),
             Order::Set(setpoints) => {
-                let set = self.hand.set(self.lease, &setpoints);
-                set.is_ok().then_some(setpoints)
+                let set = hand.set(lease, &setpoints);
+                return set.is_ok().then_some(setpoints);
             }
             Order::Disarm => {
-                self.hand.disarm();
-                (self.armed, self.foreign) = (None, status.foreign_setpoint);
-                None
+                hand.disarm();
+                (self.arming, self.foreign) = (Arming::Off, status.foreign_setpoint);
+                Ok(())
             }
-            Order::Stop => None,
-        }
+            Order::Stop => Ok(()),
+            Order::Arm(request) => hand.arm(lease, request),
+            Order::Halt => hand.halt(lease),
+            Order::RunUntil(until) => hand.run_until(lease, until),
+            Order::GiveBack(why) => hand.give_back(lease, why),
+        };
+        None
     }
 
     /// Whether the program must not go on.
     fn broken(&self, status: &LinkStatus) -> bool {
-        if !status.state.is_live() {
-            return true;
-        }
-        match self.armed {
-            Some(epoch) => {
+        let is_refused = || self.hand.check(self.lease).is_err();
+        match self.arming {
+            Arming::ByUser(epoch) => {
                 let is_armed = status.armed == Some(epoch) && status.state != LinkState::Fault;
-                !is_armed || self.hand.check(self.lease).is_err()
+                !status.state.is_live() || !is_armed || is_refused()
             }
-            None => status.armed.is_some() || status.foreign_setpoint != self.foreign,
+            Arming::ByProgram => is_refused(),
+            Arming::Off => {
+                let is_moved = status.armed.is_some() || status.foreign_setpoint != self.foreign;
+                !status.state.is_live() || is_moved
+            }
         }
     }
 
@@ -205,7 +252,7 @@ impl<H: TaskHand> Driving<'_, H> {
         if !status.state.is_live() {
             return Abort::LinkLost;
         }
-        if self.armed.is_none() {
+        if self.arming == Arming::Off {
             return match status.armed {
                 Some(_) => Abort::ArmedAnew,
                 None => Abort::OtherController { wrote },
@@ -216,16 +263,20 @@ impl<H: TaskHand> Driving<'_, H> {
             return Abort::TakenOver;
         }
         let ended = match refused {
-            Some(LeaseRefusal::Ended(why)) if status.armed.is_some() => Some(why),
+            Some(LeaseRefusal::Ended(why)) => Some(why),
             _ => status.disarmed,
         };
+        if ended == Some(Disarmed::LinkLost) {
+            return Abort::LinkLost;
+        }
         // While the hand is stopped for a fault its state says so of the stop alone.
         let by_fault = status.state == LinkState::Fault || ended == Some(Disarmed::Fault);
         if let Some(why) = fault(&self.sample).or(by_fault.then_some(Abort::Fault { joint: None }))
         {
             return why;
         }
-        if status.armed.is_some() && status.armed != self.armed {
+        let is_anew = |epoch| Arming::ByUser(epoch) != self.arming;
+        if refused.is_none() && status.armed.is_some_and(is_anew) {
             return Abort::ArmedAnew;
         }
         let by_heat = match ended {

@@ -3,28 +3,26 @@
 
 use crate::hand::gap::Gap;
 use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Dof, DriveHeat, HandSample, Moment, PerDof, Setpoints, Target,
+    Angle, ArmEpoch, Dof, DriveHeat, Groups, HandSample, Moment, PerDof, Setpoints, Target,
 };
 use crate::inputs::follow::{
-    Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase, HOLDS_AFTER,
+    Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase, HOLD_TIMEOUT,
 };
 use crate::inputs::{Offer, OfferLimits};
-use crate::link::{ArmRequest, Clock, HoldToRun, Lease, LeaseRefusal};
-use crate::record::{Disarmed, Record, WriteCause};
+use crate::link::{ArmRequest, Clock, HoldToRun, Lease};
+use crate::record::{Abort, Disarmed};
+use crate::tasks::drive::{Arming, DriveStart, drive};
 use crate::tasks::hand::TaskHand;
+use crate::tasks::program::{Ended, Order, Program, Seen};
+use futures::stream::poll_fn;
 use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
-use tokio::time::sleep;
 
-/// How often time is looked at where nothing is offered or read.
-const TICK: Duration = Duration::from_millis(5);
 /// The delay that is told is that of so many targets.
 const DELAYS: usize = 512;
-/// Offers and records that are looked at before the hand is again: whoever sends without a pause keeps nothing else waiting.
-const AT_ONCE: usize = 64;
 /// How often the view is told while only its figures change.
-const TELL_EACH: Duration = Duration::from_millis(100);
+const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// What the user allows a source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -67,15 +65,13 @@ pub struct FollowView {
     pub heat: Option<DriveHeat>,
 }
 
-/// Why it ended. The hand was stopped, by this or by what ended it, unless another moves it now or its link was lost.
+/// How following ended that nothing aborted. The hand was stopped, and control was given back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FollowEnd {
     /// The source sent nothing for too long.
     Silent,
     /// The source was closed or unplugged.
     Gone,
-    /// The lease ended, or another has it.
-    Lease(LeaseRefusal),
 }
 
 /// Follows until the source or the lease ends.
@@ -84,78 +80,62 @@ pub async fn follow<H: TaskHand>(
     start: FollowStart,
     mut offers: mpsc::Receiver<Offer>,
     mut tell: impl FnMut(FollowView),
-) -> FollowEnd {
+) -> Ended<FollowEnd> {
     let clock = start.clock;
-    let mut records = hand.records();
+    let begin = DriveStart {
+        arming: Arming::ByProgram,
+        lease: start.lease,
+        seen: start.seen,
+        clock,
+    };
     let limits = start.terms.borrow().limits;
-    let mut at = FollowRun {
+    let program = FollowRun {
         follow: Follow::new(limits, clock.now()),
-        sample: start.seen,
+        view: None,
         delays: Delays::default(),
         limits: OfferLimits::NONE,
         limited: None,
-        hand,
+        end: None,
         start,
     };
+    let offers = poll_fn(move |context| offers.poll_recv(context));
     let mut told: Option<(FollowView, Moment)> = None;
-    loop {
-        tokio::select! {
-            biased;
-            // Feedback comes at the hand's own pace, offers at any.
-            Some(record) = records.next() => at.heard(&record),
-            offer = offers.recv() => match offer {
-                Some(offer) => at.take(offer),
-                None => {
-                    at.give_back(Disarmed::Silent);
-                    return FollowEnd::Gone;
-                }
-            },
-            () = sleep(TICK) => {}
-        }
-        for _ in 0..AT_ONCE {
-            let (record, offer) = (records.try_next(), offers.try_recv().ok());
-            if record.is_none() && offer.is_none() {
-                break;
-            }
-            record.iter().for_each(|record| at.heard(record));
-            // The newest of what waits.
-            offer.into_iter().for_each(|offer| at.take(offer));
-        }
-        if let Err(refused) = hand.check(at.start.lease) {
-            at.lease_ended(refused);
-            return FollowEnd::Lease(refused);
-        }
-        if let Some(end) = at.go_on() {
-            return end;
-        }
+    let driven = drive(hand, begin, program, offers, |run, _| {
         let now = clock.now();
-        let is_due = |(view, when): (FollowView, Moment)| {
-            view.phase != at.follow.phase()
-                || view.sent != *at.follow.sent()
-                || now.since(when) >= TELL_EACH
+        let is_due = |view: &FollowView| match told {
+            Some((before, when)) => {
+                (view.phase, view.sent) != (before.phase, before.sent)
+                    || now.since(when) >= REPORT_INTERVAL
+            }
+            None => true,
         };
-        if told.is_none_or(is_due) {
-            let view = at.view();
+        if let Some(view) = run.view.filter(is_due) {
             told = Some((view, now));
             tell(view);
         }
-    }
+        true
+    });
+    driven.await.end
 }
 
-struct FollowRun<'a, H> {
-    hand: &'a H,
+struct FollowRun {
     start: FollowStart,
     follow: Follow,
-    sample: HandSample,
+    view: Option<FollowView>,
     delays: Delays,
     /// What the source asked for last.
     limits: OfferLimits,
     /// What the hand was told of it, under which arming.
     limited: Option<(ArmEpoch, OfferLimits)>,
+    end: Option<Ended<FollowEnd>>,
 }
 
-impl<H: TaskHand> FollowRun<'_, H> {
-    fn take(&mut self, mut offer: Offer) {
+impl Program for FollowRun {
+    type Input = Offer;
+    type Outcome = FollowEnd;
+    const WAITS_FOR_REST: bool = false;
+
+    fn input(&mut self, mut offer: Offer, _seen: &Seen<'_>) -> Option<Order> {
         let locked = self.start.terms.borrow().locked;
         for (dof, aim) in offer.aims.iter_mut() {
             *aim = aim.filter(|_| !locked[dof]);
@@ -165,97 +145,79 @@ impl<H: TaskHand> FollowRun<'_, H> {
             offer.gap = None;
             offer.aims = PerDof::splat(None);
         }
-        if offer.held == Some(true) {
-            // Should this task hang, the link stops the hand by itself. A lease that ended is seen in the next step.
-            let _put_off = self
-                .hand
-                .run_until(self.start.lease, offer.at.plus(HOLDS_AFTER));
-        }
         self.limits.merge(&offer.limits);
         self.follow.offer(offer);
         self.delays.offered = Some(offer.at);
+        // Should this program hang, the link stops the hand by itself.
+        (offer.held == Some(true)).then(|| Order::RunUntil(offer.at.plus(HOLD_TIMEOUT)))
     }
 
-    fn heard(&mut self, record: &Record) {
-        match record {
-            Record::Reading { sample, .. } => self.sample = **sample,
-            Record::Sent { at, cause, .. } if *cause == WriteCause::Setpoint => {
-                self.delays.sent(*at);
-            }
-            _ => {}
-        }
+    fn input_ended(&mut self, _seen: &Seen<'_>) -> Option<Order> {
+        self.end.get_or_insert(Ok(FollowEnd::Gone));
+        Some(Order::GiveBack(Disarmed::Silent))
     }
 
-    /// Where each joint is, if that is known freshly.
-    fn pose(&self) -> PerDof<Option<Angle>> {
-        let now = self.start.clock.now();
-        let fresh_for = self.hand.status().fresh_for();
-        let angle = self.sample.angle;
-        let angle = angle.filter(|angle| angle.age(now) <= fresh_for);
-        PerDof::from_fn(|dof| angle.and_then(|angle| AngleReading::hold(angle.value[dof])))
+    fn read(&mut self, _sample: &HandSample, _fresh: Groups, _now: Moment) {}
+
+    fn sent(&mut self, at: Moment) {
+        self.delays.sent(at);
     }
 
-    /// Does what is to be done now; why it ended, if it did.
-    fn go_on(&mut self) -> Option<FollowEnd> {
+    fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
         let terms = *self.start.terms.borrow();
         self.follow.limit(terms.limits);
-        let status = self.hand.status();
-        let seen = FollowInput {
-            state: status.state,
-            pose: self.pose(),
-            held: terms.hold.is_held(self.start.clock.now()),
+        let angle = seen.angles();
+        let pose = PerDof::from_fn(|dof| angle.and_then(|angle| angle.value[dof].hold()));
+        let input = FollowInput {
+            state: seen.status.state,
+            pose,
+            held: terms.hold.is_held(seen.now),
         };
-        let lease = self.start.lease;
-        let done = match self.follow.tick(seen, self.start.clock.now()) {
-            Some(FollowOrder::Arm) => self.hand.arm(lease, self.start.arm),
-            Some(FollowOrder::Halt) => self.hand.halt(lease),
+        let order = match self.follow.tick(input, seen.now) {
+            Some(FollowOrder::Arm) => Some(Order::Arm(self.start.arm)),
+            Some(FollowOrder::Halt) => Some(Order::Halt),
             Some(FollowOrder::End) => {
-                self.give_back(Disarmed::Silent);
-                return Some(FollowEnd::Silent);
+                self.end.get_or_insert(Ok(FollowEnd::Silent));
+                Some(Order::GiveBack(Disarmed::Silent))
             }
-            Some(FollowOrder::Aim(aims)) => self.set(status.armed?, &aims),
+            Some(FollowOrder::Aim(aims)) => self.set(seen.status.armed?, &aims),
             None if self.follow.phase() == FollowPhase::Following => {
-                self.set(status.armed?, &PerDof::splat(None))
+                self.set(seen.status.armed?, &PerDof::splat(None))
             }
-            None => return None,
+            None => None,
         };
-        let refused = done.err()?;
-        self.lease_ended(refused);
-        Some(FollowEnd::Lease(refused))
+        self.view = Some(self.view(&pose, seen.status.heat));
+        order
     }
 
+    fn abort(&mut self, why: Abort, _now: Moment) {
+        self.end.get_or_insert(Err(why));
+    }
+
+    fn ended(&self) -> Option<Ended<FollowEnd>> {
+        self.end
+    }
+}
+
+impl FollowRun {
     /// Sends targets, and limits that the hand was not told under this arming yet.
-    fn set(&mut self, epoch: ArmEpoch, aims: &PerDof<Option<Angle>>) -> Result<(), LeaseRefusal> {
+    fn set(&mut self, epoch: ArmEpoch, aims: &PerDof<Option<Angle>>) -> Option<Order> {
         let mut setpoints = Setpoints::none(epoch);
         setpoints.angle = aims.map(|aim| aim.map(Target::Go));
         if self.limited != Some((epoch, self.limits)) {
             (setpoints.force, setpoints.speed) = (self.limits.force, self.limits.speed);
         }
         if setpoints.is_empty() {
-            return Ok(());
+            return None;
         }
-        self.hand.set(self.start.lease, &setpoints)?;
         self.limited = Some((epoch, self.limits));
         if aims.iter().any(|(_, aim)| aim.is_some()) {
             self.delays.set();
         }
-        Ok(())
+        Some(Order::Set(setpoints))
     }
 
-    /// The hand is stopped and the source may move it no more; if it may not any more already, it was.
-    fn give_back(&self, why: Disarmed) {
-        let _done = self.hand.give_back(self.start.lease, why);
-    }
-
-    /// Over a lost link the hand goes on to its last target: a stop waits for it.
-    fn lease_ended(&self, refused: LeaseRefusal) {
-        if refused == LeaseRefusal::Ended(Disarmed::LinkLost) {
-            self.hand.stop();
-        }
-    }
-
-    fn view(&self) -> FollowView {
-        let pose = self.pose();
+    fn view(&self, pose: &PerDof<Option<Angle>>, heat: Option<DriveHeat>) -> FollowView {
         let lead = |dof: Dof| {
             let (to, at) = self.follow.sent()[dof].zip(pose[dof])?;
             Some(to.get().abs_diff(at.get()))
@@ -265,7 +227,7 @@ impl<H: TaskHand> FollowRun<'_, H> {
             sent: *self.follow.sent(),
             lead: Dof::ALL.into_iter().filter_map(lead).max().unwrap_or(0),
             delay_p99: self.delays.p99(),
-            heat: self.hand.status().heat,
+            heat,
         }
     }
 }

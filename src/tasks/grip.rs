@@ -19,11 +19,11 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 /// A part of the way is not judged before this: the hand acts late.
-const BEGINS_WITHIN: Duration = Duration::from_millis(500);
+const START_DELAY: Duration = Duration::from_millis(500);
 /// Setpoints that are read back sooner after they were written may be those of before.
-const ACTS_WITHIN: Duration = Duration::from_millis(150);
+const ACT_DELAY: Duration = Duration::from_millis(150);
 /// A part of the way that is done waits no longer than this, counted from its start, for what is read back.
-const SEEN_WITHIN: Duration = Duration::from_millis(1500);
+const READ_BACK_TIMEOUT: Duration = Duration::from_millis(1500);
 /// A part of the way may take so much longer than its speed says.
 const SPARE: Duration = Duration::from_secs(4);
 
@@ -141,11 +141,11 @@ impl Program for GripRun {
             return self.send(seen.now);
         };
         let arrived = leg.targets.iter().all(|(dof, to)| {
-            to.is_none_or(|to| angles[dof].abs_diff(to.get()) <= Angle::ARRIVED_WITHIN)
+            to.is_none_or(|to| angles[dof].abs_diff(to.get()) <= Angle::ARRIVED_TOLERANCE)
         });
         let is_last = self.legs.as_ref().is_some_and(|legs| legs.len() == 1);
         // What another wrote meanwhile would be overwritten unseen.
-        let is_unread = since >= SEEN_WITHIN && !self.setpoints.others.is_doubted();
+        let is_unread = since >= READ_BACK_TIMEOUT && !self.setpoints.others.is_doubted();
         if arrived && !is_last {
             if self.setpoints.is_seen() || is_unread {
                 self.legs.as_mut().and_then(VecDeque::pop_front);
@@ -153,7 +153,7 @@ impl Program for GripRun {
             }
             return self.late(since, limit(&leg));
         }
-        let begins = BEGINS_WITHIN + seen.status.slow_allowance();
+        let begins = START_DELAY + seen.status.slow_allowance();
         let rests = since >= begins && seen.status.rest == Rest::Resting;
         if rests && !self.setpoints.others.is_doubted() {
             return self.at_rest(seen.sample, leg, arrived);
@@ -233,7 +233,7 @@ impl SentSetpoints {
 
     fn read(&mut self, sample: &HandSample, fresh: Groups) {
         self.others.read(sample, fresh);
-        let Some(acted) = self.at.map(|at| at.plus(ACTS_WITHIN)) else {
+        let Some(acted) = self.at.map(|at| at.plus(ACT_DELAY)) else {
             return;
         };
         let angles = sample.angle_set.map(|set| set.asked);

@@ -11,13 +11,13 @@ use std::time::Duration;
 use tokio::time::{Instant, sleep};
 
 /// A hand that is there answers within this, also on a port that was given up a moment ago.
-pub const REACHED_WITHIN: Duration = Duration::from_secs(3);
+pub const REACH_TIMEOUT: Duration = Duration::from_secs(3);
 /// A hand that still moves, or saved just now, is waited for this long.
-const RESTS_WITHIN: Duration = Duration::from_secs(8);
+const REST_TIMEOUT: Duration = Duration::from_secs(8);
 /// So often it is asked again.
-pub(crate) const AGAIN_AFTER: Duration = Duration::from_millis(200);
+pub(crate) const RETRY_DELAY: Duration = Duration::from_millis(200);
 /// How often a wait looks.
-const LOOK_EACH: Duration = Duration::from_millis(10);
+const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
 /// One hand on an open link. The fake of tests is the other one who is this.
 pub trait TaskHand: Clone + Send + Sync + 'static {
@@ -144,7 +144,7 @@ impl TaskHand for LinkHandle {
 pub trait Reach: Send {
     /// Link to a hand that was found.
     type Link: TaskHand;
-    /// The hand that answers at a place; `None` if none does within [`REACHED_WITHIN`].
+    /// The hand that answers at a place; `None` if none does within [`REACH_TIMEOUT`].
     fn reach(&mut self, place: &Endpoint) -> impl Future<Output = Option<Self::Link>> + Send;
 }
 
@@ -155,14 +155,14 @@ pub async fn answers<H: TaskHand>(hand: &H, within: Duration) -> bool {
         if Instant::now() >= until {
             return false;
         }
-        sleep(LOOK_EACH).await;
+        sleep(POLL_INTERVAL).await;
     }
     true
 }
 
 /// Waits for a while until a hand that answers is known to rest and nobody moves it; false if it does not come to that.
 pub(crate) async fn rests<H: TaskHand>(hand: &H) -> bool {
-    let until = Instant::now() + RESTS_WITHIN;
+    let until = Instant::now() + REST_TIMEOUT;
     loop {
         let status = hand.status();
         let is_left_alone = matches!(status.state, LinkState::Monitoring | LinkState::Fault);
@@ -172,7 +172,7 @@ pub(crate) async fn rests<H: TaskHand>(hand: &H) -> bool {
         if Instant::now() >= until {
             return false;
         }
-        sleep(LOOK_EACH).await;
+        sleep(POLL_INTERVAL).await;
     }
 }
 
@@ -184,13 +184,13 @@ pub(crate) async fn once_at_rest<T, F: Future<Output = Result<T, RequestError>>>
     ask: impl Fn() -> F,
     not_sent: fn(&T) -> Option<NotSent>,
 ) -> Result<T, RequestError> {
-    let until = Instant::now() + RESTS_WITHIN;
+    let until = Instant::now() + REST_TIMEOUT;
     loop {
         let end = ask().await?;
         let wait = match not_sent(&end) {
             None | Some(NotSent::Armed) => return Ok(end),
             Some(NotSent::TooSoon { wait }) => wait,
-            Some(NotSent::Moving | NotSent::RestUnknown | NotSent::Holding) => AGAIN_AFTER,
+            Some(NotSent::Moving | NotSent::RestUnknown | NotSent::Holding) => RETRY_DELAY,
         };
         if Instant::now() >= until {
             return Ok(end);

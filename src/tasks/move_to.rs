@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 /// A part of the way is not judged at rest before this: the hand acts late.
-const BEGINS_WITHIN: Duration = Duration::from_millis(500);
+const START_DELAY: Duration = Duration::from_millis(500);
 /// A part of the way may take so much longer than its speed says.
 const SPARE: Duration = Duration::from_secs(4);
 
@@ -81,7 +81,7 @@ struct Moving {
 impl Program for Moving {
     type Input = Abort;
     type Outcome = MoveEnd;
-    const STAYS_ARMED: bool = true;
+    const WAITS_FOR_REST: bool = false;
 
     fn input(&mut self, why: Abort, seen: &Seen<'_>) -> Option<Order> {
         self.abort(why, seen.now);
@@ -105,7 +105,7 @@ impl Program for Moving {
             return self.send(seen.now);
         };
         let arrived = leg.iter().all(|(dof, to)| {
-            let is_there = |to: Angle, at: i16| at.abs_diff(to.get()) <= Angle::ARRIVED_WITHIN;
+            let is_there = |to: Angle, at: i16| at.abs_diff(to.get()) <= Angle::ARRIVED_TOLERANCE;
             to.is_none_or(|to| angles[dof].is_some_and(|at| is_there(to, at)))
         });
         let is_last = self.legs.as_ref().is_some_and(|legs| legs.len() == 1);
@@ -116,7 +116,7 @@ impl Program for Moving {
             return self.send(seen.now);
         }
         self.end_if(arrived && is_known && !self.start.settles, MoveEnd::Reached);
-        let begins = BEGINS_WITHIN + seen.status.slow_allowance();
+        let begins = START_DELAY + seen.status.slow_allowance();
         if since >= begins && seen.status.rest == Rest::Resting {
             self.end_if(arrived, MoveEnd::Reached);
             self.end_if(!arrived, MoveEnd::Stopped);

@@ -18,7 +18,7 @@ use std::time::Duration;
 use tokio::time::timeout;
 
 /// The user has this long to say that the hand is where it should be.
-pub const KEEP_WITHIN: Duration = Duration::from_secs(15);
+pub const CONFIRM_TIMEOUT: Duration = Duration::from_secs(15);
 /// Rounds of looking for a hand: one that changes its speed may need a moment.
 const ROUNDS: u8 = 3;
 
@@ -56,7 +56,7 @@ pub enum PlaceStep {
     Looking(WhichPlace),
     /// The value is written there.
     Writing(WhichPlace),
-    /// There, or held and waiting for power: the user says whether it stays, within [`KEEP_WITHIN`].
+    /// There, or held and waiting for power: the user says whether it stays, within [`CONFIRM_TIMEOUT`].
     Keeping(WhichPlace),
     /// The old value is being written back.
     Returning,
@@ -241,7 +241,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     /// The hand answers: the user keeps the change, or it is taken back.
     async fn decide(&mut self, at: WhichPlace, params: Params, decisions: Decisions) -> PlaceEnd {
         (self.tell)(PlaceStep::Keeping(at));
-        let keeps = timeout(KEEP_WITHIN, decisions.keeps).await;
+        let keeps = timeout(CONFIRM_TIMEOUT, decisions.keeps).await;
         if !keeps.unwrap_or(false) {
             (self.tell)(PlaceStep::Returning);
             return self.take_back(at).await;
@@ -351,5 +351,5 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
 
 /// When a change that waits for the user is taken back, if the question was asked at this moment.
 pub fn taken_back_at(asked: Moment) -> Moment {
-    asked.plus(KEEP_WITHIN)
+    asked.plus(CONFIRM_TIMEOUT)
 }

@@ -111,7 +111,7 @@ impl Playing {
 impl Program for Playing {
     type Input = PlayCommand;
     type Outcome = PlayEnd;
-    const STAYS_ARMED: bool = true;
+    const WAITS_FOR_REST: bool = false;
 
     fn input(&mut self, command: PlayCommand, seen: &Seen<'_>) -> Option<Order> {
         match command {

@@ -2,8 +2,8 @@
 //! the safety rules.
 
 use crate::hand::{AngleReading, Groups, HandSample, Moment, PerDof, Setpoints, Timed};
-use crate::link::{LinkStatus, PollRates};
-use crate::record::Abort;
+use crate::link::{ArmRequest, LinkStatus, PollRates};
+use crate::record::{Abort, Disarmed};
 use crate::trials::limits::Stall;
 
 /// How a program ended: with its own outcome, or early.
@@ -18,6 +18,14 @@ pub enum Order {
     Stop,
     /// Let no setpoint pass any longer. The program may continue with a hand that must not move.
     Disarm,
+    /// Arm the hand within these limits. For programs that were granted control and arm by themselves.
+    Arm(ArmRequest),
+    /// Stop and disarm. Control remains granted, and the program may arm again.
+    Halt,
+    /// Halt at this moment by itself, unless that is put off before.
+    RunUntil(Moment),
+    /// Stop, disarm and give back control for this reason.
+    GiveBack(Disarmed),
 }
 
 /// What is known of the hand in one step.
@@ -42,7 +50,7 @@ impl Seen<'_> {
     }
 }
 
-/// A motion over time in an arming that the user gave.
+/// A motion over time in an arming, or with control, that the user gave.
 pub trait Program {
     /// What the user may send while it runs. A program that can only be ended has [`Abort`] here, and ends with it.
     type Input;
@@ -50,13 +58,20 @@ pub trait Program {
     type Outcome: Copy;
     /// How often it wants the hand to be read; `None` leaves that as it is.
     const RATES: Option<PollRates> = None;
-    /// Whether the hand stays armed under the same lease after it, for the motion that follows.
-    const STAYS_ARMED: bool = false;
+    /// Whether its early end is reported only once feedback says how the stop went.
+    const WAITS_FOR_REST: bool = true;
 
     /// Receives user input.
     fn input(&mut self, input: Self::Input, seen: &Seen<'_>) -> Option<Order>;
     /// Receives a reading.
     fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment);
+    /// Receives the end of its input. By itself that means that whoever ran the program moves the hand in another way.
+    fn input_ended(&mut self, seen: &Seen<'_>) -> Option<Order> {
+        self.abort(Abort::TakenOver, seen.now);
+        None
+    }
+    /// Receives that a setpoint went out on the wire.
+    fn sent(&mut self, _at: Moment) {}
     /// Receives how long the loop did not run.
     fn stalled(&mut self, _stall: Stall) {}
     /// Advances the time.

@@ -5,7 +5,7 @@ use crate::link::RequestError;
 use crate::params::rows::ParamId;
 use crate::params::values::{Params, SPANS};
 use crate::tasks::TaskError;
-use crate::tasks::hand::{AGAIN_AFTER, REACHED_WITHIN, TaskHand, answers};
+use crate::tasks::hand::{REACH_TIMEOUT, RETRY_DELAY, TaskHand, answers};
 use std::time::Duration;
 use tokio::time::sleep;
 
@@ -78,8 +78,8 @@ pub async fn group<H: TaskHand>(hand: &H, span: Span) -> Result<Vec<u8>, Request
             Err(error) if tries <= 1 => return Err(error),
             Err(error) => {
                 tries -= 1;
-                sleep(AGAIN_AFTER).await;
-                if !answers(hand, REACHED_WITHIN).await {
+                sleep(RETRY_DELAY).await;
+                if !answers(hand, REACH_TIMEOUT).await {
                     return Err(error);
                 }
             }

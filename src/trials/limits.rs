@@ -7,13 +7,13 @@ use crate::trials::plan::Limits;
 use std::time::Duration;
 
 /// Forces and angles older than this are not watched any more, so nothing may go on by them.
-pub const BLIND_AFTER: Duration = Duration::from_millis(600);
+pub const READING_MAX_AGE: Duration = Duration::from_millis(600);
 /// On a slow line faults take turns with the fingertips while something moves.
-pub const FAULT_BLIND_AFTER: Duration = Duration::from_secs(2);
+pub const FAULT_MAX_AGE: Duration = Duration::from_secs(2);
 /// After a time in which this program did not run, readings are awaited for so long.
 const CATCH_UP: Duration = Duration::from_millis(150);
 /// Temperatures are read more seldom.
-pub const HEAT_BLIND_AFTER: Duration = Duration::from_secs(3);
+pub const HEAT_MAX_AGE: Duration = Duration::from_secs(3);
 
 /// A time in which this program did not run: the computer was busy with something else, or its output was not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,14 +83,10 @@ fn not_watched(seen: &Feedback<'_>) -> Option<Abort> {
     } = *seen;
     let excused = stall.map_or(Duration::ZERO, |stall| stall.excuses(now));
     let groups = [
-        ("angle", age(&sample.angle, now), BLIND_AFTER),
-        ("force", age(&sample.force, now), BLIND_AFTER),
-        ("fault", age(&sample.faults, now), FAULT_BLIND_AFTER),
-        (
-            "temperature",
-            age(&sample.temperature, now),
-            HEAT_BLIND_AFTER,
-        ),
+        ("angle", age(&sample.angle, now), READING_MAX_AGE),
+        ("force", age(&sample.force, now), READING_MAX_AGE),
+        ("fault", age(&sample.faults, now), FAULT_MAX_AGE),
+        ("temperature", age(&sample.temperature, now), HEAT_MAX_AGE),
     ];
     let mut groups = groups.into_iter();
     let (what, age, _) =

@@ -13,15 +13,15 @@ use std::time::Duration;
 /// Time at the start before the closing command: what is read in it is the rest that forces are counted from.
 pub const QUIET: Duration = Duration::from_millis(500);
 /// Longest wait until the hand shows the speed and threshold that were set.
-const LIMITS_WITHIN: Duration = Duration::from_secs(4);
+const LIMITS_TIMEOUT: Duration = Duration::from_secs(4);
 /// Longest way to the start and back, at a gentle speed.
-const WAY_WITHIN: Duration = Duration::from_secs(20);
+const TRAVEL_TIMEOUT: Duration = Duration::from_secs(20);
 /// Recorded after the release.
 const AFTER: Duration = Duration::from_millis(300);
 /// Angles this near to each other are the same.
 const STILL_COUNTS: i16 = 2;
 /// A joint that reports a stop and stands still for this long has stopped.
-const STILL_FOR: Duration = Duration::from_millis(200);
+const STILL_DURATION: Duration = Duration::from_millis(200);
 /// One that stands still for this long has stopped, whatever it reports: at speed 1 a joint makes three counts in it.
 const STILL_ANYWAY: Duration = Duration::from_millis(1800);
 /// Extra time allowed for closing: the dead time, the ramps, a slow wire.
@@ -260,7 +260,7 @@ impl Runner {
             let start = (*start)?.get();
             let near = angle.is_some_and(|angle| {
                 let seen = angle.value[dof].documented();
-                seen.is_some_and(|seen| start.abs_diff(seen) <= Angle::ARRIVED_WITHIN)
+                seen.is_some_and(|seen| start.abs_diff(seen) <= Angle::ARRIVED_TOLERANCE)
             });
             (!near).then_some((dof, start))
         });
@@ -270,7 +270,7 @@ impl Runner {
             None => self.first_start(),
             Some(away) => away,
         };
-        if now.since(since) >= WAY_WITHIN {
+        if now.since(since) >= TRAVEL_TIMEOUT {
             self.abort(Abort::Unreached { dof, target }, now);
         }
         false
@@ -289,7 +289,7 @@ impl Runner {
             joints.all(|dof| from[dof].abs_diff(pose[dof]) <= STILL_COUNTS.unsigned_abs())
         };
         match self.pose {
-            Some((since, from)) if near(&from) => now.since(since) >= STILL_FOR,
+            Some((since, from)) if near(&from) => now.since(since) >= STILL_DURATION,
             _ => {
                 self.pose = Some((now, *pose));
                 false
@@ -323,7 +323,7 @@ impl Runner {
             return None;
         }
         if let Some(dof) = self.unconfirmed(sample) {
-            if now.since(self.since) >= LIMITS_WITHIN {
+            if now.since(self.since) >= LIMITS_TIMEOUT {
                 self.abort(Abort::LimitsRefused { dof }, now);
             }
             return None;
@@ -459,7 +459,7 @@ impl ClosingJoint {
         let angle = sample.angle.map(|angle| angle.value[self.dof]);
         angle.and_then(AngleReading::documented).is_some_and(|at| {
             let short = at.saturating_sub(halt.get());
-            let is_near = short <= Angle::ARRIVED_WITHIN.cast_signed();
+            let is_near = short <= Angle::ARRIVED_TOLERANCE.cast_signed();
             short <= STILL_COUNTS || (is_near && self.says_stopped(sample))
         })
     }
@@ -478,7 +478,7 @@ impl ClosingJoint {
     fn stands(&self, sample: &HandSample, now: Moment) -> bool {
         let still = self.still.map(|(since, _)| now.since(since));
         still.is_some_and(|still| {
-            still >= STILL_ANYWAY || (self.says_stopped(sample) && still >= STILL_FOR)
+            still >= STILL_ANYWAY || (self.says_stopped(sample) && still >= STILL_DURATION)
         })
     }
 }

@@ -12,7 +12,7 @@ use handscope::link::{Clock, LinkConfig, PollRates, open};
 use handscope::record::file::reader::{RecordingFile, Stretch};
 use handscope::record::file::writer::RecordingWriter;
 use handscope::record::file::{
-    FLUSH_EACH, Opening, PART_LENGTH, Part, Recorder, RecordingPlan, SystemDisk,
+    FLUSH_INTERVAL, Opening, PART_LENGTH, Part, Recorder, RecordingPlan, SystemDisk,
 };
 use handscope::record::{Entry, Record};
 use handscope::transport::Endpoint;
@@ -263,7 +263,7 @@ fn write_hour(
 ) -> Result<u64, Failure> {
     let (mut flushed, mut written) = (Moment::ZERO, 0);
     for entry in entries {
-        if entry.at().since(flushed) >= FLUSH_EACH {
+        if entry.at().since(flushed) >= FLUSH_INTERVAL {
             flushed = entry.at();
             writer.flush()?;
             file.write_all(&writer.take_bytes())?;

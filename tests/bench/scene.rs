@@ -19,7 +19,7 @@ use handscope::draw::raster::Raster;
 use handscope::hand::Moment;
 use handscope::inputs::pad::device::system_pads;
 use handscope::link::Clock;
-use handscope::shell::{DesktopApp, FRAME_AT_REST_WITHIN, SOFTWARE_FRAME_AT_REST_WITHIN};
+use handscope::shell::{DesktopApp, REST_FRAME_INTERVAL, SOFTWARE_REST_FRAME_INTERVAL};
 use handscope::transport::Endpoint;
 use handscope::ui::View;
 use std::path::{Path, PathBuf};
@@ -186,9 +186,9 @@ impl Scene {
     /// How soon news are to be drawn.
     pub(crate) fn frame_within(&self) -> Duration {
         let at_rest = if self.raster.is_some() {
-            SOFTWARE_FRAME_AT_REST_WITHIN
+            SOFTWARE_REST_FRAME_INTERVAL
         } else {
-            FRAME_AT_REST_WITHIN
+            REST_FRAME_INTERVAL
         };
         self.desktop_app.frame_within(at_rest)
     }

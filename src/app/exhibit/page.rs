@@ -19,7 +19,7 @@ use tokio::sync::mpsc;
 /// Wishes that may wait: users cannot press faster than a task takes them.
 const WISHES_MAX: usize = 64;
 /// What staff see closes by itself after this: nobody leaves it open for visitors.
-const STAFF_FOR: Duration = Duration::from_secs(30);
+const STAFF_DURATION: Duration = Duration::from_secs(30);
 
 impl ExhibitState {
     /// Begins at a hand that is connected, or will be. Nothing moves before staff arm.
@@ -149,13 +149,13 @@ impl ExhibitState {
             let locked = self.gate.as_ref().and_then(|gate| gate.locked_until(now));
             self.staff = StaffPanel::Ask {
                 answer: locked.map(|until| PinAnswer::Locked { until }),
-                until: now.plus(STAFF_FOR),
+                until: now.plus(STAFF_DURATION),
             };
         }
     }
 
     fn pin(&mut self, typed: String, now: Moment) {
-        let until = now.plus(STAFF_FOR);
+        let until = now.plus(STAFF_DURATION);
         match (&self.staff, &mut self.gate) {
             (StaffPanel::Choose { first, .. }, None) => {
                 let pin = Pin::try_from(typed).ok();

@@ -21,7 +21,7 @@ const RECORDS_PER_FRAME: usize = 256;
 const REQUESTS_MAX: usize = 32;
 
 /// An armed hand that is asked nothing for so long is told of.
-const IDLE_AFTER: Duration = Duration::from_secs(300);
+const IDLE_TIMEOUT: Duration = Duration::from_secs(300);
 
 /// One connection with a hand.
 #[derive(Debug, Default)]
@@ -108,7 +108,7 @@ impl Connection {
     /// How long an armed hand was asked nothing, once that is long.
     pub fn idle(&self, now: Moment) -> Option<Duration> {
         let idle = now.since(self.asked_at);
-        (self.is_armed() && idle >= IDLE_AFTER).then_some(idle)
+        (self.is_armed() && idle >= IDLE_TIMEOUT).then_some(idle)
     }
 
     pub(crate) fn link(&self) -> Option<&LinkHandle> {

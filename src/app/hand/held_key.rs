@@ -5,7 +5,7 @@ use crate::link::HoldToRun;
 use std::time::Duration;
 
 /// A key that was held is believed for so long: a window that draws slowly does not stop the hand, one that hangs does.
-const HELD_FOR: Duration = Duration::from_millis(250);
+const HOLD_DURATION: Duration = Duration::from_millis(250);
 
 /// What the user does with the key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
@@ -45,7 +45,7 @@ impl HeldKey {
 
     /// What the user does with it; true while somebody who pressed it waits to be armed.
     pub(crate) fn take(&mut self, key: HoldKey, now: Moment) -> bool {
-        let until = now.plus(HELD_FOR);
+        let until = now.plus(HOLD_DURATION);
         (self.until, self.is_pressed) = match key {
             HoldKey::Pressed => (until, true),
             HoldKey::Held => (until, self.is_pressed),

@@ -38,7 +38,7 @@ use tokio::sync::mpsc;
 
 /// A hand that was told to hold gets this long to show that it rests, before its link is closed anyway: the time after
 /// which the link itself gives the alarm, and a little.
-pub(crate) const REST_WITHIN: Duration = Duration::from_millis(600);
+pub(crate) const REST_TIMEOUT: Duration = Duration::from_millis(600);
 /// Commands to a sequence that may wait: the user cannot press faster than a task takes them.
 const COMMANDS_MAX: usize = 16;
 
@@ -179,7 +179,7 @@ impl Hand {
     pub(crate) fn go_on_leaving(&mut self, ctx: &mut Ctx<'_>) {
         let is_due = |leaving: &mut Leaving| {
             let told = leaving.told;
-            ctx.now.since(told) >= REST_WITHIN || self.connection.is_held(told)
+            ctx.now.since(told) >= REST_TIMEOUT || self.connection.is_held(told)
         };
         if let Some(leaving) = self.leaving.take_if(is_due) {
             self.go(leaving.to, ctx);

@@ -5,9 +5,10 @@ use crate::app::env::running::Running;
 use crate::app::inputs::{FollowOutcome, FollowRun, HandInputs, InputSource};
 use crate::hand::Moment;
 use crate::inputs::Offer;
-use crate::link::{LeaseRefusal, LinkHandle, LinkStopper, Owner};
-use crate::record::Disarmed;
+use crate::link::{LinkHandle, LinkStopper, Owner};
+use crate::record::{Abort, Disarmed};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
+use crate::tasks::program::Ended;
 use tokio::sync::{mpsc, watch};
 
 /// A source that is there and fresh.
@@ -85,9 +86,14 @@ impl FollowRun {
 
 /// True if a hand that was led is lost or stopped, so that the one that leads must not go on alone. One that the user took back, or
 /// let another move, may.
-const fn stops_leader(end: FollowEnd) -> bool {
+const fn stops_leader(end: Ended<FollowEnd>) -> bool {
     match end {
-        FollowEnd::Lease(LeaseRefusal::Ended(why)) => !matches!(why, Disarmed::Person),
-        FollowEnd::Lease(LeaseRefusal::Taken(_)) | FollowEnd::Silent | FollowEnd::Gone => false,
+        Ok(FollowEnd::Silent | FollowEnd::Gone) | Err(Abort::TakenOver) => false,
+        Err(why) => !matches!(
+            why,
+            Abort::Disarmed {
+                why: Some(Disarmed::Person)
+            }
+        ),
     }
 }

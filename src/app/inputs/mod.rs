@@ -21,6 +21,7 @@ use crate::share::foxglove::FoxgloveServer;
 use crate::share::gateway::{ClientId, Gateway, GatewayClient};
 use crate::system::SystemError;
 use crate::tasks::follow::{FollowEnd, FollowTerms, FollowView};
+use crate::tasks::program::Ended;
 use crate::transport::dds::DdsError;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -156,7 +157,7 @@ pub struct FollowRun {
 /// How following ended.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FollowOutcome {
-    pub(crate) end: FollowEnd,
+    pub(crate) end: Ended<FollowEnd>,
     /// The hand that led was told to stop, too.
     pub(crate) leader_stopped: bool,
 }

@@ -25,9 +25,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 /// A value read this long ago may have been changed by someone else since; it is shown as old.
-pub const OLD_AFTER: Duration = Duration::from_secs(60);
+pub const OUTDATED_AGE: Duration = Duration::from_secs(60);
 /// Switching between views does not make the program read the same rows again within this time.
-pub const READ_AGAIN_AFTER: Duration = Duration::from_secs(2);
+pub const REREAD_DELAY: Duration = Duration::from_secs(2);
 
 /// After this long, opening the view counts as looking anew.
 const LOOKED_AWAY: Duration = Duration::from_millis(500);
@@ -195,7 +195,7 @@ impl ParamsState {
             return Freshness::Unknown;
         };
         let before_loss = self.lost_at.is_some_and(|lost| at <= lost);
-        if is_live && !before_loss && now.since(at) <= OLD_AFTER {
+        if is_live && !before_loss && now.since(at) <= OUTDATED_AGE {
             Freshness::Live
         } else {
             Freshness::Stale
@@ -302,8 +302,7 @@ impl ParamsState {
     /// True if the rows are worth reading again.
     pub fn is_due(&self, now: Moment) -> bool {
         let lost = self.lost_at;
-        let young =
-            |at: Moment| now.since(at) < READ_AGAIN_AFTER && lost.is_none_or(|lost| lost < at);
+        let young = |at: Moment| now.since(at) < REREAD_DELAY && lost.is_none_or(|lost| lost < at);
         !self.is_asked || !self.read_at.is_some_and(young)
     }
 

@@ -30,7 +30,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// Speed and force in force are read all the time; older ones are not copied.
-const COPY_WITHIN: Duration = Duration::from_secs(5);
+const COPY_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// The hand whose parameters are read or written, and how tasks on it are started.
 #[derive(Clone, Copy)]
@@ -118,7 +118,7 @@ impl ParamsState {
     }
 
     fn copy_live(&mut self, sample: &HandSample, link: &LinkStatus, now: Moment) {
-        let young = |asked: Moment| now.since(asked) <= COPY_WITHIN;
+        let young = |asked: Moment| now.since(asked) <= COPY_TIMEOUT;
         let is_live = link.state.is_live();
         let speeds = sample.speed_set.filter(|all| is_live && young(all.asked));
         let forces = sample.force_set.filter(|all| is_live && young(all.asked));

@@ -2,7 +2,7 @@
 
 use crate::link::{LinkHandle, Wake};
 use crate::tasks::Reach;
-use crate::tasks::hand::{REACHED_WITHIN, answers};
+use crate::tasks::hand::{REACH_TIMEOUT, answers};
 use crate::transport::Endpoint;
 use futures::future::BoxFuture;
 use tokio::sync::{mpsc, oneshot};
@@ -29,7 +29,7 @@ impl Reach for Asking {
         self.requests.send(GoRequest { place, opened }).await.ok()?;
         (self.wake)();
         let hand = open.await.ok()?;
-        answers(&hand, REACHED_WITHIN).await.then_some(hand)
+        answers(&hand, REACH_TIMEOUT).await.then_some(hand)
     }
 }
 

@@ -23,7 +23,7 @@ use crate::record::EventKind;
 use std::time::Duration;
 
 /// A hand that is not armed by then, on the slowest of wires, is not any more.
-const ARM_WITHIN: Duration = Duration::from_secs(2);
+const ARM_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// What all hands have in common.
 pub(super) struct Shared<'a> {
@@ -149,7 +149,7 @@ fn start_asked(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     let trials = &mut *shared.trials;
     let is_armed = hand.connection.is_armed();
     let now = ctx.now;
-    let is_late = |at: Moment| now.since(at) > ARM_WITHIN;
+    let is_late = |at: Moment| now.since(at) > ARM_TIMEOUT;
     let is_other = |asked: &AskedSeries| match asked {
         AskedSeries::Trials(plan) => **plan != trials.planned(plan.kind()),
         AskedSeries::Checkup(_) => false,

@@ -12,7 +12,7 @@ use crate::app::state::State;
 use crate::hand::{Moment, Setpoints};
 use crate::inputs::pad::file;
 use crate::record::{ArmRefusal, Disarmed};
-use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms};
+use crate::tasks::follow::{FollowStart, FollowTerms};
 use crate::transport::dds::DdsPlace;
 
 /// Does what the user asked for at the shown hand.
@@ -136,7 +136,7 @@ pub(super) fn tick(hand: &mut Hand, settings: &Settings, poses: &PoseState, ctx:
         if outcome.leader_stopped {
             ctx.tell(NoticeKind::LeaderStopped);
         }
-        if matches!(outcome.end, FollowEnd::Silent | FollowEnd::Gone) {
+        if outcome.end.is_ok() {
             ctx.tell(NoticeKind::SourceSilent(owner));
         }
         hand.follow();

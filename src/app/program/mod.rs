@@ -24,7 +24,7 @@ use crate::app::files::export::{self, Export};
 use crate::app::hand::Activity;
 use crate::app::hand::controls::JointChange;
 use crate::app::hands::Hand;
-use crate::app::hands::hand::REST_WITHIN;
+use crate::app::hands::hand::REST_TIMEOUT;
 use crate::app::notices::{NoticeKind, RequestKind};
 use crate::app::params::ParamsHand;
 use crate::app::program::closing::Closing;
@@ -48,7 +48,7 @@ use crate::transport::Endpoint;
 use std::time::Duration;
 
 /// A series is over and written long before, on a disk that works.
-const KEPT_WITHIN: Duration = Duration::from_secs(10);
+const SAVE_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The whole program without its window.
 pub struct App {
@@ -433,7 +433,7 @@ impl App {
 
     /// The window is about to close. A hand that is armed, or that this program set in motion, is stopped first.
     /// True once the window may go: the hand rests, or 600 ms have passed, and what was tried is in files, or
-    /// [`KEPT_WITHIN`] has passed. Call it each frame until then.
+    /// [`SAVE_TIMEOUT`] has passed. Call it each frame until then.
     pub fn close(&mut self, now: Moment) -> bool {
         let state = &mut self.state;
         let closing = *self
@@ -448,7 +448,8 @@ impl App {
             checks || trials.running.is_some() || !trials.to_keep.is_empty() || self.jobs.keeps();
         let is_kept = reported && !tried && self.recorded.is_written();
         let waited = now.since(closing.since);
-        let goes = (saved && rests || waited >= REST_WITHIN) && (is_kept || waited >= KEPT_WITHIN);
+        let goes =
+            (saved && rests || waited >= REST_TIMEOUT) && (is_kept || waited >= SAVE_TIMEOUT);
         if goes {
             // A frame that still comes begins no file.
             self.records = false;

@@ -13,7 +13,7 @@ use std::time::Duration;
 /// The shipped pose under whose name the hand opens for a pinch.
 const PINCH: &str = "Pinch";
 /// How long each part of the opening may take, at the slowest that is of use.
-const OPENS_WITHIN: Duration = Duration::from_secs(30);
+const OPEN_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// Goes to a gap. Where thumb and index could meet on the way, the hand only opens: the next step is the user's.
 pub(super) fn pinch(state: &mut State, gap: Gap, env: &Env) {
@@ -31,7 +31,7 @@ pub(super) fn pinch(state: &mut State, gap: Gap, env: &Env) {
     };
     let opened = Cue {
         targets: Gap::MAX.angles().map(Some),
-        limit: OPENS_WITHIN,
+        limit: OPEN_TIMEOUT,
         ..Cue::of(pose)
     };
     let plan = PlayPlan {

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// A recording is deleted by itself this long after that was told, at the earliest: the user comes back the next day and can say no.
-pub const TOLD_FOR: Duration = Duration::from_secs(24 * 3600);
+pub const DELETION_NOTICE: Duration = Duration::from_secs(24 * 3600);
 /// Beside the recordings: what was told of them.
 const FILE_NAME: &str = "to-delete.toml";
 /// Some thousand recordings.
@@ -49,7 +49,7 @@ pub struct RecordingRoom<'a> {
 impl PlannedDeletion {
     /// From when on it goes by itself, in seconds since 1970.
     pub const fn due_unix_s(&self) -> u64 {
-        self.told_unix_s.saturating_add(TOLD_FOR.as_secs())
+        self.told_unix_s.saturating_add(DELETION_NOTICE.as_secs())
     }
 
     /// The same as the clock of this computer shows it, `2026-11-22 09:30`.

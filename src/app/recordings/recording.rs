@@ -25,7 +25,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// Settings are compared this often: whoever types or drags changes them with each frame.
-const SETTINGS_EACH: Duration = Duration::from_secs(1);
+const SETTINGS_INTERVAL: Duration = Duration::from_secs(1);
 
 /// A recording under way.
 #[derive(Debug)]
@@ -153,7 +153,7 @@ impl HandRecording {
     /// Adds the settings of the program, if they are not what was recorded last. Where the window stands is nothing of a hand's.
     pub(crate) fn settings(&mut self, settings: &Settings, now: Moment) {
         let looked = self.settings.as_ref().map(|(_, at)| *at);
-        if looked.is_some_and(|at| now.since(at) < SETTINGS_EACH) {
+        if looked.is_some_and(|at| now.since(at) < SETTINGS_INTERVAL) {
             return;
         }
         let own = Settings {

@@ -28,7 +28,7 @@ use std::time::Duration;
 /// Read ahead while time goes on, in seconds of the recording at its own pace.
 const AHEAD: Duration = Duration::from_secs(2);
 /// A step looks this far for the next reading, at most.
-const STEP_WITHIN: Duration = Duration::from_secs(5);
+const STEP_TIMEOUT: Duration = Duration::from_secs(5);
 /// A frame that took longer is no reason to leap.
 const FRAME_MAX: Duration = Duration::from_millis(250);
 /// Slowest and fastest.
@@ -103,11 +103,11 @@ fn find(file: &RecordingFile, wanted: SeekTarget) -> io::Result<HandThen> {
     let at = match wanted {
         SeekTarget::At(at) => at,
         SeekTarget::After(at) => {
-            let stretch = (at.plus(one), at.plus(STEP_WITHIN));
+            let stretch = (at.plus(one), at.plus(STEP_TIMEOUT));
             reading(file, stretch, true)?.unwrap_or(at)
         }
         SeekTarget::Before(at) => {
-            let stretch = (earlier(at, STEP_WITHIN), earlier(at, one));
+            let stretch = (earlier(at, STEP_TIMEOUT), earlier(at, one));
             reading(file, stretch, false)?.unwrap_or(at)
         }
     };

@@ -77,7 +77,7 @@ mod input {
     /// Input that says nothing for so long, milliseconds, has said what it had to: a key that is held down repeats faster.
     const QUIET_MS: u16 = 100;
     /// Input that is not quiet within this never is.
-    const QUIET_WITHIN: Duration = Duration::from_secs(3);
+    const QUIET_TIMEOUT: Duration = Duration::from_secs(3);
 
     /// Whether keys go to this program, and not to another of the same terminal.
     pub(super) fn is_ours() -> bool {
@@ -93,7 +93,7 @@ mod input {
         let begun = Instant::now();
         let mut bytes = [0; 4096];
         while is_ready(&input)? {
-            if begun.elapsed() > QUIET_WITHIN {
+            if begun.elapsed() > QUIET_TIMEOUT {
                 return Err(NoConsent::NeverQuiet);
             }
             if next(&input, &mut bytes)? == 0 {

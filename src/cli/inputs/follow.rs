@@ -8,10 +8,11 @@ use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
 use crate::hand::{DriveHeat, Force, HandSample, Moment, PerDof, Speed};
 use crate::inputs::follow::{FollowLimits, FollowPhase};
-use crate::link::{ArmRequest, Clock, LeaseRefusal, LinkHandle, Owner, PollRates, Records};
-use crate::record::{Disarmed, Record};
+use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates, Records};
+use crate::record::{Abort, Disarmed, Record};
 use crate::shell::interrupt::Interrupt;
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
+use crate::tasks::program::Ended;
 use crate::transport::Endpoint;
 use anyhow::{anyhow, bail};
 use serde_json::json;
@@ -23,11 +24,11 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep, timeout};
 
 /// How often it is told how it goes.
-const TELL_EACH: Duration = Duration::from_secs(1);
+const REPORT_INTERVAL: Duration = Duration::from_secs(1);
 /// How often it is looked whether somebody sends.
-const LOOK_EACH: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// How long the hand may take to say where it is.
-const READY_WITHIN: Duration = Duration::from_secs(5);
+const READY_TIMEOUT: Duration = Duration::from_secs(5);
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct FollowArgs {
@@ -172,9 +173,10 @@ async fn known(
     hand: &Endpoint,
 ) -> anyhow::Result<HandSample> {
     session::answered(link, hand).await?;
-    let until = Instant::now() + READY_WITHIN;
+    let until = Instant::now() + READY_TIMEOUT;
     while Instant::now() < until {
-        if let Ok(Some(Record::Reading { sample, .. })) = timeout(LOOK_EACH, records.next()).await
+        if let Ok(Some(Record::Reading { sample, .. })) =
+            timeout(POLL_INTERVAL, records.next()).await
             && sample.angle.is_some()
             && sample.faults.is_some()
         {
@@ -206,20 +208,13 @@ impl FollowCommand<'_> {
                 why = self.source.must_end(), if self.args.arm => bail!("{why}: the hand was stopped"),
                 end = self.follow(owner) => end?,
             };
-            let by_other = FollowEnd::Lease(LeaseRefusal::Ended(Disarmed::OtherController));
-            let foreign = self.link.status().foreign_setpoint;
-            let why = match foreign.filter(|_| end == by_other) {
-                Some(foreign) => {
-                    format!("another controller wrote {foreign}, and may move the hand")
-                }
-                None => ended(end, &sender),
-            };
+            let why = ended(end, &sender);
             self.ask(&why).await?;
         }
     }
 
     /// Follows until that ends; what keeps it from being told ends it as well.
-    async fn follow(&mut self, owner: Owner) -> anyhow::Result<FollowEnd> {
+    async fn follow(&mut self, owner: Owner) -> anyhow::Result<Ended<FollowEnd>> {
         let offers = self.source.follow();
         let start = FollowStart {
             lease: self.link.grant(owner),
@@ -264,7 +259,7 @@ impl FollowCommand<'_> {
         let mut wait = pin!(wait);
         loop {
             self.look()?;
-            if let Ok(done) = timeout(LOOK_EACH, &mut wait).await {
+            if let Ok(done) = timeout(POLL_INTERVAL, &mut wait).await {
                 return Ok(done);
             }
         }
@@ -278,7 +273,7 @@ impl FollowCommand<'_> {
             if let Some(owner) = owner.filter(|_| self.args.arm) {
                 return Ok(owner);
             }
-            sleep(LOOK_EACH).await;
+            sleep(POLL_INTERVAL).await;
         }
     }
 
@@ -294,35 +289,27 @@ impl FollowCommand<'_> {
     }
 }
 
-/// Why a hand is not followed any more, and what that did to it.
-fn ended(end: FollowEnd, sender: &str) -> String {
+/// Why nothing is followed any longer, and what that did to the hand.
+fn ended(end: Ended<FollowEnd>, sender: &str) -> String {
     let why = match end {
-        FollowEnd::Silent | FollowEnd::Gone => format!("{sender} fell silent"),
-        FollowEnd::Lease(LeaseRefusal::Taken(_)) => {
-            return "another may move the hand now".into();
+        Ok(FollowEnd::Silent | FollowEnd::Gone) => format!("{sender} fell silent"),
+        Err(Abort::TakenOver) => return "another controller has control of the hand now".into(),
+        Err(Abort::LinkLost) => {
+            let why = Disarmed::LinkLost;
+            return format!("{why}: nothing reached the hand, which may still finish its move");
         }
-        FollowEnd::Lease(LeaseRefusal::Ended(why)) => match why {
-            Disarmed::LinkLost => {
-                return format!("{why}: nothing reached the hand, which may still finish its move");
-            }
+        Err(Abort::Disarmed { why: Some(why) }) => match why {
             Disarmed::Resume => {
                 return format!(
                     "{why}: nothing reached the hand, which may have finished its move"
                 );
             }
-            Disarmed::OtherController => return format!("{why}, and may move it"),
             Disarmed::FrozenFeedback => {
                 return format!("{why}: the hand is held where it must be, look at it");
             }
-            Disarmed::Person => return format!("{why}, and goes where it was told to go last"),
-            Disarmed::Stop
-            | Disarmed::Fault
-            | Disarmed::Stale
-            | Disarmed::Released
-            | Disarmed::Silent
-            | Disarmed::Hot
-            | Disarmed::HeatUnknown => why.to_string(),
+            _ => why.to_string(),
         },
+        Err(why) => why.to_string(),
     };
     format!("{why}: the hand was stopped")
 }
@@ -352,7 +339,7 @@ impl ProgressPrinter<'_> {
         }
         let phase = follow.map(|view| view.phase);
         let stands = (phase, self.question.is_some());
-        let is_due = |(told, at): (_, Moment)| told != stands || now.since(at) >= TELL_EACH;
+        let is_due = |(told, at): (_, Moment)| told != stands || now.since(at) >= REPORT_INTERVAL;
         if !self.told.is_none_or(is_due) {
             return Ok(());
         }

@@ -6,9 +6,9 @@ use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
 
 /// What takes less time needs no words.
-const QUIET_FOR: Duration = Duration::from_secs(2);
+const QUIET_DURATION: Duration = Duration::from_secs(2);
 /// Between two lines.
-const TELL_EACH: Duration = Duration::from_millis(250);
+const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 
 /// Tells how far a command is, in one line of standard error that is gone at its end; nothing if that is no terminal.
 #[derive(Debug)]
@@ -30,7 +30,7 @@ impl Progress {
     /// So much is done, from 0 to 1.
     pub(crate) fn tell(&self, share: f64) {
         let now = Instant::now();
-        let is_due = self.told.get().is_none_or(|at| now - at >= TELL_EACH);
+        let is_due = self.told.get().is_none_or(|at| now - at >= REPORT_INTERVAL);
         if !self.is_read || !is_due {
             return;
         }
@@ -51,7 +51,7 @@ impl Drop for Progress {
 
 /// What is told after so long; `None` if that is too early.
 fn words(share: f64, since: Duration) -> Option<String> {
-    if since < QUIET_FOR {
+    if since < QUIET_DURATION {
         return None;
     }
     let percent = 100.0 * share;

@@ -1,7 +1,7 @@
 //! How a command about parameters reaches the hand: one link at a time, and where it may be next.
 
 use crate::app::files::settings_file;
-use crate::cli::session::{self, ANSWER_WITHIN};
+use crate::cli::session::{self, ANSWER_TIMEOUT};
 use crate::hand::overshoot::OvershootMap;
 use crate::link::{Clock, LinkHandle, PollRates};
 use crate::tasks::Reach;
@@ -42,7 +42,7 @@ impl Reach for LinkOpener {
             sleep(PORT_RESTS).await;
         }
         let link = session::open(place, ONLY_THE_STATE, Clock::start());
-        answers(&link, ANSWER_WITHIN).await.then_some(link)
+        answers(&link, ANSWER_TIMEOUT).await.then_some(link)
     }
 }
 

@@ -18,9 +18,9 @@ use tokio::task::{JoinHandle, spawn_blocking};
 use tokio::time::{interval, timeout};
 
 /// How often it is looked whether the disk is well.
-const LOOK_EACH: Duration = Duration::from_millis(200);
+const POLL_INTERVAL: Duration = Duration::from_millis(200);
 /// A link that is closed ends in less.
-const LINK_ENDS_WITHIN: Duration = Duration::from_secs(2);
+const LINK_END_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A recording that goes on by itself, if one was asked for.
 pub(crate) struct SideRecording(Option<Running>);
@@ -79,7 +79,7 @@ impl SideRecording {
         running.beside.abort();
         // It keeps the link open.
         let _aborted = running.beside.await;
-        let _ended = timeout(LINK_ENDS_WITHIN, running.pump).await;
+        let _ended = timeout(LINK_END_TIMEOUT, running.pump).await;
         let Some(recorder) = Arc::into_inner(running.recorder) else {
             bail!("the recording was not ended: it is still written to");
         };
@@ -117,7 +117,7 @@ async fn watch(recorder: Arc<Recorder>, link: LinkHandle, hand: Endpoint, clock:
     tell_parameters(&link, &hand, &recorder.input(), clock).await;
     drop(link);
     let mut told = FileTold::default();
-    let mut tick = interval(LOOK_EACH);
+    let mut tick = interval(POLL_INTERVAL);
     loop {
         tick.tick().await;
         told.tell(&recorder);

@@ -28,13 +28,13 @@ use std::time::Duration;
 use tokio::time::{sleep, timeout};
 
 /// How often it is looked whether the disk and the hand are well.
-const LOOK_EACH: Duration = Duration::from_millis(200);
+const POLL_INTERVAL: Duration = Duration::from_millis(200);
 /// A hand answers what it keeps in less; after this the recording does without.
-const PARAMETERS_WITHIN: Duration = Duration::from_secs(10);
+const PARAMETERS_TIMEOUT: Duration = Duration::from_secs(10);
 /// The first bytes are on the disk long before.
-const FILE_WITHIN: Duration = Duration::from_secs(3);
+const FILE_TIMEOUT: Duration = Duration::from_secs(3);
 /// A link that is closed ends in less.
-const LINK_ENDS_WITHIN: Duration = Duration::from_secs(2);
+const LINK_END_TIMEOUT: Duration = Duration::from_secs(2);
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct RecordArgs {
@@ -108,7 +108,7 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
         )
     });
     drop(link);
-    let _ended = timeout(LINK_ENDS_WITHIN, pump).await;
+    let _ended = timeout(LINK_END_TIMEOUT, pump).await;
     let done = done.and(lost.map_or(Ok(()), Err));
     finish(out, &path, &recorder.end(), done)
 }
@@ -143,7 +143,7 @@ async fn begun(recorder: &Recorder, path: &Path) -> anyhow::Result<()> {
         }
     };
     let slow = |_| cannot_write(path, "the disk does not answer");
-    timeout(FILE_WITHIN, there).await.map_err(slow)?
+    timeout(FILE_TIMEOUT, there).await.map_err(slow)?
 }
 
 fn cannot_write(path: &Path, trouble: &str) -> anyhow::Error {
@@ -160,7 +160,7 @@ pub(crate) async fn tell_parameters(
     input: &RecorderInput,
     clock: Clock,
 ) {
-    let rows = timeout(PARAMETERS_WITHIN, read::rows(link, |_, _| ())).await;
+    let rows = timeout(PARAMETERS_TIMEOUT, read::rows(link, |_, _| ())).await;
     let Some(rows) = rows.ok().filter(|rows| !rows.params.is_empty()) else {
         return;
     };
@@ -182,7 +182,7 @@ pub(crate) async fn tell_parameters(
 async fn watch(recorder: &Recorder, link: &LinkHandle, hand: &Endpoint) -> anyhow::Result<()> {
     let (mut told, mut lost) = (FileTold::default(), None);
     loop {
-        sleep(LOOK_EACH).await;
+        sleep(POLL_INTERVAL).await;
         told.tell(recorder);
         let status = link.status();
         let trouble = session::trouble(&status).map(ToString::to_string);

@@ -31,7 +31,7 @@ use tokio::runtime::Handle;
 use tokio::time::interval;
 
 /// How often there may be something to tell.
-const LOOK_EACH: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 #[derive(Debug, clap::Args)]
 #[command(group = clap::ArgGroup::new("way out").required(true).multiple(true).args(["tcp", "dds", "foxglove", "stdio"]))]
@@ -195,7 +195,7 @@ fn show(
 /// Tells what the user has to know, for as long as it is shared.
 async fn tell(link: &LinkHandle, gateway: Option<&Gateway>, hand: &Endpoint) {
     let mut told = Told::default();
-    let mut tick = interval(LOOK_EACH);
+    let mut tick = interval(POLL_INTERVAL);
     loop {
         tick.tick().await;
         told.link(link, hand);

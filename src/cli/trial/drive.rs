@@ -25,7 +25,7 @@ use tokio::time::{Instant, sleep, timeout};
 /// How often the time is checked while nothing is read.
 const TICK: Duration = Duration::from_millis(5);
 /// How long the hand may take to report its state, and to acknowledge its limits.
-const READY_WITHIN: Duration = Duration::from_secs(5);
+const READY_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Runs the plan on the hand.
 pub(crate) async fn drive(
@@ -140,7 +140,7 @@ impl ArmedHand {
     /// Disarms, and waits until the link has done so.
     pub(crate) async fn disarm(&self) {
         self.link.disarm();
-        let until = Instant::now() + READY_WITHIN;
+        let until = Instant::now() + READY_TIMEOUT;
         while self.link.status().armed.is_some() && Instant::now() < until {
             sleep(TICK).await;
         }
@@ -165,7 +165,7 @@ async fn make_ready(
 ) -> anyhow::Result<(Lease, HandSample)> {
     session::answered(link, endpoint).await?;
     let mut seen = HandSample::default();
-    let until = Instant::now() + READY_WITHIN;
+    let until = Instant::now() + READY_TIMEOUT;
     let known = |sample: &HandSample| {
         sample.faults.is_some() && sample.angle.is_some() && sample.temperature.is_some()
     };

@@ -25,7 +25,7 @@ use tokio::time::{MissedTickBehavior, interval};
 /// How often the link and the output are inspected, and frames printed.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 /// People read no more than ten lines a second.
-const TEXT_LINE_EACH: Duration = Duration::from_millis(100);
+const TEXT_LINE_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Watches until the time is up or the user ends it. Fails if nothing was read, and if the link is lost at the end.
 pub(crate) async fn run(out: &mut Out, args: &WatchArgs) -> anyhow::Result<()> {
@@ -178,7 +178,7 @@ impl<'a> Watch<'a> {
         if self.args.json {
             return self.out.stream_object(&sample_json(&sample, &grip, at));
         }
-        let is_soon = |last| at.since(last) < TEXT_LINE_EACH;
+        let is_soon = |last| at.since(last) < TEXT_LINE_INTERVAL;
         if self.last_text.is_some_and(is_soon) {
             return Ok(());
         }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// After this, a request has its reply or is known to have none.
-const DECIDED_WITHIN: Duration = Duration::from_millis(1100);
+const DECISION_TIMEOUT: Duration = Duration::from_millis(1100);
 
 /// Prints each frame once.
 pub(crate) struct FramePrinter {
@@ -39,7 +39,7 @@ impl FramePrinter {
 
     /// Prints what is still open at the end as it is.
     pub(crate) fn print_rest(&mut self, out: &mut Out, now: Moment) -> anyhow::Result<()> {
-        self.print(out, now.plus(DECIDED_WITHIN))
+        self.print(out, now.plus(DECISION_TIMEOUT))
     }
 
     fn lines(&mut self, out: &mut Out, now: Moment) -> anyhow::Result<()> {
@@ -71,6 +71,6 @@ fn is_open(frames: &[&Arc<Frame>], now: Moment) -> bool {
         return false;
     };
     request.wrong.is_none()
-        && now.since(request.at) < DECIDED_WITHIN
+        && now.since(request.at) < DECISION_TIMEOUT
         && later.iter().all(|frame| frame.took.is_none())
 }

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 /// A temperature older than this belongs to no hour.
-const FRESH_FOR: Duration = Duration::from_secs(5);
+const MAX_AGE: Duration = Duration::from_secs(5);
 
 /// One day of an exhibition.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -66,7 +66,7 @@ impl DayReport {
             return;
         };
         let known = read.value.map(|celsius| celsius.documented());
-        if read.age(now) <= FRESH_FOR && known.iter().any(|(_, one)| one.is_some()) {
+        if read.age(now) <= MAX_AGE && known.iter().any(|(_, one)| one.is_some()) {
             self.hotter(hour, known);
         }
     }

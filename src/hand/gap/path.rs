@@ -17,7 +17,7 @@ const ROTATED: Angle = Angle::MIN;
 /// Halvings of the path until a place on it is known to less than a count.
 const HALVINGS: u32 = 24;
 /// A joint that is farther from the path than this, in counts, does not pinch: the pads are not what touches.
-const ON_PATH_WITHIN: f32 = 80.0;
+const ON_PATH_TOLERANCE: f32 = 80.0;
 
 /// Nearer than this the edges of the pads meet, mm.
 const EDGES_MEET_MM: f32 = 8.0;
@@ -187,7 +187,7 @@ pub fn pad_distance(counts: &PerDof<f32>) -> f32 {
 
 /// Whether thumb and index can go from here to any gap, and meet nothing on the way, whichever is faster.
 pub fn is_open_for_pinch(counts: &PerDof<f32>) -> bool {
-    let spare = f32::from(Angle::ARRIVED_WITHIN);
+    let spare = f32::from(Angle::ARRIVED_TOLERANCE);
     let [[index, bend], ..] = CORNERS;
     counts[Dof::Index] >= index - spare
         && counts[Dof::ThumbBend] >= bend - spare
@@ -198,7 +198,7 @@ pub fn is_open_for_pinch(counts: &PerDof<f32>) -> bool {
 pub fn gap_on_path(counts: &PerDof<f32>) -> Option<f32> {
     let gap = pad_distance(counts);
     let meant = Gap::nearest(gap).angles();
-    let is_near = |dof: Dof| (counts[dof] - f32::from(meant[dof].get())).abs() <= ON_PATH_WITHIN;
+    let is_near = |dof: Dof| (counts[dof] - f32::from(meant[dof].get())).abs() <= ON_PATH_TOLERANCE;
     Gap::JOINTS.into_iter().all(is_near).then_some(gap)
 }
 

@@ -22,7 +22,7 @@ const SLIP_TOLD_S: f64 = 0.15;
 /// A grip that was too hard is not any more below this share of the threshold.
 const SOFTER: f32 = 0.9;
 /// The force at the end of a free close counts for so long: later the sensor's zero drifts.
-const ARRIVED_FOR: Duration = Duration::from_millis(500);
+const ARRIVED_DURATION: Duration = Duration::from_millis(500);
 
 /// What a finger held, until it opens or touches something else.
 #[derive(Debug, Clone, Copy)]
@@ -204,7 +204,10 @@ impl FingerEstimator {
         if !now.is_moving {
             way.arrived.get_or_insert(now.at);
         }
-        if way.arrived.is_some_and(|at| now.at.since(at) > ARRIVED_FOR) {
+        if way
+            .arrived
+            .is_some_and(|at| now.at.since(at) > ARRIVED_DURATION)
+        {
             return;
         }
         for joint in &evidence.joints {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 const KNOT: i16 = 50;
 const KNOTS: usize = 21;
 /// It is known at angles at most so far from a knot that was measured.
-const KNOWN_WITHIN: i16 = 125;
+const KNOWN_TOLERANCE: i16 = 125;
 /// No friction is more, g: more was something in the way.
 const FREE_MAX_G: f32 = 200.0;
 /// Share that a newer measurement takes on. What was in the way of one close adds force, and never takes any away.
@@ -62,7 +62,7 @@ impl FreeForce {
         let mut known = known(&self.0[dof]);
         let below = known.clone().rfind(|(at, _)| *at <= angle);
         let above = known.find(|(at, _)| *at >= angle);
-        let near = |knot: &(i16, f32)| (knot.0 - angle).abs() <= KNOWN_WITHIN;
+        let near = |knot: &(i16, f32)| (knot.0 - angle).abs() <= KNOWN_TOLERANCE;
         match (below.filter(near), above.filter(near)) {
             (Some((low, low_g)), Some((high, high_g))) if low < high => {
                 let part = f32::from(angle - low) / f32::from(high - low);

@@ -4,7 +4,7 @@ use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::dds::ctrl::{self, CtrlFault, CtrlMessage};
 use crate::inputs::dds::motors;
-use crate::inputs::follow::{ENDS_AFTER, is_fresh};
+use crate::inputs::follow::{END_TIMEOUT, is_fresh};
 use crate::inputs::offer::{Offer, OfferOutlet};
 use crate::link::rate::EventRate;
 use crate::link::{ArmRequest, Clock, Owner, Wake};
@@ -17,7 +17,7 @@ use tokio::time::interval;
 use tokio_util::task::AbortOnDropHandle;
 
 /// How often it is told what came in.
-const TELL_EACH: Duration = Duration::from_millis(50);
+const REPORT_INTERVAL: Duration = Duration::from_millis(50);
 
 /// What is taken from DDS.
 #[derive(Clone)]
@@ -128,7 +128,7 @@ struct Taking {
 
 impl Taking {
     async fn run(mut self, mut commands: DdsCommands) {
-        let mut tell = interval(TELL_EACH);
+        let mut tell = interval(REPORT_INTERVAL);
         loop {
             tokio::select! {
                 message = commands.ctrl.recv() => match message {
@@ -202,7 +202,7 @@ impl Taking {
     /// One sender is listened to until it is silent; Unitree's programs do not number their messages.
     fn in_turn(&mut self, from: DdsWriterId, now: Moment) -> Result<(), CtrlFault> {
         let is_other =
-            |(sender, last): (DdsWriterId, Moment)| sender != from && now.since(last) < ENDS_AFTER;
+            |(sender, last): (DdsWriterId, Moment)| sender != from && now.since(last) < END_TIMEOUT;
         if self.view.sender.is_some_and(is_other) {
             return Err(CtrlFault::OtherSender);
         }

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 /// A dead-man counts as long as the gamepad was heard of this recently: four reports that it is alive.
-pub const HEARD_WITHIN: Duration = Duration::from_millis(200);
+pub const HEARD_TIMEOUT: Duration = Duration::from_millis(200);
 /// How far a stick goes to choose fingers, thousandths, and how far back it lets go of them.
 const CHOOSE_AT: i16 = 500;
 const CHOOSE_UNTIL: i16 = 350;
@@ -260,7 +260,7 @@ impl PadInput {
 
     /// Whether the dead-man is held at this moment.
     pub fn is_held(&self, now: Moment) -> bool {
-        let is_near = |heard: Moment| now.since(heard) <= HEARD_WITHIN;
+        let is_near = |heard: Moment| now.since(heard) <= HEARD_TIMEOUT;
         self.may_hold && self.is_dead_man_down() && self.heard.is_some_and(is_near)
     }
 

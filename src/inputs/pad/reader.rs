@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::Sender;
 
 /// How often the folder is looked at.
-const LOOK_EACH: Duration = Duration::from_secs(1);
+const POLL_INTERVAL: Duration = Duration::from_secs(1);
 /// How often a gamepad says that it is still there, milliseconds.
 const ALIVE_EACH_MS: u16 = 50;
 /// How soon the thread ends where there is no gamepad, milliseconds.
@@ -134,7 +134,7 @@ impl PadThread {
         let mut looked: Option<Instant> = None;
         let mut said = Instant::now();
         while !self.to.is_closed() {
-            if looked.is_none_or(|at| at.elapsed() >= LOOK_EACH) {
+            if looked.is_none_or(|at| at.elapsed() >= POLL_INTERVAL) {
                 looked = Some(Instant::now());
                 self.look()?;
             }

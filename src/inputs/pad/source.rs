@@ -15,7 +15,7 @@ use tokio::time::{MissedTickBehavior, interval};
 use tokio_util::task::AbortOnDropHandle;
 
 /// How often a gamepad says where it wants the hand, whether it was moved or not.
-const OFFER_EACH: Duration = Duration::from_millis(10);
+const OFFER_INTERVAL: Duration = Duration::from_millis(10);
 
 /// What a gamepad is followed with.
 pub struct PadSourceConfig {
@@ -107,7 +107,7 @@ async fn run(
     told: watch::Sender<PadView>,
     (outlet, mut poses): (OfferOutlet, watch::Receiver<PadPoses>),
 ) {
-    let mut tick = interval(OFFER_EACH);
+    let mut tick = interval(OFFER_INTERVAL);
     tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
     let mut view = PadView::default();
     loop {

@@ -22,7 +22,7 @@ use tokio_modbus::client::{Client as _, Context, tcp};
 use tokio_modbus::{Request, Response, Slave};
 
 /// How often a stop is looked for while a reply is late.
-const URGENT_EACH: Duration = Duration::from_millis(5);
+const URGENT_INTERVAL: Duration = Duration::from_millis(5);
 
 /// The client side of one Modbus TCP connection.
 pub(crate) struct ModbusTcp {
@@ -81,7 +81,7 @@ impl ModbusTcp {
                 let after = now.duration_since(sent);
                 return Err(BusError::Timeout { after });
             }
-            look = now + URGENT_EACH;
+            look = now + URGENT_INTERVAL;
         }
     }
 

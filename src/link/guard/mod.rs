@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
 /// How often it is looked whether all hands rest.
-const LOOK_EACH: Duration = Duration::from_millis(5);
+const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 /// The open links of this process.
 static OPEN: Mutex<Vec<Weak<MotionGuard>>> = Mutex::new(Vec::new());
@@ -102,7 +102,7 @@ pub fn hold_all_within(time: Duration) {
     let until = Instant::now() + time;
     hold_all();
     while !moving().is_empty() && Instant::now() < until {
-        std::thread::sleep(LOOK_EACH);
+        std::thread::sleep(POLL_INTERVAL);
     }
 }
 

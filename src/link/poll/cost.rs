@@ -31,7 +31,7 @@ const RECENT: usize = 256;
 /// replies would not help.
 const COUNTED_OF_100: usize = 95;
 /// It is judged again after this many answers.
-const JUDGED_EACH: u32 = 16;
+const JUDGED_ANSWERS: u32 = 16;
 /// Answers after which the longest turnaround counts as known.
 const ANSWERS_MIN: u32 = 64;
 /// A learnt turnaround follows new ones by one part in this many.
@@ -239,7 +239,7 @@ impl Turnaround {
             self.recent.pop_front();
         }
         self.recent.push_back(each);
-        if self.answers.is_multiple_of(JUDGED_EACH) {
+        if self.answers.is_multiple_of(JUDGED_ANSWERS) {
             let mut sorted: Vec<Duration> = self.recent.iter().copied().collect();
             sorted.sort_unstable();
             let counted = sorted.len() * COUNTED_OF_100 / 100;

@@ -20,18 +20,18 @@ const SHORTEST_PERIOD: Duration = Duration::from_millis(10);
 /// … and slow ones as this fast, so that on a line that is too slow for all they do not wait for many of their periods.
 const LONGEST_PERIOD: Duration = Duration::from_millis(30);
 /// What waits so long is as urgent as the fastest: a sweep over all fingertips takes a slow hand on CAN most of a second.
-const STARVED_AFTER: Duration = Duration::from_secs(1);
+const STARVATION_TIMEOUT: Duration = Duration::from_secs(1);
 /// Temperatures change slowly and are read just often enough not to be shown as old.
 const TEMPERATURE_HZ: f64 = 5.0;
 /// While a hand is armed on a wire where nobody hears others' requests, the setpoints that it holds are read this often: so that
 /// three of them show another controller within a second.
 const WATCHED_HZ: f64 = 25.0;
 /// On a way that is too slow for that, they are read before anything but the pose after this.
-const WATCHED_WITHIN: Duration = Duration::from_millis(250);
+const WATCH_INTERVAL: Duration = Duration::from_millis(250);
 /// A round this long after the one before is none of a stream.
 const ALONE: Duration = Duration::from_millis(100);
 /// Once one of them is doubtful, they are read before each write for so long.
-const DOUBTFUL_FOR: Duration = Duration::from_secs(1);
+const DOUBT_DURATION: Duration = Duration::from_secs(1);
 /// Windows asked for last, none of which is asked for again in the same form: a whole run of replies may be doubled.
 const RECENT: usize = 3;
 /// Reckoned with before the first answer: that of a quick hand.
@@ -331,7 +331,7 @@ impl PollPlan {
     /// True for setpoints that were just written, are doubtful, or were not read for long though they are watched.
     fn is_looked_at(&self, due: &Due, now: Moment) -> bool {
         let is_wanted = self.look_at.is_some_and(|at| at <= now);
-        let is_old = self.watched && now.since(due.asked) >= WATCHED_WITHIN;
+        let is_old = self.watched && now.since(due.asked) >= WATCH_INTERVAL;
         due.part == ReadPart::Targets && (is_wanted || is_old)
     }
 
@@ -396,7 +396,7 @@ impl PollPlan {
 
     /// A setpoint that the hand holds may be another controller's.
     pub(crate) fn doubt_setpoints(&mut self, now: Moment) {
-        self.doubtful_until = now.plus(DOUBTFUL_FOR);
+        self.doubtful_until = now.plus(DOUBT_DURATION);
     }
 
     /// Reads the setpoints at this time at the latest: they were just written, or are doubtful.
@@ -493,7 +493,7 @@ impl Due {
     /// How long it waits, in its own periods.
     fn lateness(&self, now: Moment) -> u128 {
         let late = now.since(self.next);
-        let period = if late >= STARVED_AFTER {
+        let period = if late >= STARVATION_TIMEOUT {
             SHORTEST_PERIOD
         } else {
             self.period.clamp(SHORTEST_PERIOD, LONGEST_PERIOD)

@@ -10,7 +10,7 @@ use std::time::Duration;
 /// Round trips that the percentiles look back on.
 const ROUND_TRIPS: usize = 512;
 /// Percentiles are worked out this often.
-const DIGEST_EACH: Duration = Duration::from_millis(250);
+const DIGEST_INTERVAL: Duration = Duration::from_millis(250);
 
 /// Counts one link.
 #[derive(Debug, Default)]
@@ -55,7 +55,7 @@ impl Counters {
 
     /// Brings rates and percentiles up to date, not more often than needed.
     pub(crate) fn digest(&mut self, now: Moment) {
-        if now.since(self.digested) < DIGEST_EACH && self.stats.rtt_p50.is_some() {
+        if now.since(self.digested) < DIGEST_INTERVAL && self.stats.rtt_p50.is_some() {
             return;
         }
         self.digested = now;

@@ -9,14 +9,14 @@ pub(crate) const HOLD_REPEAT: Duration = Duration::from_millis(40);
 /// a target that follows it for ever makes it swing for ever.
 const HOLD_FOLLOWS: Duration = Duration::from_millis(120);
 /// Without rest by then, the alarm is raised.
-pub(crate) const HOLD_ALARM_AFTER: Duration = Duration::from_millis(500);
+pub(crate) const HOLD_ALARM_DELAY: Duration = Duration::from_millis(500);
 /// A joint rests if it moves no more than this many counts …
 const REST_COUNTS: i32 = 2;
 /// … over at least this time.
 const REST_OVER: Duration = Duration::from_millis(100);
 /// A hand that moved when it was stopped is not called at rest before this has passed since the first hold frame. Should feedback
 /// have frozen around the stop, the joints go on for the dead time and come back to where they were seen last: by then they are there.
-const MOVED_REST_AFTER: Duration = Duration::from_millis(250);
+const MOVED_REST_DELAY: Duration = Duration::from_millis(250);
 /// A joint in doubt is told where it must be for this long, counted in acknowledged frames. If it obeys, it stands there by then; if
 /// it is deaf and its angle is true, any further frame would move it once it wakes.
 const DOUBTED_HOLD: Duration = Duration::from_millis(250);
@@ -60,7 +60,7 @@ impl HoldWatch {
     /// where they must be by now to where they were seen last.
     pub(crate) fn new(at: Moment, moved: bool, way_back: Duration) -> Self {
         let rest_after = match moved {
-            true => way_back.max(MOVED_REST_AFTER),
+            true => way_back.max(MOVED_REST_DELAY),
             false => way_back,
         };
         Self {
@@ -162,7 +162,7 @@ impl HoldWatch {
 
     /// True if the alarm is to be raised now.
     pub(crate) fn alarm_due(&self, now: Moment) -> bool {
-        !self.alarmed && now.since(self.follows_from) >= HOLD_ALARM_AFTER
+        !self.alarmed && now.since(self.follows_from) >= HOLD_ALARM_DELAY
     }
 
     /// Applies a sample; true if it shows that all joints but those in doubt rest. Only angles that were asked for

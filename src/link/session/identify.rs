@@ -19,7 +19,7 @@ const TRIES: u32 = 3;
 /// After the first answer, no further request starts later than this: a reconnect must not wait.
 const WITHIN: Duration = Duration::from_millis(400);
 /// Whether it is a hand of the series is asked again after this, where it is not clear.
-const EVIDENCE_EACH: Duration = Duration::from_millis(500);
+const EVIDENCE_INTERVAL: Duration = Duration::from_millis(500);
 /// On a slow way there is time for this many, one after the other.
 const QUESTIONS: u32 = 8;
 /// A question without an answer is asked once more: one lost reply must not look like a quirk.
@@ -146,7 +146,7 @@ impl Session {
         }
         let Some(question) = self.evidence.next_question() else {
             self.evidence.begin_again();
-            self.evidence_due = now.plus(EVIDENCE_EACH);
+            self.evidence_due = now.plus(EVIDENCE_INTERVAL);
             return Ok(false);
         };
         self.asked_evidence = true;

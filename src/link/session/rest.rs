@@ -6,11 +6,11 @@ use std::time::Duration;
 
 /// After the last sign of motion the hand counts as moving for this long: the user who drags pauses, and a hand acts
 /// late.
-const MOVES_FOR: Duration = Duration::from_secs(1);
+const MOTION_DURATION: Duration = Duration::from_secs(1);
 /// A joint that is no more than this many counts from where it was rests: readings swing by so much.
 const REST_COUNTS: i32 = 2;
 /// Feedback older than this says nothing of whether the hand rests now.
-const FRESH_FOR: Duration = Duration::from_millis(500);
+const MAX_AGE: Duration = Duration::from_millis(500);
 
 /// Watches for motion.
 #[derive(Debug, Clone, Copy, Default)]
@@ -53,7 +53,8 @@ impl RestWatch {
 
     /// True if something moves, or did just now.
     pub(crate) fn moves(&self, now: Moment) -> bool {
-        self.moved.is_some_and(|moved| now.since(moved) < MOVES_FOR)
+        self.moved
+            .is_some_and(|moved| now.since(moved) < MOTION_DURATION)
     }
 
     /// Whether the hand rests. A status code that the manual does not list says nothing: 255 was seen on joints that rest
@@ -63,7 +64,7 @@ impl RestWatch {
         if self.moves(now) {
             return Rest::Moving;
         }
-        let within = FRESH_FOR + late;
+        let within = MAX_AGE + late;
         let status = fresh(sample.status, now, within);
         let (Some(status), Some(angle)) = (status, fresh(sample.angle, now, within)) else {
             return Rest::Unknown;
@@ -72,7 +73,7 @@ impl RestWatch {
         let is_sensible = angle.iter().all(|(_, angle)| angle.documented().is_some());
         let watched = self
             .watched_since
-            .is_some_and(|since| now.since(since) >= MOVES_FOR);
+            .is_some_and(|since| now.since(since) >= MOTION_DURATION);
         if says_so || is_sensible && watched {
             Rest::Resting
         } else {

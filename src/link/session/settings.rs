@@ -29,7 +29,7 @@ const PARAMETERS: Span = Span::new(
     DEFAULT_SPEED_SET.len + DEFAULT_FORCE_SET.len,
 );
 /// While the line is left to the hand, the session looks around this often.
-const LISTEN_FOR: Duration = Duration::from_millis(100);
+const LISTEN_DURATION: Duration = Duration::from_millis(100);
 /// From a request to calibrate until it is over without a word. Manual: 2.6.6 names no time; hands in use were seen to take 2 to 6 s.
 pub(crate) const CALIBRATION_TAKES: Duration = Duration::from_secs(8);
 
@@ -349,7 +349,7 @@ impl Session {
     /// Leaves the line to the hand: takes what comes, asks nothing, and ends early for a wish of the window.
     async fn listen(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<(), WireEnd> {
         let now = self.now();
-        let until = until.min(now.plus(LISTEN_FOR));
+        let until = until.min(now.plus(LISTEN_DURATION));
         // A stop that feedback does not confirm goes on meanwhile.
         let until = self
             .motion

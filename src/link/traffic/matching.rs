@@ -16,7 +16,7 @@ use std::time::Duration;
 /// Requests without reply that a late reply is still set against.
 const GIVEN_UP_MAX: usize = 16;
 /// A request that is open for this long gets no reply any more.
-const REPLY_WITHIN: Duration = Duration::from_secs(1);
+const REPLY_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A request that waits for its reply.
 #[derive(Debug, Clone, Copy)]
@@ -74,7 +74,7 @@ impl Matching {
     /// The number of a request that will get no reply any more.
     pub fn overdue(&mut self, now: Moment) -> Option<u64> {
         self.open
-            .take_if(|open| now.since(open.at) >= REPLY_WITHIN)
+            .take_if(|open| now.since(open.at) >= REPLY_TIMEOUT)
             .map(|open| self.give_up(open))
     }
 

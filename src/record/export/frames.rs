@@ -11,9 +11,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// A reading that is older is not taken for what holds now.
-const GAP_AFTER: Duration = Duration::from_millis(500);
+const MIN_GAP: Duration = Duration::from_millis(500);
 /// The same for targets that nobody sent, which are read about twice a second.
-const TARGET_GAP_AFTER: Duration = Duration::from_secs(3);
+const MIN_TARGET_GAP: Duration = Duration::from_secs(3);
 /// Angles are 0 to 1000.
 const FULL_SCALE: f32 = 1000.0;
 /// Fingertips that are read less often than so many times a second are left out: each frame would be a silence.
@@ -205,10 +205,10 @@ impl DatasetFrames {
         let fresh = |received: Moment, within: Duration| at.since(received) <= within;
         let angle = Quantity::Angle.documented(&self.sample)?;
         let force = Quantity::Force.documented(&self.sample)?;
-        if !fresh(angle.received, GAP_AFTER) || !fresh(force.received, GAP_AFTER) {
+        if !fresh(angle.received, MIN_GAP) || !fresh(force.received, MIN_GAP) {
             return None;
         }
-        if !self.targets.are_sent() && !fresh(self.sample.angle_set?.received, TARGET_GAP_AFTER) {
+        if !self.targets.are_sent() && !fresh(self.sample.angle_set?.received, MIN_TARGET_GAP) {
             return None;
         }
         let mut frame = DatasetFrame {
@@ -237,7 +237,7 @@ impl DatasetFrames {
                 .zip(normal.iter_mut().zip(tangential))
             {
                 let block = self.sample.tactile[finger]?;
-                if !fresh(block.received, GAP_AFTER) {
+                if !fresh(block.received, MIN_GAP) {
                     return None;
                 }
                 *normal = block.value.normal()?;

@@ -12,7 +12,7 @@ use std::io;
 use std::ops::ControlFlow;
 
 /// Entries between two looks at whether to go on: some milliseconds.
-const LOOK_EACH: u64 = 256;
+const POLL_ENTRIES: u64 = 256;
 
 /// How far an export is, from 0 to 1. Breaks it off where that is wished.
 pub type Watch<'a> = dyn Fn(f64) -> ControlFlow<()> + 'a;
@@ -119,7 +119,7 @@ impl<'a> Source<'a> {
         let mut count = 0_u64;
         let damage = self.file.entries(self.stretch, |entry| {
             count += 1;
-            if count.is_multiple_of(LOOK_EACH) && done.is_ok() {
+            if count.is_multiple_of(POLL_ENTRIES) && done.is_ok() {
                 done = self.look(entry.at());
             }
             if done.is_ok() {

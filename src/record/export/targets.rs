@@ -6,7 +6,7 @@ use crate::record::WrittenMemory;
 use std::time::Duration;
 
 /// A write may act so late: what is read until then may be of before it.
-const ACTS_WITHIN: Duration = Duration::from_secs(2);
+const ACT_DELAY: Duration = Duration::from_secs(2);
 /// Registers by which the hand is told a gesture: it then sets targets of its own.
 const GESTURES: [u16; 3] = [1008, 2320, 2322];
 
@@ -107,9 +107,7 @@ impl CommandedTargets {
 
     /// What the hand holds was read.
     pub(crate) fn read(&mut self, held: Timed<PerDof<Option<Target>>>) {
-        let may_be_old = self
-            .sent
-            .is_some_and(|at| held.asked.since(at) < ACTS_WITHIN);
+        let may_be_old = self.sent.is_some_and(|at| held.asked.since(at) < ACT_DELAY);
         for (dof, target) in held.value.iter() {
             // -1 leaves a joint alone: what it was told before holds on.
             let Some(angle) = target.and_then(Target::angle).map(|angle| angle.get()) else {

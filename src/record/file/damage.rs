@@ -110,7 +110,7 @@ pub struct Gap {
 /// What of a file is missing.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Damage {
-    /// Chunks that cannot be read; each holds about what is recorded within [`FLUSH_EACH`](crate::record::file::FLUSH_EACH).
+    /// Chunks that cannot be read; each holds about what is recorded within [`FLUSH_INTERVAL`](crate::record::file::FLUSH_INTERVAL).
     pub chunks: u64,
     /// Bytes in which no record was found.
     pub bytes: u64,

@@ -34,6 +34,6 @@ pub use crate::record::file::overview::{Counts, FileMark, Overview};
 pub use crate::record::file::reader::{OpenError, RecordingFile};
 pub use crate::record::file::recorder::Recorder;
 pub use crate::record::file::recording::{
-    FLUSH_EACH, GOES_ON_FROM, GOES_ON_IN, PART_LENGTH, RecorderNotice, RecorderStatus,
+    FLUSH_INTERVAL, GOES_ON_FROM, GOES_ON_IN, PART_LENGTH, RecorderNotice, RecorderStatus,
     RecordingPlan,
 };

@@ -12,7 +12,7 @@ const FILES_MAX: usize = 4096;
 /// Folders of days that are looked into.
 const FOLDERS_MAX: usize = 4000;
 /// What a file says of itself stands in so many bytes at its beginning, unless another program rewrote it.
-const SAID_WITHIN: u64 = 4096;
+const HEAD_BYTES: u64 = 4096;
 
 /// The files of the recording that this file is of, in the order of time; itself alone if it is of none.
 pub fn of(path: &Path) -> Vec<PathBuf> {
@@ -138,7 +138,7 @@ fn said(path: &Path) -> Option<Opening> {
     }
     let mut begin = Vec::new();
     let file = File::open(path).ok()?;
-    file.take(SAID_WITHIN).read_to_end(&mut begin).ok()?;
+    file.take(HEAD_BYTES).read_to_end(&mut begin).ok()?;
     let (_, _, after_header) = walk::record(begin.strip_prefix(&MAGIC)?)?;
     let (_, content, _) = walk::record(after_header)?;
     Opening::of_record(content)

@@ -34,7 +34,7 @@ pub(crate) const BLOCK_MAX: u64 = 1024 * 1024;
 const WARM_UP: Duration = Duration::from_secs(6);
 
 /// The hand's parameters are recorded so soon; reading them may take ten seconds.
-const PARAMETERS_WITHIN: Duration = Duration::from_secs(60);
+const PARAMETERS_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Entries of several sources come in almost the order of time: also those at the border of two files.
 const APART: Duration = Duration::from_secs(1);
@@ -644,7 +644,7 @@ impl RecordingFile {
         let mut hand = None;
         let stretch = Stretch {
             from: Moment::ZERO,
-            to: Moment::ZERO.plus(PARAMETERS_WITHIN),
+            to: Moment::ZERO.plus(PARAMETERS_TIMEOUT),
             wire: false,
         };
         self.entries(stretch, |entry| {

@@ -2,7 +2,7 @@
 
 use crate::record::Entry;
 use crate::record::file::recording::{
-    END_WITHIN, FLUSH_EACH, Given, Now, RecorderStatus, RecordingPlan, RecordingTask,
+    END_TIMEOUT, FLUSH_INTERVAL, Given, Now, RecorderStatus, RecordingPlan, RecordingTask,
 };
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -130,7 +130,7 @@ impl Recorder {
     /// Ends the file and waits for that, at most a few seconds.
     pub fn end(self) -> RecorderStatus {
         self.ends.store(true, Ordering::Release);
-        let until = Instant::now() + END_WITHIN + Duration::from_millis(500);
+        let until = Instant::now() + END_TIMEOUT + Duration::from_millis(500);
         loop {
             let status = self.status();
             if status.ended || Instant::now() >= until {
@@ -167,7 +167,7 @@ impl Work {
     fn run(mut self) {
         let mut ends = false;
         while !ends {
-            match self.taken.recv_timeout(FLUSH_EACH / 2) {
+            match self.taken.recv_timeout(FLUSH_INTERVAL / 2) {
                 Ok(given) => {
                     self.recording.take(&given);
                     // Woken for each entry, the thread would cost as much as the work it does.

@@ -15,7 +15,7 @@ use std::time::Duration;
 /// Bytes that may wait for the disk: two minutes of one hand.
 pub(crate) const PENDING_MAX: usize = 8 * 1024 * 1024;
 /// What was taken goes to the file at least this often, so that a killed program loses no more than a quarter of a second.
-pub const FLUSH_EACH: Duration = Duration::from_millis(125);
+pub const FLUSH_INTERVAL: Duration = Duration::from_millis(125);
 /// What a file says of the next part of the same recording, whose name follows.
 pub const GOES_ON_IN: &str = "the recording goes on in ";
 /// The same of the file before.
@@ -23,11 +23,11 @@ pub const GOES_ON_FROM: &str = "this file goes on after ";
 /// A recording goes on in a new file after this, because of each chunk something is remembered until a file is ended.
 pub const PART_LENGTH: Duration = Duration::from_secs(3600);
 /// How often it is looked whether the file is still there and the computer's clock was set.
-pub(crate) const LOOK_EACH: Duration = Duration::from_secs(1);
+pub(crate) const POLL_INTERVAL: Duration = Duration::from_secs(1);
 /// A clock that differs by more was set, or the computer slept.
 pub(crate) const CLOCK_SET: Duration = Duration::from_secs(1);
 /// A file that cannot be ended in this time is left as it is; a reader can do without its end.
-pub(crate) const END_WITHIN: Duration = Duration::from_secs(2);
+pub(crate) const END_TIMEOUT: Duration = Duration::from_secs(2);
 /// Notices of one recording; what comes after them says nothing new.
 const NOTICES_MAX: usize = 20;
 /// Files begun because one took nothing any more; a disk that spoils more of them is broken.
@@ -251,12 +251,12 @@ impl RecordingTask {
 
     /// Does what is due.
     pub(crate) fn step(&mut self, now: Now) {
-        if now.since.saturating_sub(self.flushed_at) >= FLUSH_EACH {
+        if now.since.saturating_sub(self.flushed_at) >= FLUSH_INTERVAL {
             self.flushed_at = now.since;
             self.flush();
             self.put(now.since, false);
         }
-        if now.since.saturating_sub(self.looked_at) >= LOOK_EACH {
+        if now.since.saturating_sub(self.looked_at) >= POLL_INTERVAL {
             self.looked_at = now.since;
             self.look(now);
             let is_long = now.since.saturating_sub(self.part_since) >= self.part_length;
@@ -272,7 +272,7 @@ impl RecordingTask {
         self.look(now);
         self.tell_missing(self.newest);
         self.finish();
-        self.end_by = Some(now.since + END_WITHIN);
+        self.end_by = Some(now.since + END_TIMEOUT);
         self.end_step(now.since);
     }
 

@@ -8,11 +8,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// Against a loss of power.
-pub(crate) const SYNC_EACH: Duration = Duration::from_millis(700);
+pub(crate) const SYNC_INTERVAL: Duration = Duration::from_millis(700);
 /// A disk that failed is tried again after this.
-pub(crate) const RETRY_AFTER: Duration = Duration::from_millis(500);
+pub(crate) const RETRY_DELAY: Duration = Duration::from_millis(500);
 /// An open file that takes nothing for so long while its disk is not full will not come back: a plug was pulled.
-pub(crate) const DEAD_AFTER: Duration = Duration::from_secs(10);
+pub(crate) const DEAD_TIMEOUT: Duration = Duration::from_secs(10);
 /// Files of one name in one folder; beyond that something is wrong with the folder.
 const NAMES_MAX: u32 = 100;
 
@@ -170,7 +170,7 @@ impl FileTail {
             )
         });
         let since = self.fails_since.filter(|_| self.file.is_some());
-        since.is_some_and(|since| !is_full && now.saturating_sub(since) >= DEAD_AFTER)
+        since.is_some_and(|since| !is_full && now.saturating_sub(since) >= DEAD_TIMEOUT)
     }
 
     /// Lets it be tried for as long again.
@@ -208,7 +208,7 @@ impl FileTail {
         if self.retry_at.is_some_and(|at| now < at) {
             return;
         }
-        let is_due = now.saturating_sub(self.synced_at) >= SYNC_EACH;
+        let is_due = now.saturating_sub(self.synced_at) >= SYNC_INTERVAL;
         self.attempt(now, is_due);
     }
 
@@ -221,7 +221,7 @@ impl FileTail {
         let result = self
             .write()
             .and_then(|()| if syncs { self.sync(now) } else { Ok(()) });
-        self.retry_at = result.is_err().then(|| now + RETRY_AFTER);
+        self.retry_at = result.is_err().then(|| now + RETRY_DELAY);
         self.fails_since = match result {
             Ok(()) => None,
             Err(_) => self.fails_since.or(Some(now)),

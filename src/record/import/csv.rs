@@ -30,7 +30,7 @@ const SINCE_1970_MAX_S: f64 = 1e10;
 /// Lines that were received at nearly one time may stand in another order.
 const BACK_MAX_S: f64 = 0.01;
 /// Lines between two looks at whether to go on: some milliseconds.
-const LOOK_EACH: u64 = 256;
+const POLL_ENTRIES: u64 = 256;
 /// Whole numbers up to here are exact as numbers with a point.
 const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
 /// Names and cells are told this far.
@@ -138,7 +138,7 @@ pub fn import(
     });
     copy.push(&monitoring).map_err(written)?;
     while let Some(entries) = values.next_row()? {
-        if values.imported.rows.is_multiple_of(LOOK_EACH) && watch().is_break() {
+        if values.imported.rows.is_multiple_of(POLL_ENTRIES) && watch().is_break() {
             return Err(ExportError::Interrupted.into());
         }
         for entry in entries {

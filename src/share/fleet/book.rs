@@ -1,7 +1,7 @@
 //! Which hands are there, by what was heard of them. Pure.
 
 use crate::hand::Moment;
-use crate::share::fleet::{FleetHand, GONE_AFTER};
+use crate::share::fleet::{FleetHand, GONE_TIMEOUT};
 use crate::transport::dds::DdsWriterId;
 use std::collections::HashMap;
 
@@ -31,7 +31,7 @@ impl FleetBook {
     pub fn sweep(&mut self, now: Moment) -> bool {
         let before = self.hands.len();
         self.hands
-            .retain(|_, (_, heard)| now.since(*heard) < GONE_AFTER);
+            .retain(|_, (_, heard)| now.since(*heard) < GONE_TIMEOUT);
         self.hands.len() != before
     }
 

@@ -10,9 +10,9 @@ use tokio::time::{interval, timeout};
 use tokio_util::task::AbortOnDropHandle;
 
 /// Who tells of a hand is heard within this, with two of its notices lost.
-const HEARD_WITHIN: Duration = Duration::from_millis(2000);
+const HEARD_TIMEOUT: Duration = Duration::from_millis(2000);
 /// How often it is looked who is silent.
-const LOOK_EACH: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// As many hands may change at once.
 const KEPT: u16 = 512;
 
@@ -57,7 +57,7 @@ impl OtherFollowers {
 
     /// One that was there already when this began to listen: waits as long as it takes to hear of it.
     pub async fn was_there(&self) -> Option<FleetCard> {
-        timeout(HEARD_WITHIN, self.appears()).await.ok()
+        timeout(HEARD_TIMEOUT, self.appears()).await.ok()
     }
 }
 
@@ -71,7 +71,7 @@ struct Listening {
 impl Listening {
     async fn run(self, mut messages: mpsc::Receiver<DdsMessage>) {
         let mut book = FleetBook::default();
-        let mut tick = interval(LOOK_EACH);
+        let mut tick = interval(POLL_INTERVAL);
         loop {
             let is_new = tokio::select! {
                 message = messages.recv() => {

@@ -10,7 +10,7 @@ use tokio::time::interval;
 use tokio_util::task::AbortOnDropHandle;
 
 /// How often the list is looked through, and may change for those who look at it.
-const SHOWN_EACH: Duration = Duration::from_millis(100);
+const LIST_INTERVAL: Duration = Duration::from_millis(100);
 
 /// As many hands may change at once.
 const KEPT: u16 = 512;
@@ -65,7 +65,7 @@ async fn listen(
     show: impl Fn(Vec<FleetHand>),
 ) {
     let mut book = FleetBook::default();
-    let mut tick = interval(SHOWN_EACH);
+    let mut tick = interval(LIST_INTERVAL);
     let mut is_new = false;
     loop {
         tokio::select! {

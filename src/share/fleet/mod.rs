@@ -18,6 +18,6 @@ pub use teller::{FleetTeller, host};
 use std::time::Duration;
 
 /// A hand is told again after so long at the most, also if nothing changed.
-pub const TOLD_EACH: Duration = Duration::from_millis(600);
+pub const ANNOUNCE_INTERVAL: Duration = Duration::from_millis(600);
 /// A hand of which nothing was heard for so long is no longer listed: two notices in a row were lost, or nobody tells.
-pub const GONE_AFTER: Duration = Duration::from_millis(1500);
+pub const GONE_TIMEOUT: Duration = Duration::from_millis(1500);

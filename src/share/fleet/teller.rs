@@ -1,7 +1,7 @@
 //! Tells of one hand that is shared.
 
 use crate::link::{LinkHandle, LinkStatus};
-use crate::share::fleet::{FleetCard, FleetHand, TOLD_EACH, reachable, topic};
+use crate::share::fleet::{ANNOUNCE_INTERVAL, FleetCard, FleetHand, reachable, topic};
 use crate::transport::dds::{DdsNode, DdsWriter};
 use std::net::Ipv4Addr;
 use tokio::sync::watch;
@@ -58,7 +58,7 @@ impl Publishing {
             // One that is lost is told again soon.
             let _is_sent = self.writer.send(FleetHand { card, state, owner }.message());
             // Of many that began together not all speak at once for ever.
-            let pause = TOLD_EACH.mul_f64(0.75 + 0.25 * fastrand::f64());
+            let pause = ANNOUNCE_INTERVAL.mul_f64(0.75 + 0.25 * fastrand::f64());
             let is_open = tokio::select! {
                 changed = self.status.wait_for(|status| of(status) != told) => changed.is_ok(),
                 changed = cards.changed() => changed.is_ok(),

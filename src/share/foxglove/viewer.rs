@@ -23,11 +23,11 @@ use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
 use tokio_tungstenite::{WebSocketStream, accept_hdr_async_with_config};
 
 /// From the connection to the end of the handshake.
-pub const SHAKES_HANDS_WITHIN: Duration = Duration::from_secs(2);
+pub const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(2);
 /// A viewer that does not take what it is sent within this is ended.
-pub const TAKES_WITHIN: Duration = Duration::from_secs(10);
+pub const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 /// A viewer has nothing to say for hours, so it is asked whether it is there.
-const PING_EACH: Duration = Duration::from_secs(20);
+const PING_INTERVAL: Duration = Duration::from_secs(20);
 /// One that did not answer this long is taken for gone: a half-open connection says nothing of itself.
 pub const SILENT_MAX: Duration = Duration::from_secs(60);
 /// Longest message of a viewer: it names topics, of which there are a dozen.
@@ -62,12 +62,12 @@ impl Connection {
     }
 
     async fn show(&mut self, stream: TcpStream) -> io::Result<()> {
-        let mut socket = timeout(SHAKES_HANDS_WITHIN, shake_hands(stream)).await??;
+        let mut socket = timeout(HANDSHAKE_TIMEOUT, shake_hands(stream)).await??;
         for text in &self.greeting.texts {
             tell(&mut socket, Frame::text(text.as_str())).await?;
         }
         let mut messages = self.seat.messages();
-        let mut ping = interval(PING_EACH);
+        let mut ping = interval(PING_INTERVAL);
         ping.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut heard = Instant::now();
         loop {
@@ -82,7 +82,7 @@ impl Connection {
                     }
                 }
                 message = messages.recv() => {
-                    timeout(TAKES_WITHIN, self.pass_on(&mut socket, message, &mut messages)).await??;
+                    timeout(WRITE_TIMEOUT, self.pass_on(&mut socket, message, &mut messages)).await??;
                 }
                 _ = ping.tick() => {
                     if heard.elapsed() > SILENT_MAX {
@@ -190,7 +190,7 @@ fn error(words: &str) -> Frame {
 }
 
 async fn tell(socket: &mut Socket, frame: Frame) -> io::Result<()> {
-    let told = timeout(TAKES_WITHIN, socket.send(frame)).await?;
+    let told = timeout(WRITE_TIMEOUT, socket.send(frame)).await?;
     told.map_err(io::Error::other)
 }
 

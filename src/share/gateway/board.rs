@@ -15,7 +15,7 @@ use tokio::time::Instant;
 /// Clients at one time; more are turned away at once.
 pub const CLIENTS_MAX: usize = 16;
 /// Commands of one kind are so far apart, as the setpoints of a slider are.
-const WRITE_EACH: Duration = Duration::from_millis(1000 / SETPOINT_HZ_MAX as u64);
+const WRITE_INTERVAL: Duration = Duration::from_millis(1000 / SETPOINT_HZ_MAX as u64);
 /// Requests are counted over this time.
 const RATE_OVER: Duration = Duration::from_secs(1);
 /// Changes of who may move the hand that are kept for whoever tells them: clients come and go between two looks.
@@ -244,7 +244,7 @@ impl Board {
     pub(crate) fn turn(&mut self, command: &HandCommand, now: Instant) -> Instant {
         let kind = std::mem::discriminant(command);
         let before = self.turns.iter().find(|(own, _)| *own == kind);
-        let turn = before.map_or(now, |(_, before)| now.max(*before + WRITE_EACH));
+        let turn = before.map_or(now, |(_, before)| now.max(*before + WRITE_INTERVAL));
         self.turns.retain(|(own, _)| *own != kind);
         self.turns.push((kind, turn));
         turn

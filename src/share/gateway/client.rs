@@ -19,11 +19,11 @@ use tokio::sync::Notify;
 use tokio::time::{Instant, timeout, timeout_at};
 
 /// From the first byte of a request to its last: on a network they come together.
-pub const REQUEST_WITHIN: Duration = Duration::from_secs(2);
+pub const REQUEST_TIMEOUT: Duration = Duration::from_secs(2);
 /// A client that asks nothing for so long is taken for gone: a half-open connection says nothing of itself.
 pub const IDLE_MAX: Duration = Duration::from_secs(60);
 /// A client that does not take its answer within this is ended.
-pub const TAKES_WITHIN: Duration = Duration::from_secs(2);
+pub const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// So many reads of one client wait for the hand at a time, and so many writes behind the one under way: as many as the standard
 /// lets a client have unanswered. Reads beyond them are told that the hand is busy; a client with more writes is ended, and the
@@ -96,7 +96,7 @@ impl Connection {
             if splitter.buffered() > 0 {
                 begun.get_or_insert_with(Instant::now);
             }
-            let deadline = begun.map_or(heard + IDLE_MAX, |begun| begun + REQUEST_WITHIN);
+            let deadline = begun.map_or(heard + IDLE_MAX, |begun| begun + REQUEST_TIMEOUT);
             tokio::select! {
                 biased;
                 // It takes the turn of a write, which may take the right as well.
@@ -142,7 +142,7 @@ impl Connection {
 }
 
 async fn tell(stream: &mut TcpStream, answer: &[u8]) -> io::Result<()> {
-    timeout(TAKES_WITHIN, stream.write_all(answer)).await?
+    timeout(WRITE_TIMEOUT, stream.write_all(answer)).await?
 }
 
 /// Whatever else is asked takes its turn among the writes.

@@ -18,12 +18,12 @@ use tokio::time::{Instant, sleep_until, timeout};
 /// The manual's "no action" (2.6.11).
 const NO_ACTION: i16 = -1;
 /// A stop is where the joints were when it was written: they went on meanwhile, at most so many counts.
-const STAYS_WITHIN: u16 = 150;
+const STAY_TOLERANCE: u16 = 150;
 /// A client that stopped the hand repeats that until it sees it rest.
 const STOP_REPEATS: Duration = Duration::from_secs(2);
 /// A client is told within this whether the hand took its stop, and it is looked so often.
 const STOP_TAKES: Duration = Duration::from_secs(1);
-const LOOK_EACH: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 
 /// Which clients may move the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -204,7 +204,7 @@ impl ClientLeases {
             if !status.may_move {
                 return true;
             }
-            match timeout(LOOK_EACH, records.next()).await {
+            match timeout(POLL_INTERVAL, records.next()).await {
                 Ok(Some(Record::Sent {
                     cause: WriteCause::Hold,
                     number,
@@ -358,7 +358,7 @@ fn values<T>(
 
 /// Whether targets keep joints about where they are, and send none elsewhere. What no target can be asks for nothing.
 fn stays(targets: &PerDof<i16>, angles: &PerDof<i16>) -> bool {
-    let is_near = |dof: Dof, to: i16| to.abs_diff(angles[dof]) <= STAYS_WITHIN;
+    let is_near = |dof: Dof, to: i16| to.abs_diff(angles[dof]) <= STAY_TOLERANCE;
     let goes = |dof: Dof, to: i16| Angle::new(to).is_ok() && !is_near(dof, to);
     let mut all = targets.iter();
     all.any(|(dof, to)| *to != NO_ACTION && is_near(dof, *to))

@@ -29,7 +29,7 @@ use tokio_util::task::AbortOnDropHandle;
 /// A client that may move the hand and asks nothing for so long may no more, unless the user says otherwise.
 pub const SILENCE: Duration = Duration::from_secs(10);
 /// How often silence is looked for.
-const LOOK_EACH: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// After the system refused a connection, for want of something, the next is looked for.
 const ACCEPT_AGAIN: Duration = Duration::from_millis(100);
 
@@ -114,7 +114,7 @@ impl Drop for Gateway {
 async fn serve(listener: TcpListener, leases: ClientLeases) {
     let mut clients = JoinSet::new();
     let mut status = leases.link.observe().status;
-    let mut tick = interval(LOOK_EACH);
+    let mut tick = interval(POLL_INTERVAL);
     tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
         tokio::select! {

@@ -9,11 +9,11 @@ use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 /// So long hands get to rest when the program ends.
-pub(crate) const ENDS_WITHIN: Duration = Duration::from_secs(1);
+pub(crate) const END_TIMEOUT: Duration = Duration::from_secs(1);
 /// A window that gives no sign of life for so long is not waited for: the slowest frames take a part of it.
-const FROZEN_AFTER: Duration = Duration::from_secs(3);
+const FREEZE_TIMEOUT: Duration = Duration::from_secs(3);
 /// How often it is looked whether the window still lives.
-const LOOK_EACH: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// What the window and whoever ends it from outside know of each other.
 #[derive(Debug)]
@@ -69,7 +69,7 @@ impl Ending {
 
     fn is_frozen(&self) -> bool {
         let lived = Moment::from_micros(self.lived_us.load(Ordering::Relaxed));
-        !self.gone.load(Ordering::Relaxed) && self.clock.now().since(lived) >= FROZEN_AFTER
+        !self.gone.load(Ordering::Relaxed) && self.clock.now().since(lived) >= FREEZE_TIMEOUT
     }
 }
 
@@ -82,10 +82,10 @@ pub(crate) async fn on_signals(ending: Arc<Ending>) {
     guard::hold_all();
     ending.want();
     loop {
-        tokio::time::sleep(LOOK_EACH).await;
+        tokio::time::sleep(POLL_INTERVAL).await;
         if ending.is_frozen() {
             // The link task goes on beside this one until all hands rest.
-            let held = tokio::task::spawn_blocking(|| guard::hold_all_within(ENDS_WITHIN));
+            let held = tokio::task::spawn_blocking(|| guard::hold_all_within(END_TIMEOUT));
             let _held = held.await;
             std::process::exit(status);
         }

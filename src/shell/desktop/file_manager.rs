@@ -6,8 +6,8 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::Duration;
 
 /// What could not begin has ended by then; a manager that runs on in the foreground has not.
-const BEGUN_WITHIN: Duration = Duration::from_secs(3);
-const LOOK_EACH: Duration = Duration::from_millis(50);
+const START_TIMEOUT: Duration = Duration::from_secs(3);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Starts the file manager at a file. Waits until it is known whether that worked.
 pub(crate) fn show(file: &Path) -> io::Result<()> {
@@ -36,11 +36,11 @@ fn command(file: &Path) -> Command {
 
 fn begin(command: &mut Command) -> io::Result<()> {
     let mut child = command.spawn()?;
-    for _ in 0..BEGUN_WITHIN.as_millis() / LOOK_EACH.as_millis() {
+    for _ in 0..START_TIMEOUT.as_millis() / POLL_INTERVAL.as_millis() {
         if let Some(status) = child.try_wait()? {
             return judge(status);
         }
-        std::thread::sleep(LOOK_EACH);
+        std::thread::sleep(POLL_INTERVAL);
     }
     reap(child);
     Ok(())

@@ -12,11 +12,11 @@ use crate::hand::Moment;
 use crate::inputs::pad::device::system_pads;
 use crate::link::{Clock, guard};
 use crate::shell::desktop::dialog::NativeDialog;
-use crate::shell::desktop::ending::{ENDS_WITHIN, Ending};
+use crate::shell::desktop::ending::{END_TIMEOUT, Ending};
 use crate::shell::desktop::file_manager;
 use crate::shell::desktop::icon::icon;
 use crate::shell::desktop::options::{DesktopStart, Drawing};
-use crate::shell::{DesktopApp, FRAME_AT_REST_WITHIN, SOFTWARE_FRAME_AT_REST_WITHIN};
+use crate::shell::{DesktopApp, REST_FRAME_INTERVAL, SOFTWARE_REST_FRAME_INTERVAL};
 use egui::{Vec2, ViewportBuilder, ViewportCommand, ViewportInfo, WindowLevel};
 use mundy::{Interest, Preferences, Subscription};
 use std::cell::RefCell;
@@ -31,7 +31,7 @@ pub(crate) const REPAINT_AT_LEAST: Duration = Duration::from_millis(250);
 const FADE_S: f32 = 0.12;
 
 /// A window that does not fill its screen, and should, is told to again after this.
-const FILL_EACH: Duration = Duration::from_millis(500);
+const FILL_INTERVAL: Duration = Duration::from_millis(500);
 
 /// How the window is to stand.
 pub(crate) fn viewport(layout: &Layout) -> ViewportBuilder {
@@ -120,7 +120,7 @@ impl Drop for Program {
     /// However the window ends, with a panic too: each hand that may move is held, and gets time to rest.
     fn drop(&mut self) {
         self.ending.ended();
-        guard::hold_all_within(ENDS_WITHIN);
+        guard::hold_all_within(END_TIMEOUT);
     }
 }
 
@@ -153,8 +153,8 @@ impl Program {
         };
         let mut app = App::new(env, start.loaded.settings);
         let at_rest = match start.drawing {
-            Drawing::OpenGl => FRAME_AT_REST_WITHIN,
-            Drawing::Software | Drawing::InPlaceOfOpenGl(_) => SOFTWARE_FRAME_AT_REST_WITHIN,
+            Drawing::OpenGl => REST_FRAME_INTERVAL,
+            Drawing::Software | Drawing::InPlaceOfOpenGl(_) => SOFTWARE_REST_FRAME_INTERVAL,
         };
         let without = match start.drawing {
             Drawing::InPlaceOfOpenGl(reason) => Some(NoticeKind::DrawnWithoutOpenGl { reason }),
@@ -357,7 +357,7 @@ struct Filling {
 impl Filling {
     /// Whether the window is to be told now: at first, and later where it has not the size of its screen, both ways.
     fn is_due(&mut self, view: &ViewportInfo, now: Moment) -> bool {
-        let waits = |told| now.since(told) < FILL_EACH;
+        let waits = |told| now.since(told) < FILL_INTERVAL;
         if self.told.is_some_and(waits) {
             return false;
         }

@@ -8,7 +8,7 @@ use crate::app::state::State;
 use crate::exhibit::run::ExhibitWish;
 use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
-use crate::shell::headless::driver::{ANSWER_WITHIN, Driver};
+use crate::shell::headless::driver::{ANSWER_TIMEOUT, Driver};
 use crate::tasks::place::PlaceStep;
 use crate::transport::Endpoint;
 use std::net::Ipv4Addr;
@@ -38,13 +38,13 @@ const PLAYED_TILE: usize = 3;
 /// An address of this computer, so that the way to it is the same everywhere.
 const OTHER_ADDRESS: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 20);
 /// A calibration wants the force steady for two seconds.
-const CHECKED_WITHIN: Duration = Duration::from_millis(2600);
+const CHECK_TIMEOUT: Duration = Duration::from_millis(2600);
 /// A port that is nobody's: nothing is opened.
 const LINE: &str = "rs485:/dev/ttyUSB0?baud=115200&id=1";
 /// The id that the hand is given.
 const OTHER_ID: i32 = 7;
 /// A hand that changes its id is found long before.
-const MOVED_WITHIN: Duration = Duration::from_secs(20);
+const MOVE_TIMEOUT: Duration = Duration::from_secs(20);
 /// Joints with thresholds that hit harder than the factory's.
 const HARD: [(Dof, i32); 3] = [
     (Dof::Middle, 1500),
@@ -83,7 +83,7 @@ impl Driver {
             SceneCard::Exhibit => self.play_at_exhibit(),
             SceneCard::ExhibitPin => self.act(Action::Exhibit(ExhibitAction::Enter)),
         }
-        self.run_for(CHECKED_WITHIN);
+        self.run_for(CHECK_TIMEOUT);
         self.hold_still();
     }
 
@@ -92,7 +92,7 @@ impl Driver {
         let id = Value::Number(OTHER_ID);
         self.act(Action::ChangePlace(ParamId::HandId, id));
         self.act(Action::Procedure(ProcedureAction::Begin));
-        self.until(MOVED_WITHIN, is_kept_open);
+        self.until(MOVE_TIMEOUT, is_kept_open);
     }
 
     fn play_at_exhibit(&mut self) {
@@ -118,7 +118,7 @@ impl Driver {
             self.act(Action::Stage(id, Some(Value::Number(grams))));
         }
         self.act(Action::Param(ParamAction::Apply));
-        self.until(ANSWER_WITHIN, |state| {
+        self.until(ANSWER_TIMEOUT, |state| {
             state.hand().params.question.is_some()
         });
     }

@@ -32,13 +32,13 @@ use tokio::runtime::{Builder, Runtime};
 /// Time between two looks at the link, as the window has between two frames at 50 Hz.
 pub const STEP: Duration = Duration::from_millis(20);
 /// Arming takes less.
-const ARM_WITHIN: Duration = Duration::from_millis(400);
+const ARM_TIMEOUT: Duration = Duration::from_millis(400);
 /// A small grid of grasps takes less.
-const GRASPS_WITHIN: Duration = Duration::from_secs(300);
+const GRASP_TIMEOUT: Duration = Duration::from_secs(300);
 /// Opening a recording and going to a moment in it: a long one is read from a slow disk.
-const REPLAYED_WITHIN: Duration = Duration::from_secs(60);
+const REPLAY_TIMEOUT: Duration = Duration::from_secs(60);
 /// A hand that is there answers long before.
-pub const ANSWER_WITHIN: Duration = Duration::from_secs(3);
+pub const ANSWER_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// What is to be shown, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -220,7 +220,7 @@ impl Driver {
     /// Lets time pass until the hand answers.
     ///
     /// # Errors
-    /// [`DriveError::NoHand`] with the first trouble, [`DriveError::Unanswered`] after [`ANSWER_WITHIN`].
+    /// [`DriveError::NoHand`] with the first trouble, [`DriveError::Unanswered`] after [`ANSWER_TIMEOUT`].
     pub fn connect(&mut self) -> Result<(), DriveError> {
         let begun = self.now();
         while !self
@@ -246,10 +246,10 @@ impl Driver {
                     trouble,
                 });
             }
-            if self.now().since(begun) >= ANSWER_WITHIN {
+            if self.now().since(begun) >= ANSWER_TIMEOUT {
                 return Err(DriveError::Unanswered {
                     endpoint: self.endpoint.clone(),
-                    after_s: ANSWER_WITHIN.as_secs(),
+                    after_s: ANSWER_TIMEOUT.as_secs(),
                 });
             }
             self.step(STEP);
@@ -293,16 +293,16 @@ impl Driver {
         path: PathBuf,
         (from, to): (Moment, Moment),
     ) -> Result<(), DriveError> {
-        let within_s = REPLAYED_WITHIN.as_secs();
+        let within_s = REPLAY_TIMEOUT.as_secs();
         let open = RecordingAction::OpenAt(path.clone(), (from, to));
         self.act(Action::Recording(open));
-        self.until(REPLAYED_WITHIN, |state| state.timeline.is_some());
+        self.until(REPLAY_TIMEOUT, |state| state.timeline.is_some());
         self.act(Action::Recording(RecordingAction::Seek(to)));
         let is_there = |state: &State| {
             let line = state.timeline.as_ref();
             line.is_some_and(|line| line.at == to && !line.waits)
         };
-        self.until(REPLAYED_WITHIN, is_there);
+        self.until(REPLAY_TIMEOUT, is_there);
         if !is_there(self.desktop_app.state()) {
             return Err(DriveError::NotReplayed { path, within_s });
         }
@@ -319,7 +319,7 @@ impl Driver {
             return;
         }
         self.act(Action::Param(ParamAction::Read));
-        self.until(ANSWER_WITHIN, |state| !state.hand().params.is_busy());
+        self.until(ANSWER_TIMEOUT, |state| !state.hand().params.is_busy());
     }
 
     /// Tries a small grid of grasps on a built-in hand, and lets it run to its end: real trials, in virtual time.
@@ -348,9 +348,9 @@ impl Driver {
         ];
         for wish in wishes {
             self.act(wish);
-            self.run_for(ARM_WITHIN);
+            self.run_for(ARM_TIMEOUT);
         }
-        self.until(GRASPS_WITHIN, |state| state.hand().series.is_none());
+        self.until(GRASP_TIMEOUT, |state| state.hand().series.is_none());
     }
 
     /// The whole window with this view open, as it is now. Time stands still, but for a view that reads from the hand when it is

@@ -28,7 +28,7 @@ const TOLD: usize = 6;
 /// Records that may wait for a reader.
 const RECORDS: usize = 64;
 /// How long the link takes to arm: it writes the limits first.
-const ARMS_AFTER: Duration = Duration::from_millis(40);
+const ARM_DELAY: Duration = Duration::from_millis(40);
 
 /// Everything there is of it.
 pub(crate) struct BoothFacts {
@@ -419,7 +419,7 @@ impl TaskHand for BoothHand {
         facts.arming = Some(number);
         let hand = self.clone();
         tokio::spawn(async move {
-            sleep(ARMS_AFTER).await;
+            sleep(ARM_DELAY).await;
             let mut facts = hand.facts();
             if facts.arming == Some(number) {
                 facts.arming = None;

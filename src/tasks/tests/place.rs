@@ -8,7 +8,7 @@ use crate::params::rows::{ParamId, Value};
 use crate::record::Saved;
 use crate::tasks::TaskError;
 use crate::tasks::place::{
-    Decisions, KEEP_WITHIN, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, change_place,
+    CONFIRM_TIMEOUT, Decisions, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, change_place,
 };
 use crate::tasks::tests::fake::{Asked, FakeHand, FakeReach, Fate, place_write};
 use crate::transport::Endpoint;
@@ -379,7 +379,7 @@ async fn without_an_answer_it_goes_back_after_fifteen_seconds_and_not_before() {
         at.unwrap_or_else(|| panic!("{wanted:?}")).1
     };
     let waited = when(PlaceStep::Returning) - when(PlaceStep::Keeping(WhichPlace::New));
-    assert!(waited >= KEEP_WITHIN && waited < KEEP_WITHIN + Duration::from_millis(5));
+    assert!(waited >= CONFIRM_TIMEOUT && waited < CONFIRM_TIMEOUT + Duration::from_millis(5));
     let words: Vec<_> = steps.into_iter().map(|(step, _)| step).collect();
     let back = words.iter().position(|step| *step == PlaceStep::Returning);
     assert_eq!(

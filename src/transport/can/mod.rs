@@ -18,7 +18,7 @@ const REMOTE: u32 = 0x4000_0000;
 const NODE: u32 = 0x3FFF;
 
 /// Who only listens is not woken when the interface goes down, so it is looked at this often.
-const LOOK_EACH: Duration = Duration::from_millis(500);
+const POLL_INTERVAL: Duration = Duration::from_millis(500);
 
 // What the kernel says.
 const ENXIO: i32 = 6;
@@ -55,7 +55,7 @@ pub fn open(interface: &str, node: Option<u32>) -> Result<CanWire, TransportErro
     Ok(CanWire {
         socket,
         place: interface.into(),
-        look: interval(LOOK_EACH),
+        look: interval(POLL_INTERVAL),
     })
 }
 

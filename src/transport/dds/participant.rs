@@ -26,7 +26,7 @@ const ENDPOINTS_MAX: usize = 16_384;
 const ANNOUNCEMENTS_KEPT: usize = 1024;
 /// How often a participant announces itself: at first, and later.
 const ANNOUNCED_AT_FIRST: Duration = Duration::from_millis(200);
-const ANNOUNCED_EACH: Duration = Duration::from_secs(3);
+const ANNOUNCE_INTERVAL: Duration = Duration::from_secs(3);
 const FIRST_ANNOUNCEMENTS: u64 = 10;
 /// For how long others believe in it without a word.
 const LEASE: Duration = Duration::from_secs(20);
@@ -34,7 +34,7 @@ const LEASE: Duration = Duration::from_secs(20);
 const LEASE_MIN: Duration = Duration::from_secs(40);
 const LEASE_MAX: Duration = Duration::from_secs(120);
 /// How often one is asked for its readers and writers that never told of them.
-const INQUIRED_EACH: Duration = Duration::from_secs(1);
+const INQUIRY_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Where one is, and where others may be.
 #[derive(Debug, Clone)]
@@ -247,7 +247,7 @@ impl Core {
             let each = if is_new {
                 ANNOUNCED_AT_FIRST
             } else {
-                ANNOUNCED_EACH
+                ANNOUNCE_INTERVAL
             };
             self.announce_at = now + each;
             self.announce(&self.places.everyone.clone());
@@ -269,7 +269,7 @@ impl Core {
         }
         for (prefix, other) in &mut self.participants {
             if now >= other.inquire_at {
-                other.inquire_at = now + INQUIRED_EACH;
+                other.inquire_at = now + INQUIRY_INTERVAL;
                 self.outgoing.extend(other.inquire(own, *prefix));
             }
         }
@@ -423,7 +423,7 @@ impl Core {
             messages,
             expires_after: announced.lease.clamp(LEASE_MIN, LEASE_MAX),
             heard: now,
-            inquire_at: now + INQUIRED_EACH,
+            inquire_at: now + INQUIRY_INTERVAL,
             publications: unknown(HAS_PUBLICATIONS_WRITER),
             subscriptions: unknown(HAS_SUBSCRIPTIONS_WRITER),
             writers: BTreeMap::new(),

@@ -11,7 +11,7 @@ const READERS_MAX: usize = 8;
 const ASKED_AGAIN: Duration = Duration::from_millis(100);
 const ASKED_AGAIN_MAX: Duration = Duration::from_secs(2);
 /// A reader is answered no more often, so that its questions cost no more than its messages.
-const ANSWERED_EACH: Duration = Duration::from_millis(5);
+const ANSWER_INTERVAL: Duration = Duration::from_millis(5);
 
 /// What is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -204,7 +204,7 @@ impl Writer {
         if proxy.answer_at > now {
             return Vec::new();
         }
-        proxy.answer_at = now + ANSWERED_EACH;
+        proxy.answer_at = now + ANSWER_INTERVAL;
         let (place, after) = (proxy.place, proxy.after);
         let datagram = || Datagram::new(own, Some(reader.prefix));
         // One that never heard what there is asks with nothing.

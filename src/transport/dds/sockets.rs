@@ -16,7 +16,7 @@ const PARTICIPANTS: u16 = 120;
 /// Participants of this address that are told of this one each by itself, for those that take no multicast.
 const NEIGHBOURS: u16 = 10;
 /// How long a thread waits for a datagram until it looks whether it is to end.
-const LOOKED_EACH: Duration = Duration::from_millis(100);
+const POLL_INTERVAL: Duration = Duration::from_millis(100);
 pub(super) const DATAGRAM_MAX: usize = 65_535;
 
 /// The sockets: of the group, of announcements, of messages.
@@ -49,7 +49,7 @@ impl Sockets {
                 Ok((first, second)) => {
                     let all = [group, first, second];
                     for socket in &all {
-                        socket.set_read_timeout(Some(LOOKED_EACH))?;
+                        socket.set_read_timeout(Some(POLL_INTERVAL))?;
                     }
                     let [_, first, _] = &all;
                     let sending = socket2::SockRef::from(first);
@@ -98,7 +98,7 @@ impl Sockets {
         take: impl FnOnce(&[u8], Ipv4Addr),
     ) {
         let Some(socket) = self.all.get(nth) else {
-            return thread::sleep(LOOKED_EACH);
+            return thread::sleep(POLL_INTERVAL);
         };
         match socket.recv_from(buffer) {
             Ok((len, SocketAddr::V4(source))) => {
@@ -107,7 +107,7 @@ impl Sockets {
             Ok(_) => {}
             Err(error) if is_waiting(&error) => {}
             // One that fails each time must not keep a core busy.
-            Err(_) => thread::sleep(LOOKED_EACH),
+            Err(_) => thread::sleep(POLL_INTERVAL),
         }
     }
 }

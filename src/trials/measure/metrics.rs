@@ -171,7 +171,7 @@ fn never_moved(angle: &TimeSeries, target: Angle, end: f64) -> bool {
     };
     let stays = |point: CurvePoint| (point.v - still.level).abs() < MOTION;
     let way = (still.level - f64::from(target.get())).abs();
-    way >= f64::from(Angle::ARRIVED_WITHIN)
+    way >= f64::from(Angle::ARRIVED_TOLERANCE)
         && angle.between(0.0, end).count() >= STEADY_LEAST
         && angle.between(0.0, end).all(stays)
 }

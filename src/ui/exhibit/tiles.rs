@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::settings::Language;
 use crate::exhibit::plan::{BothWords, ExhibitPiece};
-use crate::exhibit::run::{ExhibitWish, HELD_FOR};
+use crate::exhibit::run::{ExhibitWish, HOLD_DURATION};
 use crate::hand::Angle;
 use crate::ui::exhibit::large::{LargeText, Page};
 use crate::ui::exhibit::places::NAME;
@@ -48,7 +48,7 @@ pub(crate) fn tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>, page: Page<'_>) -> bool
     for ((index, piece), rect) in tiles.iter().enumerate().zip(rects) {
         let held = exhibit.view.held;
         let held = held.filter(|(held, _)| *held == index && restarts);
-        let part = |since| pane.state.now.since(since).as_secs_f32() / HELD_FOR.as_secs_f32();
+        let part = |since| pane.state.now.since(since).as_secs_f32() / HOLD_DURATION.as_secs_f32();
         let tile = PieceTile {
             index,
             piece,

@@ -12,7 +12,7 @@ use egui::{CornerRadius, Event, Key, Response, Ui};
 use std::time::Duration;
 
 /// So long the button is held: longer than any click.
-const HELD_FOR: Duration = Duration::from_secs(1);
+const HOLD_DURATION: Duration = Duration::from_secs(1);
 
 /// What is kept of the hold between frames.
 #[derive(Debug, Default)]
@@ -109,7 +109,7 @@ impl StartButton {
         let held = now.since(since);
         bar(ui, pane, response, held);
         ui.ctx().request_repaint();
-        let is_long = held >= HELD_FOR;
+        let is_long = held >= HOLD_DURATION;
         if is_long {
             *self = Self::default();
         }
@@ -119,7 +119,7 @@ impl StartButton {
 
 /// How much of the hold is done, along the lower edge.
 fn bar(ui: &Ui, pane: &Pane<'_>, response: &Response, held: Duration) {
-    let share = held.as_secs_f32() / HELD_FOR.as_secs_f32();
+    let share = held.as_secs_f32() / HOLD_DURATION.as_secs_f32();
     let place = response.rect.shrink(2.0);
     let place = place.with_min_y(place.bottom() - theme::STEP);
     let place = place.with_max_x(egui::lerp(place.x_range(), share.min(1.0)));

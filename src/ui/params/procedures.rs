@@ -12,7 +12,7 @@ use crate::params::rows::ParamId;
 use crate::record::Saved;
 use crate::tasks::TaskError;
 use crate::tasks::place::{
-    KEEP_WITHIN, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, taken_back_at,
+    CONFIRM_TIMEOUT, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, taken_back_at,
 };
 use crate::tasks::reset::{ResetEnd, ResetProof, ResetReport, ResetStep};
 use crate::transport::Endpoint;
@@ -120,7 +120,7 @@ fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
 fn keep_card(state: &State, change: &PlaceChange, place: WhichPlace, since: Moment) -> Card {
     let look = Look::of(state);
     let seconds = taken_back_at(since).since(state.now).as_secs_f32();
-    let part = seconds / KEEP_WITHIN.as_secs_f32();
+    let part = seconds / CONFIRM_TIMEOUT.as_secs_f32();
     let left = format!("{:.0} s", seconds.ceil());
     let lost = (!state.hand().connection.status.state.is_live()).then_some(main::REFUSED_OFFLINE);
     let keep = step(cards::KEEP, ButtonRole::Main, ProcedureAction::Keep);

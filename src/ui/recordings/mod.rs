@@ -22,9 +22,9 @@ use std::path::Path;
 use std::time::Duration;
 
 /// Other programs record too: the list is looked for again so often while it is open.
-const LOOK_EACH: Duration = Duration::from_secs(5);
+const POLL_INTERVAL: Duration = Duration::from_secs(5);
 /// How far an export is, is drawn again so often.
-const PROGRESS_EACH: Duration = Duration::from_millis(100);
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
 /// What the view needs between frames.
 #[derive(Debug, Default)]
@@ -44,11 +44,11 @@ impl RecordingsView {
         let now = ui.input(|input| input.time);
         if self
             .looked
-            .is_none_or(|at| now - at >= LOOK_EACH.as_secs_f64())
+            .is_none_or(|at| now - at >= POLL_INTERVAL.as_secs_f64())
         {
             self.looked = Some(now);
             pane.actions.push(Action::Recording(RecordingAction::Look));
-            ui.ctx().request_repaint_after(LOOK_EACH);
+            ui.ctx().request_repaint_after(POLL_INTERVAL);
         }
         kit::full_card_ui(ui, pane.look, |ui| {
             self.head_ui(ui, pane);
@@ -151,7 +151,7 @@ fn exports_ui(ui: &mut Ui, pane: &Pane<'_>) {
             ui.add(bar.desired_width(160.0).desired_height(theme::GAP));
             Label::new(&words, look.palette.text).small().ui(ui);
         });
-        ui.ctx().request_repaint_after(PROGRESS_EACH);
+        ui.ctx().request_repaint_after(PROGRESS_INTERVAL);
     }
 }
 

@@ -25,9 +25,9 @@ use std::time::Duration;
 /// Height of the line.
 pub(crate) const HEIGHT: f32 = 28.0;
 /// A hand that answers sooner is there before a word could be read.
-const ANNOUNCE_AFTER: Duration = Duration::from_millis(500);
+const ANNOUNCE_DELAY: Duration = Duration::from_millis(500);
 /// How long the newest message is shown.
-const NEWS_FOR: Duration = Duration::from_secs(10);
+const NEWS_DURATION: Duration = Duration::from_secs(10);
 
 /// What helps against a warning.
 enum Help {
@@ -222,7 +222,7 @@ fn connecting(pane: &Pane<'_>) -> Option<Warning> {
     let hand = pane.hand().connection.endpoint.as_ref()?;
     let asks = matches!(link.state, LinkState::Offline | LinkState::Identifying);
     // One that answers at once is not announced.
-    let waited = pane.state.now.since(link.since) >= ANNOUNCE_AFTER;
+    let waited = pane.state.now.since(link.since) >= ANNOUNCE_DELAY;
     let warning = || Warning::new(pane, main::CONNECTING_TITLE, pane.look.palette.accent);
     let help = Help::View(View::Connection, main::EMPTY_OPEN);
     (asks && waited && link.trouble.is_none())
@@ -403,7 +403,7 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
 fn news<'a>(pane: &Pane<'a>) -> Option<&'a Notice> {
     let now = pane.state.now;
     let all = pane.state.notices.iter();
-    let mut new = all.take_while(|notice| now.since(notice.at) < NEWS_FOR);
+    let mut new = all.take_while(|notice| now.since(notice.at) < NEWS_DURATION);
     let newest = new.next()?;
     // That the hand rests is not news beside why it was stopped.
     let is_rest = matches!(newest.what, NoticeKind::HoldConfirmed { .. });

@@ -9,7 +9,8 @@ use handscope::hand::{Dof, Force, PerDof, Speed};
 use handscope::inputs::dds::ctrl::CtrlFault;
 use handscope::inputs::dds::source::{DdsCommands, DdsSource, DdsSourceConfig};
 use handscope::inputs::follow::FollowPhase;
-use handscope::link::{ArmRequest, LeaseRefusal, Owner};
+use handscope::link::{ArmRequest, Owner};
+use handscope::record::Abort;
 use handscope::record::{Disarmed, Record, WriteCause};
 use handscope::tasks::follow::FollowEnd;
 use handscope::transport::dds::{DdsMessage, DdsWriterId};
@@ -86,7 +87,7 @@ fn a_sender_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
         stage.pass(300).await;
         assert_eq!(source.view().refused, [(CtrlFault::OtherSender, 50)].into());
         let (end, phases) = task.await.unwrap();
-        assert_eq!(end, FollowEnd::Silent);
+        assert_eq!(end, Ok(FollowEnd::Silent));
         for phase in [FollowPhase::Frozen, FollowPhase::Silent] {
             assert!(phases.contains(&phase), "{phase:?}: {phases:?}");
         }
@@ -103,7 +104,7 @@ fn a_sender_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
         assert_eq!(stage.index().last().unwrap().to, 1000);
         drop(messages);
         stage.pass(1500).await;
-        assert_eq!(task.await.unwrap().0, FollowEnd::Silent);
+        assert_eq!(task.await.unwrap().0, Ok(FollowEnd::Silent));
         check(&stage.index());
     });
 }
@@ -139,7 +140,7 @@ fn what_is_refused_moves_nothing_and_is_counted() {
         let view = source.view();
         assert_eq!((view.taken, view.refused), (0, refused.into()));
         stage.pass(1000).await;
-        assert_eq!(task.await.unwrap().0, FollowEnd::Silent);
+        assert_eq!(task.await.unwrap().0, Ok(FollowEnd::Silent));
         // A stop, where it stands.
         let sent = stage.index();
         assert!(
@@ -182,7 +183,7 @@ fn speeds_and_forces_within_what_a_person_allows_reach_the_hand_once() {
         }
         drop((messages, source));
         stage.pass(100).await;
-        assert_eq!(task.await.unwrap().0, FollowEnd::Gone);
+        assert_eq!(task.await.unwrap().0, Ok(FollowEnd::Gone));
     });
 }
 
@@ -205,8 +206,8 @@ fn speeds_of_zero_stop_the_hand_whoever_sends_them_and_whatever_else_is_in_the_m
             messages.try_send(message(SECOND, values, mode)).unwrap();
             send(&mut stage, &messages, FIRST, about(300, 300)).await;
             let end = task.await.unwrap().0;
-            let stop = LeaseRefusal::Ended(Disarmed::Stop);
-            assert_eq!(end, FollowEnd::Lease(stop), "{nth}");
+            let why = Some(Disarmed::Stop);
+            assert_eq!(end, Err(Abort::Disarmed { why }), "{nth}");
             let view = source.view();
             assert_eq!(view.odd_stops, u64::from(is_odd), "{nth}: {view:?}");
             let last = *stage.index().last().unwrap();

@@ -6,12 +6,14 @@ use crate::setup::time::in_virtual_time;
 use crate::setup::{hand, link};
 use handscope::hand::register::ANGLE_SET;
 use handscope::hand::{Dof, HandSample};
-use handscope::inputs::follow::{ENDS_AFTER, FollowPhase, HOLDS_AFTER};
+use handscope::inputs::follow::{END_TIMEOUT, FollowPhase, HOLD_TIMEOUT};
 use handscope::inputs::mirror::{MirrorScale, MirrorSource};
-use handscope::link::{Clock, LeaseRefusal, LinkHandle, Owner, Records};
+use handscope::link::{Clock, LinkHandle, Owner, Records};
+use handscope::record::Abort;
 use handscope::record::{Disarmed, LinkState, Record, WriteCause};
 use handscope::sim::{SharedHand, SimConfig};
 use handscope::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
+use handscope::tasks::program::Ended;
 use handscope::transport::pair;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -120,7 +122,7 @@ struct Stage {
     source: MirrorSource,
 }
 
-type Following = JoinHandle<(FollowEnd, Vec<FollowPhase>)>;
+type Following = JoinHandle<(Ended<FollowEnd>, Vec<FollowPhase>)>;
 
 impl Stage {
     async fn begin(share: f32) -> Self {
@@ -214,7 +216,9 @@ fn a_leader_that_rests_is_not_frozen_and_is_followed_on_when_it_moves_again() {
         let (end, phases) = following.await.unwrap();
         assert_eq!(
             end,
-            FollowEnd::Lease(LeaseRefusal::Ended(Disarmed::Stop)),
+            Err(Abort::Disarmed {
+                why: Some(Disarmed::Stop)
+            }),
             "a stop ends it as any other"
         );
         assert_eq!(phases, [FollowPhase::Waiting, FollowPhase::Following]);
@@ -233,8 +237,8 @@ fn a_lost_leader_holds_the_follower_and_ends_it_and_nothing_moves_when_it_is_bac
         let lost = stage.clock.now();
         let (end, phases) = following.await.unwrap();
         let took = stage.clock.now().since(lost);
-        assert_eq!(end, FollowEnd::Silent);
-        assert!(took > ENDS_AFTER - HOLDS_AFTER && took < ENDS_AFTER + HOLDS_AFTER);
+        assert_eq!(end, Ok(FollowEnd::Silent));
+        assert!(took > END_TIMEOUT - HOLD_TIMEOUT && took < END_TIMEOUT + HOLD_TIMEOUT);
         assert_eq!(phases.last(), Some(&FollowPhase::Silent));
         assert!(stage.source.view().owner(stage.clock.now()).is_none());
         stage.pass(1000).await;
@@ -261,10 +265,7 @@ fn a_lost_follower_ends_it_and_nothing_moves_when_it_is_back() {
         stage.pass(400).await;
         stage.follower.cut();
         let (end, _) = following.await.unwrap();
-        assert_eq!(
-            end,
-            FollowEnd::Lease(LeaseRefusal::Ended(Disarmed::LinkLost))
-        );
+        assert_eq!(end, Err(Abort::LinkLost));
         stage.pass(500).await;
         let sent = stage.follower.setpoints();
         stage.follower.mend();

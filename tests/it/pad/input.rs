@@ -3,7 +3,7 @@
 use crate::pad::setup::{BLUETOOTH, PAD, Played, STEAM, SWITCH, XBOX, angles, event, facts};
 use handscope::hand::gap::Gap;
 use handscope::hand::{Angle, Moment, PerDof};
-use handscope::inputs::pad::input::{HEARD_WITHIN, PadAim};
+use handscope::inputs::pad::input::{HEARD_TIMEOUT, PadAim};
 use handscope::inputs::pad::{
     FaceOrder, PadAction, PadControl, PadEvent, PadId, PadInput, PadMap, PadNews,
 };
@@ -315,7 +315,7 @@ fn a_dead_man_expires_when_nothing_is_heard_of_the_pad() {
         let offer = pad.offer();
         assert_eq!((offer.held, offer.at), (Some(held), heard), "{ms} ms");
     }
-    assert_eq!(HEARD_WITHIN, Duration::from_millis(200));
+    assert_eq!(HEARD_TIMEOUT, Duration::from_millis(200));
     for _ in 0..100 {
         pad.pass(150);
         assert_eq!(pad.offer().held, Some(true), "held all the time");

@@ -2,7 +2,7 @@
 
 use crate::pad::setup::{BLUETOOTH, PAD, STEAM, SWITCH, XBOX, facts};
 use handscope::hand::{Angle, Moment, PerDof};
-use handscope::inputs::pad::input::{HEARD_WITHIN, PadAim};
+use handscope::inputs::pad::input::{HEARD_TIMEOUT, PadAim};
 use handscope::inputs::pad::{
     KernelEvent, PadAction, PadControl, PadEvent, PadId, PadInput, PadMap, PadNews, PadReport,
 };
@@ -172,7 +172,7 @@ fn no_schedule_of_events_moves_a_hand_without_the_dead_man_or_loses_a_stop() {
                 continue;
             };
             let may =
-                witness.is_down && witness.is_fresh && now.since(witness.heard) <= HEARD_WITHIN;
+                witness.is_down && witness.is_fresh && now.since(witness.heard) <= HEARD_TIMEOUT;
             assert_eq!(offer.held, Some(may), "seed {seed} step {step}");
             let aims = offer.aims.as_array().iter().flatten();
             let mut aims = aims.inspect(|aim| assert!((0..=1000).contains(&aim.get())));

@@ -13,7 +13,7 @@ use handscope::record::{SaveDoubt, Saved, Verdict};
 use handscope::sim::{Personality, SaveAnswer};
 use handscope::tasks::Consent;
 use handscope::tasks::apply::{Apply, Otherwise, apply};
-use handscope::tasks::hand::{REACHED_WITHIN, answers};
+use handscope::tasks::hand::{REACH_TIMEOUT, answers};
 use handscope::tasks::read::rows;
 use handscope::tasks::save::{Save, save};
 use handscope::transport::{Pipe, pair};
@@ -33,7 +33,7 @@ async fn on_line(wire: &str) -> (LinkHandle, Arc<Line>) {
         config(wire, Arc::new(Dialled(Arc::clone(&line)))),
         &Handle::current(),
     );
-    assert!(answers(&link, REACHED_WITHIN).await);
+    assert!(answers(&link, REACH_TIMEOUT).await);
     sleep(Duration::from_secs(1)).await;
     (link, line)
 }
@@ -165,7 +165,7 @@ async fn an_acknowledgement_of_0_is_no_result_of_a_save() {
             opened(near)
         });
         let (link, _) = open(config("rs485:x", dial), &Handle::current());
-        assert!(answers(&link, REACHED_WITHIN).await);
+        assert!(answers(&link, REACH_TIMEOUT).await);
         sleep(Duration::from_secs(1)).await;
         assert_eq!(link.save().await, Ok(expected), "{save_frame:?}");
     }

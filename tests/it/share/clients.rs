@@ -2,7 +2,7 @@
 
 use crate::share::place::{Place, share, until};
 use handscope::link::PollRates;
-use handscope::share::gateway::client::REQUEST_WITHIN;
+use handscope::share::gateway::client::REQUEST_TIMEOUT;
 use handscope::share::gateway::{CLIENTS_MAX, ClientLease};
 use std::time::{Duration, Instant};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -49,14 +49,14 @@ async fn half_a_request_ends_at_its_deadline_however_slowly_it_goes_on() {
             if slow.write_all(&[*byte]).await.is_err() {
                 break;
             }
-            sleep(REQUEST_WITHIN / 8).await;
-            if begun.elapsed() > 2 * REQUEST_WITHIN {
+            sleep(REQUEST_TIMEOUT / 8).await;
+            if begun.elapsed() > 2 * REQUEST_TIMEOUT {
                 break;
             }
         }
-        is_closed(&mut slow, REQUEST_WITHIN).await
+        is_closed(&mut slow, REQUEST_TIMEOUT).await
     };
-    let (silent, slow) = tokio::join!(is_closed(&mut silent, 4 * REQUEST_WITHIN), drip);
+    let (silent, slow) = tokio::join!(is_closed(&mut silent, 4 * REQUEST_TIMEOUT), drip);
     assert!(silent && slow, "{silent} {slow}");
     serves(&place).await;
 }
@@ -109,7 +109,7 @@ async fn what_is_no_modbus_ends_at_once() {
     ] {
         let mut client = connect(&place).await;
         client.write_all(nonsense).await.unwrap();
-        assert!(is_closed(&mut client, REQUEST_WITHIN / 2).await);
+        assert!(is_closed(&mut client, REQUEST_TIMEOUT / 2).await);
     }
     serves(&place).await;
     until(|| place.gateway.clients().is_empty()).await;
@@ -157,7 +157,7 @@ async fn a_storm_of_connections_is_turned_away_and_counted_and_the_old_clients_s
     assert_eq!(place.gateway.clients().len(), CLIENTS_MAX);
     assert!(first.read_holding_registers(1546, 1).await.unwrap().is_ok());
     let mut late = storm.pop().unwrap();
-    assert!(is_closed(&mut late, REQUEST_WITHIN).await);
+    assert!(is_closed(&mut late, REQUEST_TIMEOUT).await);
     drop(storm);
     until(|| place.gateway.clients().len() == 1).await;
     serves(&place).await;

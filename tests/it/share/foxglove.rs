@@ -16,7 +16,7 @@ use handscope::record::file::format::message::{
 };
 use handscope::record::file::format::topic::Topic;
 use handscope::share::foxglove::protocol::SUBPROTOCOLS;
-use handscope::share::foxglove::viewer::{SHAKES_HANDS_WITHIN, SILENT_MAX, TAKES_WITHIN};
+use handscope::share::foxglove::viewer::{HANDSHAKE_TIMEOUT, SILENT_MAX, WRITE_TIMEOUT};
 use handscope::share::foxglove::{BACKLOG_MAX, FoxgloveConfig, FoxgloveServer, VIEWERS_MAX};
 use handscope::sim::SharedHand;
 use serde_json::{Value, json};
@@ -456,7 +456,7 @@ async fn viewers_that_stop_flood_or_talk_nonsense_change_the_links_pace_by_nothi
     assert!(alone > 1900, "{alone}");
     // All of them were ended, at the latest at their deadlines.
     until(|| stage.server.viewers().is_empty()).await;
-    assert!(is_closed(&mut half, TAKES_WITHIN).await);
+    assert!(is_closed(&mut half, WRITE_TIMEOUT).await);
     drips.await.unwrap();
     for flood in floods {
         flood.await.unwrap();
@@ -473,8 +473,8 @@ async fn half_a_request_and_a_viewer_that_is_not_there_end_at_their_deadlines() 
     let begun = Instant::now();
     let mut half = connect(stage.server.address()).await;
     half.write_all(&HELLO.as_bytes()[..60]).await.unwrap();
-    assert!(is_closed(&mut half, 4 * SHAKES_HANDS_WITHIN).await);
-    assert!(begun.elapsed() >= SHAKES_HANDS_WITHIN);
+    assert!(is_closed(&mut half, 4 * HANDSHAKE_TIMEOUT).await);
+    assert!(begun.elapsed() >= HANDSHAKE_TIMEOUT);
     let (gone, _) = Client::of(&stage.server).await;
     let (mut there, _) = Client::of(&stage.server).await;
     let answers = tokio::spawn(async move { while there.0.next().await.is_some() {} });

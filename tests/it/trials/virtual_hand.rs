@@ -164,6 +164,7 @@ impl<H: RegisterHand> VirtualHand<H> {
                 }
                 Some(Order::Stop) => stopped = true,
                 Some(Order::Disarm) => self.disarmed = true,
+                Some(order) => panic!("{order:?}"),
                 None => {}
             }
             meanwhile(&mut self.hand, &mut program);

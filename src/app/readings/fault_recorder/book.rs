@@ -16,7 +16,7 @@ pub const BEFORE: Duration = Duration::from_secs(45);
 /// Recorded after a fault: long enough to see what the hand did then, and what the user did about it.
 pub const AFTER: Duration = Duration::from_secs(15);
 /// A fault that comes while one is recorded makes the recording longer, but not beyond this after the first.
-pub const LONGEST_AFTER: Duration = Duration::from_secs(60);
+pub const AFTER_MAX: Duration = Duration::from_secs(60);
 /// Recordings kept: about 1 MB each at 100 Hz, and 4 MB for the longest of a fast link, so 48 MB at most.
 pub const RECORDINGS_MAX: usize = 12;
 /// Events noted: forty a second for as long as the longest recording.
@@ -106,7 +106,7 @@ impl FaultRecorder {
             until: now,
             faults: Vec::new(),
         });
-        running.until = now.plus(AFTER).min(running.first.plus(LONGEST_AFTER));
+        running.until = now.plus(AFTER).min(running.first.plus(AFTER_MAX));
         if running.faults.len() < FAULTS_MAX {
             running.faults.push(FaultAt { at: now, dof, what });
         } else {
@@ -331,7 +331,7 @@ mod tests {
             bench.run(1, Status::Stalled);
         }
         let longest = bench.newest();
-        assert!(longest.to.since(longest.from) <= BEFORE + LONGEST_AFTER);
+        assert!(longest.to.since(longest.from) <= BEFORE + AFTER_MAX);
     }
 
     #[test]

@@ -5,7 +5,7 @@ pub(crate) mod event;
 pub(crate) mod recording;
 
 pub use crate::app::readings::fault_recorder::book::{
-    AFTER, BEFORE, EVENTS_MAX, FaultRecorder, LONGEST_AFTER, RECORDINGS_MAX,
+    AFTER, AFTER_MAX, BEFORE, EVENTS_MAX, FaultRecorder, RECORDINGS_MAX,
 };
 pub use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind, PersonAct};
 pub use crate::app::readings::fault_recorder::recording::{

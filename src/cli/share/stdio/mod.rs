@@ -22,6 +22,7 @@ use crate::record::{Disarmed, LinkState, Record, Rest};
 use crate::tasks::drive::{Armed, STOP_LOST};
 use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
 use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
+use crate::tasks::program::Ended;
 use crate::transport::Endpoint;
 use futures::future::{BoxFuture, FutureExt as _, OptionFuture};
 use serde_json::{Value, json};
@@ -33,12 +34,12 @@ use tokio::time::{Instant, interval, sleep, timeout};
 /// Version of the lines.
 const VERSION: u64 = 1;
 /// How often it is looked how the hand stands.
-const LOOK_EACH: Duration = Duration::from_millis(20);
+const POLL_INTERVAL: Duration = Duration::from_millis(20);
 /// How long the hand may take to be armed, a stop before it included.
-const ARMS_WITHIN: Duration = Duration::from_secs(5);
+const ARM_TIMEOUT: Duration = Duration::from_secs(5);
 /// So long a lost link is waited for at the end, as the hand may go on to where the program sent it: for one dial that fails, and
 /// one that does not.
-const BACK_WITHIN: Duration = Duration::from_secs(6);
+const RECONNECT_TIMEOUT: Duration = Duration::from_secs(6);
 const LINK_LOST: RefusalKind = RefusalKind::Ended(Disarmed::LinkLost);
 /// Targets that may wait to be followed.
 const OFFERS_MAX: usize = 64;
@@ -56,7 +57,7 @@ pub(crate) struct StdioHand<'a> {
 enum Done {
     Armed(Result<Right, Refused>),
     Moved(Result<MoveReport, Refused>),
-    Followed(Result<FollowEnd, Refused>),
+    Followed(Result<Ended<FollowEnd>, Refused>),
     /// The hand was stopped; whether feedback shows that it rests.
     Stopped(anyhow::Result<()>),
     Cleared(Result<(), Refused>),
@@ -157,7 +158,7 @@ impl Script<'_> {
             "simulated": self.hand.endpoint.is_sim(),
             "tcp": self.hand.gateway.map(|at| at.to_string()),
         }}))?;
-        let mut tick = interval(LOOK_EACH);
+        let mut tick = interval(POLL_INTERVAL);
         loop {
             let task = OptionFuture::from(self.task.as_mut().map(|task| &mut task.done));
             let ending = OptionFuture::from(self.ending.as_mut().map(|ending| &mut ending.1));
@@ -187,10 +188,10 @@ impl Script<'_> {
         if link.status().owes_stop() {
             let back = async {
                 while !link.status().state.is_live() {
-                    sleep(LOOK_EACH).await;
+                    sleep(POLL_INTERVAL).await;
                 }
             };
-            let _back = timeout(BACK_WITHIN, back).await;
+            let _back = timeout(RECONNECT_TIMEOUT, back).await;
         }
         let status = link.status();
         let is_lost = status.owes_stop() && !status.state.is_live();
@@ -612,17 +613,20 @@ impl Script<'_> {
     }
 
     /// Nothing is followed any more. A script that fell silent may go on; the hand was stopped.
-    fn followed(&mut self, followed: Result<FollowEnd, Refused>) -> Result<(), NobodyReads> {
+    fn followed(&mut self, followed: Result<Ended<FollowEnd>, Refused>) -> Result<(), NobodyReads> {
         let lost = match followed {
             Err(no) => no,
-            Ok(FollowEnd::Silent | FollowEnd::Gone) => {
+            Ok(Ok(FollowEnd::Silent | FollowEnd::Gone)) => {
                 let granted = self.hand.link.grant(Owner::Task);
                 if let Some(right) = &mut self.right {
                     right.lease = granted;
                 }
                 return Ok(());
             }
-            Ok(FollowEnd::Lease(end)) => end.into(),
+            Ok(Err(why)) => match self.right() {
+                Err(no) => no,
+                Ok(_right) => Refused::new(RefusalKind::Disarmed, why.to_string()),
+            },
         };
         self.lose(&lost)
     }
@@ -634,7 +638,7 @@ async fn granted(
     held: Option<Right>,
     limits: ArmRequest,
 ) -> Result<Right, Refused> {
-    let until = Instant::now() + ARMS_WITHIN;
+    let until = Instant::now() + ARM_TIMEOUT;
     loop {
         let LinkStatus { state, holder, .. } = link.status();
         let right = match (held, holder) {
@@ -647,7 +651,7 @@ async fn granted(
                 return Err(Refused::new(RefusalKind::Taken, who));
             }
             (None, None) if !state.is_live() && Instant::now() < until => {
-                sleep(LOOK_EACH).await;
+                sleep(POLL_INTERVAL).await;
                 continue;
             }
             (None, None) => Right {
@@ -666,9 +670,9 @@ async fn granted(
 
 /// Arms the hand under a right that was granted, once a stop before is over.
 async fn armed(link: &LinkHandle, right: Right) -> Result<ArmEpoch, Refused> {
-    let until = Instant::now() + ARMS_WITHIN;
+    let until = Instant::now() + ARM_TIMEOUT;
     while link.status().state == LinkState::Holding && Instant::now() < until {
-        sleep(LOOK_EACH).await;
+        sleep(POLL_INTERVAL).await;
     }
     let why = match link.arm(right.lease, right.limits)?.await {
         Ok(epoch) => return Ok(epoch),

@@ -13,7 +13,7 @@ use tokio::time::Instant;
 /// Lines that may wait to be obeyed.
 const ASKED_MAX: usize = 64;
 /// A program that takes nothing for so long does not look at what the hand does.
-const TAKES_WITHIN: Duration = Duration::from_secs(1);
+const WRITE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Lines of standard input. The channel ends with it. `stop` is called for a stop in a line that is not whole yet, or too long.
 pub(crate) fn lines(stop: impl Fn() + Send + 'static) -> mpsc::Receiver<Vec<u8>> {
@@ -94,6 +94,6 @@ impl<'a> Told<'a> {
         if waiting == 0 || read != self.stood.0 {
             self.stood = (read, Instant::now());
         }
-        self.stood.1.elapsed() > TAKES_WITHIN
+        self.stood.1.elapsed() > WRITE_TIMEOUT
     }
 }

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 /// An angle that is unchanged for this long, counted from where motion should have been seen, is in doubt: about half a second from
 /// the last change or the command.
-pub(crate) const FROZEN_AFTER: Duration = Duration::from_millis(450);
+pub(crate) const FREEZE_TIMEOUT: Duration = Duration::from_millis(450);
 /// Readings of the angles in this time at least: a pause in reading says nothing.
 const READINGS_MIN: u32 = 5;
 /// Without readings for so long, a joint that is seen where it was may have gone and come back.
@@ -19,17 +19,17 @@ const PAUSE: Duration = Duration::from_millis(250);
 /// Readings after which a stop already relies on nothing that this joint reports …
 const SUSPECT_READINGS: u32 = 2;
 /// … over this time: a hand that acts later than most is not frozen.
-const SUSPECT_AFTER: Duration = Duration::from_millis(30);
+const SUSPECT_DELAY: Duration = Duration::from_millis(30);
 /// So many counts of ANGLE_ACT are a visible move: more than noise, and more than a joint may rest beside its target.
 const VISIBLE: f64 = 25.0;
 /// A drive that reports that it arrived may rest this many counts beside its target: some joints end before the range does.
-const ARRIVED_WITHIN: f64 = 50.0;
+const ARRIVED_TOLERANCE: f64 = 50.0;
 /// A stop waits no longer than this for joints to come back.
 const WAY_BACK_MAX: Duration = Duration::from_secs(1);
 /// A joint that goes so many counts away from its target is moved by something else …
 const AWAY: f64 = 5.0;
 /// … if it was told so long ago: the dead time, and as much for a late frame.
-const TURNS_WITHIN: Duration = Duration::from_millis(130);
+const TURN_TIMEOUT: Duration = Duration::from_millis(130);
 /// From a command to the motion (measured: 64 +- 8 ms).
 const DEAD_TIME: Duration = Duration::from_millis(64);
 /// Commands that are remembered: more than setpoint rounds fit into the time after which feedback is in doubt.
@@ -231,8 +231,8 @@ impl FeedbackWatch {
         let goes_away = way(angle.raw()) > way(joint.seen) + AWAY;
         let speed = self.commands.back().and_then(|told| told.speeds[dof]);
         let speed = f64::from(speed.unwrap_or(Speed::MAX.get())) * Speed::ANGLE_PER_UNIT;
-        let farthest = way(aim.from) + VISIBLE + speed * TURNS_WITHIN.as_secs_f64();
-        goes_away && asked.since(aim.at) >= TURNS_WITHIN || way(angle.raw()) > farthest
+        let farthest = way(aim.from) + VISIBLE + speed * TURN_TIMEOUT.as_secs_f64();
+        goes_away && asked.since(aim.at) >= TURN_TIMEOUT || way(angle.raw()) > farthest
     }
 
     /// A joint after this reading of its angle.
@@ -314,7 +314,7 @@ impl FeedbackWatch {
             // One in doubt was told to stay where it must be: that it arrived there says nothing of where it is seen.
             Status::PositionReached => target.is_some_and(|target| {
                 let way = (f64::from(target) - f64::from(joint.seen)).abs();
-                !joint.doubted && way <= ARRIVED_WITHIN
+                !joint.doubted && way <= ARRIVED_TOLERANCE
             }),
             Status::Releasing | Status::Grasping | Status::Unknown(_) => false,
         }
@@ -530,11 +530,11 @@ fn written(write: &RegisterWrite) -> PerDof<bool> {
 
 impl Unchanged {
     fn is_suspect(&self) -> bool {
-        self.readings >= SUSPECT_READINGS && self.last.since(self.since) >= SUSPECT_AFTER
+        self.readings >= SUSPECT_READINGS && self.last.since(self.since) >= SUSPECT_DELAY
     }
 
     fn is_long(&self) -> bool {
-        self.readings >= READINGS_MIN && self.last.since(self.since) >= FROZEN_AFTER
+        self.readings >= READINGS_MIN && self.last.since(self.since) >= FREEZE_TIMEOUT
     }
 }
 

@@ -1,6 +1,6 @@
 //! Notices drives that are too hot, or whose temperature is unknown, while the hand may move: the one rule for whatever moves it. Pure.
 
-use crate::hand::heat::{FRESH_FOR, HOT};
+use crate::hand::heat::{HOT, MAX_AGE};
 use crate::hand::{Dof, Group, Groups, HandSample, Moment};
 use crate::link::lease::Owner;
 use crate::record::Disarmed;
@@ -47,7 +47,7 @@ impl HeatWatch {
         }
         let read = sample.temperature.map(|read| read.received);
         let known_at = read.map_or(self.armed_at, |read| read.max(self.armed_at));
-        if now.since(known_at) > FRESH_FOR || self.implausible >= IMPLAUSIBLE_MAX {
+        if now.since(known_at) > MAX_AGE || self.implausible >= IMPLAUSIBLE_MAX {
             return Some(Disarmed::HeatUnknown);
         }
         let plausible = |dof: Dof| sample.temperature?.value[dof].documented();
@@ -62,7 +62,7 @@ fn is_plausible(sample: &HandSample) -> bool {
 }
 
 fn is_cool(sample: &HandSample, now: Moment) -> bool {
-    let read = sample.temperature.filter(|read| read.age(now) <= FRESH_FOR);
+    let read = sample.temperature.filter(|read| read.age(now) <= MAX_AGE);
     let is_cool = |celsius: Option<u8>| celsius.is_some_and(|celsius| celsius < HOT);
     read.is_some_and(|read| {
         read.value
@@ -161,7 +161,7 @@ mod tests {
 
     #[test]
     fn a_temperature_that_is_not_read_is_not_cool() {
-        let limit = FRESH_FOR.as_secs_f64();
+        let limit = MAX_AGE.as_secs_f64();
         for first in [None, Some(40)] {
             let mut armed = Armed::by(Owner::Task, first);
             assert_eq!(armed.passes(limit - 0.1), None, "{first:?}");

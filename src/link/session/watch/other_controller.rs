@@ -14,7 +14,7 @@ const REQUESTS: usize = 3;
 /// … within this time are another controller; fewer may be noise that happens to look like one.
 const WITHIN: Duration = Duration::from_secs(2);
 /// It counts as gone when it was not noticed for this long: setpoints are read back twice a second.
-const GONE_AFTER: Duration = Duration::from_secs(5);
+const GONE_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// What was noticed of another controller.
 #[derive(Debug)]
@@ -149,7 +149,7 @@ impl OtherController {
 
     /// True while another controller is at work.
     pub(crate) fn is_active(&self, now: Moment) -> bool {
-        self.noticed.is_some_and(|at| now.since(at) < GONE_AFTER)
+        self.noticed.is_some_and(|at| now.since(at) < GONE_TIMEOUT)
     }
 }
 

@@ -8,11 +8,11 @@ use crate::record::{SaveDoubt, Saved};
 use std::time::Duration;
 
 /// From SAVE until its result is given up (manual 2.2.2 says about one second; protocol choice 8).
-pub(crate) const RESULT_WITHIN: Duration = Duration::from_secs(3);
+pub(crate) const RESULT_TIMEOUT: Duration = Duration::from_secs(3);
 /// Where no result frame exists: time in which the hand writes its flash and is not asked anything.
 pub(crate) const FLASH_TAKES: Duration = Duration::from_millis(1200);
 /// A result frame up to this long after a SAVE is that one's, or its double. Only then the next may go out.
-pub(crate) const CLAIMED_FOR: Duration = Duration::from_secs(6);
+pub(crate) const CLAIM_DURATION: Duration = Duration::from_secs(6);
 
 /// How the write of SAVE itself ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -51,7 +51,7 @@ struct OpenSave {
 impl SaveWatch {
     /// Whether a SAVE may go out now; else how long it has to wait.
     pub(crate) fn may_send(&self, now: Moment) -> Result<(), Duration> {
-        let claimed = self.sent.map(|sent| sent.plus(CLAIMED_FOR));
+        let claimed = self.sent.map(|sent| sent.plus(CLAIM_DURATION));
         match claimed.filter(|until| *until > now) {
             Some(until) => Err(until.since(now)),
             None => Ok(()),
@@ -136,7 +136,7 @@ impl SaveWatch {
             return Next::Done(end);
         }
         let until = open.at.plus(match open.frame {
-            ResultFrame::Comes => RESULT_WITHIN,
+            ResultFrame::Comes => RESULT_TIMEOUT,
             ResultFrame::None => FLASH_TAKES,
         });
         if now < until {

@@ -24,7 +24,7 @@ const LEAVE: i16 = -1;
 /// What some hands take it for.
 const CLAMPED_LEAVE: i16 = 1000;
 /// Where a joint is that was left alone, as far as readings of a moving one tell.
-const LEFT_WITHIN: i16 = 50;
+const LEFT_TOLERANCE: i16 = 50;
 
 /// What one write says of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -349,7 +349,7 @@ impl SetpointWatch {
             Wrote::Nothing => false,
             Wrote::Leave => {
                 let is_clamped = self.clamps_leave && read == CLAMPED_LEAVE;
-                let is_there = angle.is_some_and(|angle| near(angle, LEFT_WITHIN));
+                let is_there = angle.is_some_and(|angle| near(angle, LEFT_TOLERANCE));
                 read == LEAVE || is_clamped || is_there
             }
             Wrote::Value(value) => near(value, self.register.rounds_by()),

@@ -15,7 +15,7 @@ use crate::record::{Direction, Entry, LinkState, Piece, PieceKind, Record, Write
 use std::time::Duration;
 
 /// A grip that stays the same is told again after this.
-const GRIP_EACH: Duration = Duration::from_secs(1);
+const GRIP_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The word of a refusal to arm among events; the words are the reason in JSON.
 pub(crate) const ARM_REFUSED: &str = "arm_refused";
@@ -101,7 +101,7 @@ impl EntryEncoder {
     /// The grip, if it changed or was not told for a while.
     fn tell(&mut self, grip: &Grip, at: Moment) -> Option<Message> {
         let is_told = |(told, before): (Moment, [GripState; 6])| {
-            before == states(grip) && at.since(told) < GRIP_EACH
+            before == states(grip) && at.since(told) < GRIP_INTERVAL
         };
         if self.told.is_some_and(is_told) {
             return None;
