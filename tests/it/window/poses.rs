@@ -169,7 +169,8 @@ fn stop_fault_and_a_lost_link_end_a_sequence_and_nothing_is_sent_afterwards() {
         bench.click("Start");
         bench.run(600);
         break_off(&mut bench);
-        bench.wait(3000);
+        // A stop stays pending for three seconds.
+        bench.wait(5000);
         let PlayPhase::Ended(Err(why)) = phase(&bench) else {
             panic!("{:?}", phase(&bench));
         };
