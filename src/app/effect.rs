@@ -3,11 +3,11 @@
 use crate::app::action::Action;
 use crate::app::checkup::CheckupAction;
 use crate::app::hand::HoldKey;
-use crate::app::hands::action::HandsAction;
+use crate::app::hands::list::HandsAction;
 use crate::app::inputs::InputAction;
-use crate::app::params::action::ParamAction;
+use crate::app::params::state::ParamAction;
 use crate::app::procedures::procedure::ProcedureAction;
-use crate::app::trials::action::TrialAction;
+use crate::app::trials::state::TrialAction;
 use crate::poses::Play;
 
 /// What an action does.

@@ -8,8 +8,8 @@ use egui::{
 };
 use handscope::app::action::Action;
 use handscope::app::connect::SimDial;
-use handscope::app::env::choose::NoChoice;
-use handscope::app::env::reveal::no_reveal;
+use handscope::app::env::NoChoice;
+use handscope::app::env::no_reveal;
 use handscope::app::env::{Env, LostSteps};
 use handscope::app::program::App;
 use handscope::app::settings::PlotWindow;

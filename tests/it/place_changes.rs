@@ -7,7 +7,7 @@ use crate::setup::program::{env, start};
 use crate::setup::soak;
 use handscope::app::action::Action;
 use handscope::app::env::Env;
-use handscope::app::params::action::ParamAction;
+use handscope::app::params::state::ParamAction;
 use handscope::app::procedures::{Procedure, ProcedureAction, ProcedureStage};
 use handscope::app::program::App;
 use handscope::app::settings::Settings;

@@ -1,6 +1,7 @@
 //! The check-up that runs at a hand, and what the last one came to.
 
 use crate::app::env::running::Running;
+use crate::checkup::CheckupPlan;
 use crate::checkup::report::{CheckupReport, PAGE_FILE};
 use crate::checkup::run::CheckupView;
 use crate::hand::{ArmEpoch, Moment};
@@ -77,4 +78,13 @@ impl HandCheckup {
     pub const fn is_reading(&self) -> bool {
         self.looking.is_some()
     }
+}
+
+/// What the user asks for about check-ups. The hand is empty, they say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
+pub enum CheckupAction {
+    /// Run one, in the arming that is in force. Needs arming.
+    Start(CheckupPlan),
+    /// Arm the hand, and run one as soon as that holds.
+    ArmAndStart(CheckupPlan),
 }

@@ -1,16 +1,14 @@
 //! What the program stands on: its runtime and clock, how wires are opened, how files are asked for, and tasks beside the window.
 
-pub mod choose;
 pub mod day_folder;
-pub mod reveal;
 pub(crate) mod running;
 
-use crate::app::env::choose::ChooseFile;
-use crate::app::env::reveal::Reveal;
 use crate::inputs::pad::device::OpenPads;
 use crate::link::{Clock, Wake};
 use crate::transport::Dial;
-use std::path::PathBuf;
+use futures::future::BoxFuture;
+use std::io;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -51,5 +49,43 @@ impl LostSteps {
     /// How many since the last call.
     pub(crate) fn take(&self) -> u64 {
         self.0.swap(0, Ordering::Relaxed)
+    }
+}
+
+/// Shows a file in the system's file manager. Called off the window's thread; comes back once it is known whether that began.
+pub type Reveal = Arc<dyn Fn(&Path) -> io::Result<()> + Send + Sync>;
+
+/// Where there is no file manager: says so.
+pub fn no_reveal() -> Reveal {
+    Arc::new(|_| Err(io::Error::other("there is no file manager")))
+}
+
+/// Asks the user where a file should go. Called on the window's thread; what it gives is awaited elsewhere.
+pub trait ChooseFile: Send + Sync + 'static {
+    /// Resolves to the chosen place; `None` if there was no choice. `suggested` is a file name.
+    fn choose(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>>;
+
+    /// Resolves to a file that is there, to be read; `None` if there was no choice.
+    fn open(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>>;
+
+    /// Resolves to a folder that is there, to put another into; `None` if there was no choice.
+    fn folder(&self) -> BoxFuture<'static, Option<PathBuf>>;
+}
+
+/// Where nobody can be asked: nothing is ever chosen.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoChoice;
+
+impl ChooseFile for NoChoice {
+    fn choose(&self, _suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
+        Box::pin(std::future::ready(None))
+    }
+
+    fn open(&self, _suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
+        Box::pin(std::future::ready(None))
+    }
+
+    fn folder(&self) -> BoxFuture<'static, Option<PathBuf>> {
+        Box::pin(std::future::ready(None))
     }
 }

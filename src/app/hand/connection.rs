@@ -1,12 +1,11 @@
 //! One connection with a hand: its link, what that says of itself, and what was asked of it. A new one takes its place whole.
 
 use crate::app::env::Env;
-use crate::app::hand::open::{OpenLink, Pending};
 use crate::app::notices::RequestKind;
 use crate::hand::{AngleReading, HandCommand, HandSample, Moment, PerDof, Setpoints};
 use crate::link::{
     self, ArmRequest, HoldToRun, Lease, LinkConfig, LinkHandle, LinkStats, LinkStatus, Owner,
-    PollRates, RequestError, Traffic,
+    PollRates, Records, RequestError, Traffic,
 };
 use crate::record::{Disarmed, Hold, LinkState, Record, Rest};
 use crate::store::BackgroundJob;
@@ -275,4 +274,56 @@ impl Connection {
         let is_of_now = self.seen_from.is_none_or(|from| angle.received > from);
         is_of_now.then_some(&angle.value)
     }
+}
+
+#[derive(Debug)]
+pub(crate) struct OpenLink {
+    pub(crate) link: LinkHandle,
+    pub(crate) records: Records,
+    /// The right to move the hand that the user at this window, or their task, had last.
+    pub(crate) lease: Option<Lease>,
+}
+
+impl OpenLink {
+    /// With this link and what is heard of it.
+    pub(crate) fn new((link, records): (LinkHandle, Records)) -> Self {
+        Self {
+            lease: None,
+            link,
+            records,
+        }
+    }
+
+    /// The right of the user at this window to move the hand; granted anew if another has it, or none.
+    pub(crate) fn take_lease(&mut self) -> Lease {
+        let held = self.link.status().holder;
+        let held = held.filter(|holder| holder.owner == Owner::Person);
+        self.granted(held.map(|holder| holder.lease), Owner::Person)
+    }
+
+    /// The right of a task that this person starts. What they set meanwhile passes too.
+    pub(crate) fn lend_lease(&mut self) -> Lease {
+        self.granted(None, Owner::Task)
+    }
+
+    fn granted(&mut self, held: Option<Lease>, owner: Owner) -> Lease {
+        let lease = held.unwrap_or_else(|| self.link.grant(owner));
+        self.lease = Some(lease);
+        lease
+    }
+}
+
+/// A hand that is being left: it was told to hold.
+#[derive(Debug)]
+pub(crate) struct Leaving {
+    /// Where to go then; `None` = nowhere.
+    pub(crate) to: Option<Endpoint>,
+    pub(crate) told: Moment,
+}
+
+/// A request whose end is awaited.
+#[derive(Debug)]
+pub(crate) struct Pending {
+    pub(crate) what: RequestKind,
+    pub(crate) end: Option<BackgroundJob<Result<(), RequestError>>>,
 }

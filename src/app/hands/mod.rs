@@ -1,6 +1,5 @@
 //! The hands of the program: each composed of its parts, and the list of them.
 
-pub mod action;
 mod free_force;
 pub mod grip;
 pub mod hand;

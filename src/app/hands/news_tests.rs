@@ -1,9 +1,7 @@
 //! What is heard of a link changes what is shown and told, and nothing else. No link is open here.
 
 use crate::app::ctx::Ctx;
-use crate::app::env::choose::NoChoice;
-use crate::app::env::reveal::no_reveal;
-use crate::app::env::{Env, LostSteps};
+use crate::app::env::{Env, LostSteps, NoChoice, no_reveal};
 use crate::app::hand::controls::JointChange;
 use crate::app::hands::Hand;
 use crate::app::notices::{Level, NoticeKind, Notices};

@@ -2,19 +2,17 @@
 //! belongs to one connection with one hand.
 
 mod grant;
-pub(crate) mod mirror;
 mod work;
 
 use crate::app::env::running::Running;
-use crate::app::inputs::mirror::HandMirror;
 use crate::app::slot::SlotId;
 use crate::inputs::dds::source::{DdsSource, DdsView};
 use crate::inputs::follow::FollowLimits;
-use crate::inputs::mirror::MirrorScale;
+use crate::inputs::mirror::{MirrorScale, MirrorSource, MirrorView};
 use crate::inputs::pad::source::{PadSource, PadView};
 use crate::inputs::pad::{PadMap, PadTrouble};
 use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
-use crate::link::Owner;
+use crate::link::{LinkHandle, LinkStopper, Owner};
 use crate::share::dds::{DdsTold, SharedOnDds};
 use crate::share::fleet::{FleetCard, OtherFollowers};
 use crate::share::foxglove::FoxgloveServer;
@@ -209,5 +207,39 @@ impl HandInputs {
     pub const fn is_open(&self) -> bool {
         let is_served = self.gateway_at.is_some() || self.foxglove_at.is_some();
         is_served || self.stream_at.is_some() || self.pad_view.is_some() || self.dds_view.is_some()
+    }
+}
+
+/// Another hand of this window that is watched. Closed with its link.
+#[derive(Debug)]
+pub struct HandMirror {
+    pub leader: SlotId,
+    /// Which share of its bends would be followed.
+    pub scale: MirrorScale,
+    /// What is known of it.
+    pub view: MirrorView,
+    pub(crate) source: MirrorSource,
+    pub(crate) stopper: LinkStopper,
+}
+
+impl HandMirror {
+    /// Watches from now on. Must be called within a tokio runtime.
+    pub(crate) fn open(leader: SlotId, link: &LinkHandle, scale: MirrorScale) -> Self {
+        Self {
+            leader,
+            scale,
+            view: MirrorView::default(),
+            source: MirrorSource::open(link.records(), scale),
+            stopper: link.stopper(),
+        }
+    }
+
+    pub(crate) fn look(&mut self) {
+        self.view = self.source.view();
+    }
+
+    /// True once its link was closed.
+    pub(crate) fn is_over(&self) -> bool {
+        self.source.is_over()
     }
 }

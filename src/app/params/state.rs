@@ -2,9 +2,6 @@
 
 use crate::app::env::running::Running;
 use crate::app::notices::NoticeKind;
-use crate::app::params::compared::Compared;
-use crate::app::params::refusal::{ParamRefusal, rest_refusal};
-use crate::app::params::running::{FilesRead, ParamsEnd};
 use crate::app::readings::Freshness;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Moment, Span};
@@ -15,12 +12,16 @@ use crate::params::danger::{Danger, worse};
 use crate::params::file::ParamsFile;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{ParamDifference, Params};
-use crate::record::Saved;
+use crate::record::{LinkState, Rest, Saved};
 use crate::store::{BackgroundJob, FileError};
 use crate::system::SystemError;
-use crate::tasks::{BackupError, ParamStep};
+use crate::tasks::apply::Applied;
+use crate::tasks::read::ReadRows;
+use crate::tasks::save::SaveReport;
+use crate::tasks::{BackupError, ParamStep, TaskError};
 use crate::transport::Endpoint;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -366,5 +367,143 @@ impl ParamsState {
     pub(crate) const fn link_lost(&mut self, now: Moment) {
         self.lost_at = Some(now);
         self.is_asked = false;
+    }
+}
+
+/// One thing that the user asks for.
+#[derive(Debug, Clone, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
+pub enum ParamAction {
+    /// Read all rows. Writes nothing.
+    Read,
+    /// Write the staged rows, except those that decide where the hand answers, and read them back.
+    Apply,
+    /// Put back what the last apply changed, in the same way.
+    Undo,
+    /// Write the hand's parameters to its flash, after a backup.
+    Save,
+    /// Stage these values and ask for the same. Declined, they are not staged any more.
+    SaveWith(Params),
+    /// Confirm: go on in spite of the dangers shown.
+    Agree,
+    /// Decline: nothing is written.
+    Decline,
+    /// Stage the hand's current speeds and forces as the defaults after power-up. Writes nothing.
+    CopyLive,
+    /// Drop everything that is staged.
+    UnstageAll,
+    /// Ask for a path, and write a parameter file there.
+    Dump,
+    /// Compare a parameter file with the hand: a backup or one whose path was typed, else one that is asked for. Writes nothing.
+    Open(Option<PathBuf>),
+    /// Tick a row of the file, or not.
+    Tick(ParamId),
+    /// Stage the rows that are ticked. Writes nothing.
+    StageTicked,
+    CloseFile,
+}
+
+/// Why not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ParamRefusal {
+    /// No hand answers.
+    NoHand,
+    /// Setpoints pass.
+    Armed,
+    /// A stop is being confirmed.
+    Holding,
+    /// A joint moves.
+    Moving,
+    /// Whether the hand rests is not known.
+    RestUnknown,
+    /// Something is under way.
+    Busy,
+    /// Nothing is staged that can be applied.
+    NothingStaged,
+    /// The last apply changed nothing, or there was none.
+    NothingToUndo,
+    /// The hand holds what was saved last.
+    NothingToSave,
+    /// There is no folder for the backup.
+    NoFolder,
+    /// No row was read.
+    NothingRead,
+}
+
+/// Why nothing may be done now that needs a hand that is there, disarmed and at rest.
+pub const fn rest_refusal(link: &LinkStatus) -> Option<ParamRefusal> {
+    match (link.state, link.rest) {
+        (LinkState::Offline | LinkState::Identifying, _) => Some(ParamRefusal::NoHand),
+        (LinkState::Armed, _) => Some(ParamRefusal::Armed),
+        (LinkState::Holding, _) => Some(ParamRefusal::Holding),
+        (LinkState::Monitoring | LinkState::Fault, Rest::Moving) => Some(ParamRefusal::Moving),
+        (LinkState::Monitoring | LinkState::Fault, Rest::Unknown) => {
+            Some(ParamRefusal::RestUnknown)
+        }
+        (LinkState::Monitoring | LinkState::Fault, Rest::Resting) => None,
+    }
+}
+
+/// A file that is compared with the hand.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    pub name: String,
+    /// What it holds.
+    pub file: ParamsFile,
+    ticked: BTreeSet<ParamId>,
+}
+
+impl Compared {
+    /// Ticks the rows in which the hand differs. A row that says where a hand is found belongs to one hand, so only the user ticks it.
+    pub fn new(name: String, file: ParamsFile, live: &Params) -> Self {
+        let differ = live.differences(&file.params).into_iter();
+        let ticked = differ.map(|row| row.id).filter(|id| !id.is_place());
+        Self {
+            ticked: ticked.collect(),
+            name,
+            file,
+        }
+    }
+
+    /// Whether a row is ticked.
+    pub fn is_ticked(&self, id: ParamId) -> bool {
+        self.ticked.contains(&id)
+    }
+
+    /// Ticks a row that the file holds, or takes the tick away.
+    pub fn tick(&mut self, id: ParamId) {
+        if self.file.params.get(id).is_some() && !self.ticked.remove(&id) {
+            self.ticked.insert(id);
+        }
+    }
+
+    /// The rows that are ticked.
+    pub fn chosen(&self) -> Params {
+        self.file.params.only(|id| self.is_ticked(id))
+    }
+}
+
+/// How a task ended.
+#[derive(Debug)]
+pub(crate) enum ParamsEnd {
+    Read(ReadRows),
+    Applied(Params, Result<Applied, TaskError>),
+    Saved(Result<SaveReport, TaskError>),
+}
+
+/// What the files of a hand hold.
+#[derive(Debug)]
+pub(crate) struct FilesRead {
+    pub(crate) files: Backups,
+    pub(crate) known: Result<Known, FileError>,
+    pub(crate) backups: io::Result<Vec<Backup>>,
+}
+
+impl FilesRead {
+    pub(crate) fn of(files: Backups) -> Self {
+        Self {
+            known: files.known(),
+            backups: files.backups(),
+            files,
+        }
     }
 }

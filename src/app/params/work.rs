@@ -6,10 +6,10 @@ use crate::app::env::Env;
 use crate::app::env::running::{Running, Steps};
 use crate::app::files::open::open;
 use crate::app::hand::Connection;
-use crate::app::params::action::ParamAction;
-use crate::app::params::compared::Compared;
-use crate::app::params::running::{FilesRead, ParamsEnd};
-use crate::app::params::state::{Doing, ParamsState, SaveEnd, WriteQuestion, WriteRequest};
+use crate::app::params::state::{
+    Compared, Doing, FilesRead, ParamAction, ParamsEnd, ParamsState, SaveEnd, WriteQuestion,
+    WriteRequest,
+};
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Dof, HandSample, Moment};
 use crate::link::{LinkHandle, LinkStatus};

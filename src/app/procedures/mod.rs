@@ -1,7 +1,6 @@
 //! What is done to a hand only under a card: a change of its place, a return to the factory's parameters, a calibration.
 
 pub mod procedure;
-pub(crate) mod reach;
 pub mod work;
 
 pub use crate::app::procedures::procedure::{

@@ -1,14 +1,17 @@
 //! What a card shows and what the user may decide on it. Plain values; asks nobody.
 
 use crate::app::env::running::Running;
-use crate::app::procedures::reach::GoRequest;
 use crate::hand::Moment;
+use crate::link::{LinkHandle, Wake};
 use crate::params::danger::Danger;
 use crate::params::place::{PlacePair, WhichPlace};
-use crate::tasks::TaskError;
 use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Checks, Offsets};
+use crate::tasks::hand::{REACH_TIMEOUT, answers};
 use crate::tasks::place::{PlaceChange, PlaceReport, PlaceStep};
 use crate::tasks::reset::{ResetReport, ResetStep};
+use crate::tasks::{Reach, TaskError};
+use crate::transport::Endpoint;
+use futures::future::BoxFuture;
 use std::path::PathBuf;
 use tokio::sync::{mpsc, oneshot};
 
@@ -152,4 +155,35 @@ impl PlaceProcedure {
             }
         }
     }
+}
+
+/// Asks the program for the link at a place.
+#[derive(Debug)]
+pub(crate) struct GoRequest {
+    pub(crate) place: Endpoint,
+    pub(crate) opened: oneshot::Sender<LinkHandle>,
+}
+
+/// Asks the program to go there.
+pub(crate) struct Asking {
+    pub(crate) requests: mpsc::Sender<GoRequest>,
+    pub(crate) wake: Wake,
+}
+
+impl Reach for Asking {
+    type Link = LinkHandle;
+
+    async fn reach(&mut self, place: &Endpoint) -> Option<LinkHandle> {
+        let (opened, open) = oneshot::channel();
+        let place = place.clone();
+        self.requests.send(GoRequest { place, opened }).await.ok()?;
+        (self.wake)();
+        let hand = open.await.ok()?;
+        answers(&hand, REACH_TIMEOUT).await.then_some(hand)
+    }
+}
+
+/// What the user decides on the card; a card that is gone decides nothing.
+pub(crate) fn decided(answer: oneshot::Receiver<bool>) -> BoxFuture<'static, bool> {
+    Box::pin(async { answer.await.unwrap_or(false) })
 }

@@ -5,10 +5,9 @@ use crate::app::env::running::Running;
 use crate::app::hand::Connection;
 use crate::app::params::{ParamsState, rest_refusal};
 use crate::app::procedures::procedure::{
-    CalibrateProcedure, PlaceProcedure, Procedure, ProcedureAction, ProcedureStage, Procedures,
-    ResetProcedure,
+    Asking, CalibrateProcedure, GoRequest, PlaceProcedure, Procedure, ProcedureAction,
+    ProcedureStage, Procedures, ResetProcedure, decided,
 };
-use crate::app::procedures::reach::{Asking, GoRequest, decided};
 use crate::app::settings::Settings;
 use crate::hand::HandSample;
 use crate::hand::overshoot::OvershootMap;

@@ -4,7 +4,7 @@ use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::hand::HoldKey;
 use crate::app::hands::Hand;
-use crate::app::hands::action::HandsAction;
+use crate::app::hands::list::HandsAction;
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::slot::SlotId;

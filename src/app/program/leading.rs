@@ -1,7 +1,7 @@
 //! One hand of the window that leads another: which one is watched, who may lead, and what a stop of it means.
 
 use crate::app::env::Env;
-use crate::app::inputs::mirror::HandMirror;
+use crate::app::inputs::HandMirror;
 use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::inputs::mirror::MirrorScale;

@@ -12,7 +12,6 @@ mod pinch;
 mod pose_actions;
 pub(crate) mod quirk_notes;
 mod saved;
-mod start;
 mod taring;
 
 use crate::app::action::Action;
@@ -84,12 +83,12 @@ impl App {
 
     /// At start: the given hand, else the remembered one, else the built-in one. Remembers nothing.
     pub fn open(&mut self, endpoint: Option<Endpoint>, now: Moment) {
-        start::open(&mut self.state, endpoint, &self.env, now);
+        open(&mut self.state, endpoint, &self.env, now);
     }
 
     /// At start: further hands, each in a slot of its own; the first stays shown. Remembers nothing.
     pub fn open_beside(&mut self, endpoints: Vec<Endpoint>, now: Moment) {
-        start::open_beside(&mut self.state, endpoints, &self.env, now);
+        open_beside(&mut self.state, endpoints, &self.env, now);
     }
 
     /// Records nothing in this run, whatever the settings say.
@@ -459,5 +458,44 @@ impl App {
                 .for_each(HandRecording::end);
         }
         goes
+    }
+}
+
+/// Opens the given hand, else the remembered one, else the built-in one.
+pub(super) fn open(state: &mut State, endpoint: Option<Endpoint>, env: &Env, now: Moment) {
+    let endpoint = endpoint
+        .or_else(|| remembered(state, now))
+        .unwrap_or_else(Endpoint::sim);
+    state.now = now;
+    hands::with_shown(state, env, |hand, settings, ctx| {
+        hand.go(Some(endpoint), ctx);
+        hand.apply_settings(settings);
+    });
+}
+
+/// Opens further hands, each in a slot of its own; the first stays shown.
+pub(super) fn open_beside(state: &mut State, endpoints: Vec<Endpoint>, env: &Env, now: Moment) {
+    let first = state.hand().label.slot;
+    for endpoint in endpoints {
+        state.now = now;
+        let is_new = !hands::is_open_elsewhere(state, &endpoint, None);
+        if is_new && state.hands.has_room() {
+            state.hands.add(now);
+            open(state, Some(endpoint), env, now);
+        }
+    }
+    state.hands.show(first);
+}
+
+fn remembered(state: &mut State, now: Moment) -> Option<Endpoint> {
+    let text = state.settings.endpoint.clone()?;
+    match text.parse() {
+        Ok(endpoint) => Some(endpoint),
+        Err(_) => {
+            state
+                .notices
+                .push(now, NoticeKind::EndpointIgnored { text });
+            None
+        }
     }
 }

@@ -1,9 +1,7 @@
 //! Which recording holds a stretch of time: the one that is replayed, or one that was recorded since the program began, whose
 //! moments are the program's own.
 
-use crate::app::recordings::action::RecordingAction;
-use crate::app::recordings::list::RecordingsState;
-use crate::app::recordings::timeline::Timeline;
+use crate::app::recordings::list::{RecordingAction, RecordingsState, Timeline};
 use crate::hand::Moment;
 use std::time::Duration;
 

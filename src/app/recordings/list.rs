@@ -1,11 +1,12 @@
 //! Which recordings there are. They are looked for off the window's thread, and what was read of a file that did not change is kept.
 
 use crate::app::env::Env;
+use crate::app::recordings::about::RecordingNote;
 use crate::app::recordings::budget::{self, PlannedDeletion};
-use crate::app::recordings::export::ExportProgress;
+use crate::app::recordings::export::{ExportProgress, RecordingExport};
 use crate::app::recordings::item::RecordingItem;
 use crate::hand::Moment;
-use crate::record::file::parts;
+use crate::record::file::{FileMark, parts};
 use crate::store::{BackgroundJob, on_thread};
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
@@ -157,4 +158,94 @@ fn is_ended(path: &Path) -> io::Result<bool> {
     file.seek(SeekFrom::End(-8))?;
     file.read_exact(&mut last)?;
     Ok(first == last)
+}
+
+/// What the user asks about recordings.
+#[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
+pub enum RecordingAction {
+    /// Record hands from now on, or no longer.
+    Record(bool),
+    /// Record built-in hands, too, or no longer.
+    RecordSimulated(bool),
+    /// Record into this folder from the next recording on; without a path the user is asked for one.
+    ChooseFolder(Option<PathBuf>),
+    /// Record into the user's documents again.
+    DefaultFolder,
+    /// Look again which recordings there are.
+    Look,
+    /// Replay this file: one of the list, or any other.
+    Open(PathBuf),
+    /// Replay this file from the first of two moments on, the stretch between them again and again.
+    OpenAt(PathBuf, (Moment, Moment)),
+    /// Go back to the live hand.
+    Close,
+    /// Show where this file lies, in the system's file manager.
+    Reveal(PathBuf),
+    /// Write a recording, or a stretch of it, in a format of others.
+    Export(RecordingExport),
+    /// Give a recording a name; empty takes it away.
+    Name(PathBuf, String),
+    /// Give a recording a star, or take it away.
+    Star(PathBuf, bool),
+    /// Ask whether this recording is to be deleted.
+    AskDelete(PathBuf),
+    /// Delete the recording that was asked about.
+    Delete,
+    /// Delete nothing.
+    KeepIt,
+    /// Delete what the budget has no room for, now.
+    MakeRoom,
+    /// Give a star to all that the budget has no room for.
+    KeepPlanned,
+    /// Show this moment.
+    Seek(Moment),
+    /// Let time go on, or stop it.
+    Run(bool),
+    /// How fast time goes, 0.1 to 10.
+    Pace(f32),
+    /// Go to the next reading, or to the one before.
+    Step(bool),
+    /// Play this stretch again and again, or all once.
+    Loop(Option<(Moment, Moment)>),
+    /// Draw this recording over the replayed one, or none any more.
+    Beside(Option<PathBuf>),
+    /// Align both: this moment of the replayed recording with that moment of the other.
+    Align(Moment, Moment),
+    /// Change the words of the note at a moment; of no words, take it away.
+    EditNote(Moment, String),
+}
+
+/// What the time line of a replayed recording shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Timeline {
+    /// The file.
+    pub path: PathBuf,
+    /// The recording's name, or that of its file.
+    pub title: String,
+    /// When it began, as [`RecordingItem::began`](crate::app::recordings::RecordingItem::began) tells it.
+    pub began: String,
+    /// The hand's endpoint.
+    pub hand: String,
+    pub first: Moment,
+    pub last: Moment,
+    /// The moment that is shown.
+    pub at: Moment,
+    /// Time goes on.
+    pub runs: bool,
+    /// How fast.
+    pub pace: f32,
+    /// The stretch that is played again and again.
+    pub looped: Option<(Moment, Moment)>,
+    /// What happened.
+    pub marks: Arc<Vec<FileMark>>,
+    /// The notes in force.
+    pub notes: Arc<Vec<RecordingNote>>,
+    /// Greatest force over its length.
+    pub strip: Arc<Vec<f32>>,
+    /// The moment that was asked for is not shown yet.
+    pub waits: bool,
+    /// Whether a part of the file cannot be read.
+    pub damaged: bool,
+    /// The live hand behind it is armed, moves, or has a fault: said beside the way back.
+    pub live_needs_eyes: bool,
 }

@@ -1,8 +1,6 @@
 //! Recordings on disk: the one being made, the list of those there are, and one that is replayed.
 
 pub mod about;
-pub mod action;
-pub mod beside;
 pub mod budget;
 pub mod export;
 pub(crate) mod folder;
@@ -10,14 +8,11 @@ pub mod holding;
 pub mod item;
 pub mod list;
 pub mod recording;
-pub mod timeline;
 
 pub use crate::app::recordings::about::{RecordingAbout, RecordingNote};
-pub use crate::app::recordings::action::RecordingAction;
-pub use crate::app::recordings::beside::BesideRecording;
 pub use crate::app::recordings::budget::PlannedDeletion;
 pub use crate::app::recordings::export::{ExportProgress, RecordingExport, RecordingForm};
 pub use crate::app::recordings::holding::replay_of;
 pub use crate::app::recordings::item::RecordingItem;
-pub use crate::app::recordings::list::{OwnRecording, RecordingsState};
-pub use crate::app::recordings::timeline::Timeline;
+pub use crate::app::recordings::list::{OwnRecording, RecordingAction, RecordingsState, Timeline};
+pub use crate::app::recordings::recording::BesideRecording;

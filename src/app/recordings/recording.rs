@@ -7,12 +7,13 @@ use crate::app::notices::{HandNotices, NoticeKind};
 use crate::app::settings::{Settings, Zoom};
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
+use crate::history::History;
 use crate::link::{LinkHandle, LinkObserver};
 use crate::params::file::ParamsFile;
 use crate::params::values::Params;
 use crate::record::file::recorder::RecorderInput;
 use crate::record::file::{
-    Opening, PART_LENGTH, Recorder, RecorderStatus, RecordingPlan, SystemDisk,
+    FileMark, Opening, PART_LENGTH, Recorder, RecorderStatus, RecordingPlan, SystemDisk,
 };
 use crate::record::{Entry, Event, EventKind};
 use crate::store::BackgroundJob;
@@ -224,5 +225,28 @@ mod tests {
             entries > 2 * ROOM && readings > 1000,
             "{entries} {readings}"
         );
+    }
+}
+
+/// A recording that is drawn over another.
+#[derive(Debug)]
+pub struct BesideRecording {
+    /// Its name, or that of its file.
+    pub title: String,
+    pub first: Moment,
+    /// What happened.
+    pub marks: Vec<FileMark>,
+    /// What was measured.
+    pub history: History,
+    /// The moment of the replayed recording at which both are aligned.
+    pub own: Moment,
+    /// The moment of this recording.
+    pub other: Moment,
+}
+
+impl BesideRecording {
+    /// Seconds from the times of the replayed recording to those of this one.
+    pub fn offset_s(&self) -> f64 {
+        self.other.secs() - self.own.secs()
     }
 }

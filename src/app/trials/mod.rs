@@ -1,7 +1,6 @@
 //! Grasp trials in the window: the plan that is being written, the series that runs, sessions, and their files.
 //! What a trial is and how it is measured is in [`crate::trials`]. Draws nothing.
 
-pub mod action;
 pub mod comparison;
 #[cfg(test)]
 pub(crate) mod comparison_tests;
@@ -9,19 +8,16 @@ pub(crate) mod files;
 pub mod form;
 pub mod lines;
 pub mod overshoot;
-pub mod run;
 pub mod state;
 pub mod work;
 
-pub use crate::app::trials::action::TrialAction;
 pub use crate::app::trials::comparison::{
     ComparedLine, ComparedLines, ComparedRow, Comparison, LineGroup, RowKey, SessionDifference,
 };
 pub use crate::app::trials::lines::{JointLines, TrialQuantity};
 pub use crate::app::trials::overshoot::HandOvershoot;
-pub use crate::app::trials::run::SeriesRun;
 pub use crate::app::trials::state::{
-    Search, SeriesKind, SeriesPlan, SessionId, SessionOrigin, SessionTrial, TrialSession,
-    TrialsState,
+    Search, SeriesKind, SeriesPlan, SessionId, SessionOrigin, SessionTrial, TrialAction,
+    TrialSession, TrialsState,
 };
-pub use crate::app::trials::work::StartRefusal;
+pub use crate::app::trials::work::{SeriesRun, StartRefusal};

@@ -5,10 +5,10 @@ use crate::app::env::running::Running;
 use crate::app::hand::Connection;
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
-use crate::app::trials::action::TrialAction;
 use crate::app::trials::form::tags;
-use crate::app::trials::run::{SeriesEnd, SeriesRun};
-use crate::app::trials::state::{Search, SeriesPlan, SessionId, SessionOrigin, TrialsState};
+use crate::app::trials::state::{
+    Search, SeriesPlan, SessionId, SessionOrigin, TrialAction, TrialsState,
+};
 use crate::hand::{ArmEpoch, Dof, HandSample, Moment};
 use crate::link::quirks::book;
 use crate::link::{Lease, LinkHandle};
@@ -18,12 +18,13 @@ use crate::tasks::drive::Armed;
 use crate::tasks::series::{self, SeriesStep};
 use crate::trials::overshoot_file::{MeasuredClose, closes_of};
 use crate::trials::plan_settings::to_settings;
-use crate::trials::search::SettingsSearch;
+use crate::trials::search::{Finding, SettingsSearch};
 use crate::trials::series::SeriesView;
 use crate::trials::session::SessionHead;
 use crate::trials::{EarlyEnd, Stage, TrialPlan, estimate};
 use futures::future::ready;
 use futures::{Stream, StreamExt as _, stream};
+use std::time::Duration;
 use tokio::sync::oneshot;
 
 /// Why a series cannot begin, besides its plan.
@@ -254,5 +255,49 @@ fn session_head(plan: TrialPlan, connection: &Connection) -> SessionHead {
         simulated: connection.is_simulated(),
         quirks: connection.endpoint.as_ref().map(quirks),
         ..SessionHead::begin(plan, now)
+    }
+}
+
+/// How a series ended: why early, if it did, and what a search came to.
+#[derive(Debug)]
+pub(crate) struct SeriesEnd {
+    pub(crate) aborted: Option<Abort>,
+    pub(crate) finding: Option<Finding>,
+}
+
+/// A running series.
+#[derive(Debug)]
+pub struct SeriesRun {
+    /// Where it stands.
+    pub view: SeriesView,
+    /// Its arming.
+    pub epoch: ArmEpoch,
+    /// Where its trials go.
+    pub session: SessionId,
+    pub plan: TrialPlan,
+    /// When the trial of now began, or the wait for it.
+    pub since: Moment,
+    /// What times of the trial of now are counted from: the closing command, and its beginning before that.
+    pub zero: Moment,
+    /// About how long one trial takes with the rest after it.
+    pub(crate) each: Duration,
+    pub(crate) end: Option<oneshot::Sender<Abort>>,
+    pub(crate) task: Option<Running<SeriesStep, SeriesEnd>>,
+}
+
+impl SeriesRun {
+    /// About how long the rest of it takes, if nothing ends it.
+    pub fn left(&self, now: Moment) -> Duration {
+        let ahead = self.view.total.saturating_sub(self.view.number);
+        let ahead = self.each * u32::try_from(ahead).unwrap_or(u32::MAX);
+        ahead + self.each.saturating_sub(now.since(self.since))
+    }
+
+    /// Ends it early. The stop itself is the caller's, and the task sees to it.
+    pub(crate) fn end(&mut self, why: Abort) {
+        if let Some(end) = self.end.take() {
+            // One that is over hears it no more.
+            let _heard = end.send(why);
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! The system's own file dialogs. Reads and writes no file.
 
-use crate::app::env::choose::ChooseFile;
+use crate::app::env::ChooseFile;
 use futures::future::BoxFuture;
 use std::path::PathBuf;
 

@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
-use crate::app::params::action::ParamAction;
+use crate::app::params::state::ParamAction;
 use crate::app::procedures::{Procedure, ProcedureAction, ProcedureStage};
 use crate::app::state::State;
 use crate::exhibit::run::ExhibitWish;

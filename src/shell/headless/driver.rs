@@ -3,10 +3,10 @@
 
 use crate::app::action::Action;
 use crate::app::connect::SimDial;
-use crate::app::env::choose::NoChoice;
-use crate::app::env::reveal::no_reveal;
+use crate::app::env::NoChoice;
+use crate::app::env::no_reveal;
 use crate::app::env::{Env, LostSteps};
-use crate::app::params::action::ParamAction;
+use crate::app::params::state::ParamAction;
 use crate::app::program::App;
 use crate::app::recordings::RecordingAction;
 use crate::app::settings::Settings;

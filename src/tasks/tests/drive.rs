@@ -93,12 +93,14 @@ async fn whatever_breaks_a_program_off_it_is_named_and_the_hand_is_stopped() {
             Abort::LinkLost,
         ),
         (|hand| hand.arm_as(2), Abort::ArmedAnew),
-        (|hand| hand.disarm(), Abort::Disarmed { why: None }),
         (
-            |hand| {
-                hand.disarm();
-                hand.facts().status.disarmed = Some(Disarmed::Stale);
+            |hand| hand.disarm(),
+            Abort::Disarmed {
+                why: Some(Disarmed::Person),
             },
+        ),
+        (
+            |hand| hand.disarm_for(Disarmed::Stale),
             Abort::Disarmed {
                 why: Some(Disarmed::Stale),
             },
@@ -123,8 +125,7 @@ async fn whatever_breaks_a_program_off_it_is_named_and_the_hand_is_stopped() {
                     celsius: 71,
                     ..WELL
                 });
-                hand.disarm();
-                hand.facts().status.disarmed = Some(Disarmed::Hot);
+                hand.disarm_for(Disarmed::Hot);
             },
             Abort::Heat {
                 dof: Dof::ThumbRotate,
@@ -134,10 +135,8 @@ async fn whatever_breaks_a_program_off_it_is_named_and_the_hand_is_stopped() {
         ),
         (
             |hand| {
-                hand.disarm();
-                let mut facts = hand.facts();
-                facts.status.disarmed = Some(Disarmed::OtherController);
-                facts.status.foreign_setpoint = Some(SetpointConflict {
+                hand.disarm_for(Disarmed::OtherController);
+                hand.facts().status.foreign_setpoint = Some(SetpointConflict {
                     register: SetpointRegister::AngleSet,
                     dof: Dof::Index,
                     holds: Some(300),

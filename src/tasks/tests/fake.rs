@@ -257,6 +257,14 @@ impl Facts {
 }
 
 impl FakeHand {
+    /// The session disarms it for this reason.
+    pub(crate) fn disarm_for(&self, why: Disarmed) {
+        let mut facts = self.facts();
+        facts.book.end(why);
+        facts.disarm();
+        facts.status.disarmed = Some(why);
+    }
+
     fn hold(&self, why: Disarmed) {
         let at = self.clock.now();
         let mut facts = self.facts();

@@ -273,7 +273,12 @@ async fn whatever_ends_it_nothing_is_sent_afterwards() {
             |bench| bench.end.take().unwrap().send(()).unwrap(),
             Abort::Person,
         ),
-        (|bench| bench.hand.disarm(), Abort::Disarmed { why: None }),
+        (
+            |bench| bench.hand.disarm(),
+            Abort::Disarmed {
+                why: Some(Disarmed::Person),
+            },
+        ),
         (
             |bench| bench.hand.facts().status.state = LinkState::Fault,
             Abort::Fault { joint: None },
@@ -387,8 +392,7 @@ async fn a_hand_that_holds_no_action_where_it_was_told_nothing_is_not_another_co
 #[tokio::test(start_paused = true)]
 async fn a_disarming_for_another_controller_is_called_so() {
     let bench = Bench::opened().await;
-    bench.hand.disarm();
-    bench.hand.facts().status.disarmed = Some(Disarmed::OtherController);
+    bench.hand.disarm_for(Disarmed::OtherController);
     bench.at(angles(90.5), false, 20).await;
     let report = bench.task.await.unwrap();
     assert_eq!(report.end, Err(Abort::OtherController { wrote: None }));

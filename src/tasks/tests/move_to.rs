@@ -4,7 +4,7 @@ use crate::hand::grip::GripEstimator;
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Speed, Target};
 use crate::link::{ArmRequest, Owner};
 use crate::poses::way::Targets;
-use crate::record::{Abort, LinkState, Rest};
+use crate::record::{Abort, Disarmed, LinkState, Rest};
 use crate::tasks::TaskHand;
 use crate::tasks::drive::Armed;
 use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
@@ -134,7 +134,12 @@ async fn thumb_and_index_do_not_meet_on_the_way() {
 async fn whatever_ends_it_nothing_is_sent_afterwards() {
     type Break = fn(&FakeHand);
     let ways: [(Break, Abort); 4] = [
-        (|hand| hand.disarm(), Abort::Disarmed { why: None }),
+        (
+            |hand| hand.disarm(),
+            Abort::Disarmed {
+                why: Some(Disarmed::Person),
+            },
+        ),
         (
             |hand| hand.facts().status.state = LinkState::Fault,
             Abort::Fault { joint: None },

@@ -6,7 +6,7 @@ use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Sp
 use crate::link::Owner;
 use crate::poses::library::{EntryId, SequenceId};
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView};
-use crate::record::{Abort, LinkState};
+use crate::record::{Abort, Disarmed, LinkState};
 use crate::tasks::TaskHand;
 use crate::tasks::drive::Armed;
 use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
@@ -200,10 +200,10 @@ async fn a_sequence_goes_from_pose_to_pose_and_ends() {
 #[tokio::test(start_paused = true)]
 async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
     type Break = fn(&mut Bench);
-    let none = Abort::Disarmed { why: None };
+    let by = |why| Abort::Disarmed { why: Some(why) };
     let ways: [(Break, Ended<PlayEnd>); 7] = [
-        (|bench| bench.hand.stop(), Err(none)),
-        (|bench| bench.hand.disarm(), Err(none)),
+        (|bench| bench.hand.stop(), Err(by(Disarmed::Stop))),
+        (|bench| bench.hand.disarm(), Err(by(Disarmed::Person))),
         (
             |bench| bench.hand.facts().status.state = LinkState::Fault,
             Err(Abort::Fault { joint: None }),

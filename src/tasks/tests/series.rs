@@ -3,8 +3,7 @@
 use crate::hand::{Angle, ArmEpoch, Dof, Fault, Faults, Force, HandSample, PerDof, Speed, Target};
 use crate::link::Stop;
 use crate::link::{Owner, PollRates};
-use crate::record::Abort;
-use crate::record::LinkState;
+use crate::record::{Abort, Disarmed, LinkState};
 use crate::tasks::TaskHand;
 use crate::tasks::drive::{Armed, Driven, EndReport};
 use crate::tasks::series::{RATES, SeriesStep, trials};
@@ -272,7 +271,13 @@ async fn a_lost_link_and_another_arming_end_it() {
             Some(Stop::LinkLost),
         ),
         (|hand| hand.arm_as(2), Abort::ArmedAnew, None),
-        (|hand| hand.disarm(), Abort::Disarmed { why: None }, None),
+        (
+            |hand| hand.disarm(),
+            Abort::Disarmed {
+                why: Some(Disarmed::Person),
+            },
+            None,
+        ),
     ];
     for (break_off, why, stop) in ways {
         let bench = Bench::running().await;

@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::hands::Hand;
 use crate::app::hands::Mover;
-use crate::app::hands::action::HandsAction;
+use crate::app::hands::list::HandsAction;
 use crate::app::slot::SlotId;
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;

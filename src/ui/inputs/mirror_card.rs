@@ -1,7 +1,7 @@
 //! Another hand of this window that can lead the shown one: which one, how much of it is followed, and whether it may.
 
 use crate::app::action::Action;
-use crate::app::inputs::mirror::HandMirror;
+use crate::app::inputs::HandMirror;
 use crate::app::inputs::{InputAction, InputSource};
 use crate::app::slot::SlotId;
 use crate::app::state::State;

@@ -1,7 +1,7 @@
 //! A card over a window of one button: what reaches what.
 
 use crate::app::action::Action;
-use crate::app::params::action::ParamAction;
+use crate::app::params::state::ParamAction;
 use crate::app::settings::{Language, Theme};
 use crate::ui::kit::card::{ButtonRole, Card, CardView, Choice};
 use crate::ui::kit::controls::{Button, pressed};

@@ -2,7 +2,7 @@
 //! Nothing is written while it is open.
 
 use crate::app::action::Action;
-use crate::app::params::action::ParamAction;
+use crate::app::params::state::ParamAction;
 use crate::app::params::state::{WriteQuestion, WriteRequest};
 use crate::app::state::State;
 use crate::hand::impact::{NOTABLE_G, SLOWEST, overshoot_g};

@@ -1,8 +1,8 @@
 //! A file of parameters beside the hand, row by row with ticks. What is ticked is staged by an action; nothing is written.
 
 use crate::app::action::Action;
-use crate::app::params::action::ParamAction;
-use crate::app::params::compared::Compared;
+use crate::app::params::state::Compared;
+use crate::app::params::state::ParamAction;
 use crate::params::rows::ParamId;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::params::flash::moment;

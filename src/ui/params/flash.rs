@@ -1,9 +1,9 @@
 //! What is known of the hand's flash: SAVE and what came of it, what was saved last, backups, files. Every change is an action.
 
 use crate::app::action::Action;
-use crate::app::params::action::ParamAction;
-use crate::app::params::refusal::ParamRefusal;
 use crate::app::params::state::Doing;
+use crate::app::params::state::ParamAction;
+use crate::app::params::state::ParamRefusal;
 use crate::params::backups::Backup;
 use crate::params::file::SaveVerdict;
 use crate::ui::kit::path_field::path_ui;

@@ -9,8 +9,8 @@ pub(crate) mod procedures;
 pub(crate) mod table;
 
 use crate::app::action::Action;
-use crate::app::params::action::ParamAction;
-use crate::app::params::refusal::ParamRefusal;
+use crate::app::params::state::ParamAction;
+use crate::app::params::state::ParamRefusal;
 use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::params::table::ShownRows;
 use crate::ui::text::{device, errors};

@@ -1,6 +1,6 @@
 //! Sentences of what the hand keeps: rows, verdicts, SAVE, files.
 
-use crate::app::params::refusal::ParamRefusal;
+use crate::app::params::state::ParamRefusal;
 use crate::app::params::state::{Doing, SaveEnd};
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::rows::ParamId;

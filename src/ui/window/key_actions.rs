@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::hand::HoldKey;
 use crate::app::hands::Hand;
-use crate::app::hands::action::HandsAction;
+use crate::app::hands::list::HandsAction;
 use crate::app::settings::Zoom;
 use crate::app::state::State;
 use crate::poses::Preset;

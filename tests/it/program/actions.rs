@@ -9,7 +9,7 @@ use handscope::app::effect::Effect;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::app::files::export::{Export, TrafficForm};
 use handscope::app::hand::HoldKey;
-use handscope::app::hands::action::HandsAction;
+use handscope::app::hands::list::HandsAction;
 use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::layout::Layout;
 use handscope::app::params::ParamAction;

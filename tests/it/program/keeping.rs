@@ -6,7 +6,7 @@ use handscope::app::action::Action;
 use handscope::app::env::Env;
 use handscope::app::files::settings_file::load;
 use handscope::app::notices::NoticeKind;
-use handscope::app::params::action::ParamAction;
+use handscope::app::params::state::ParamAction;
 use handscope::app::program::App;
 use handscope::app::settings::{Settings, Theme};
 use handscope::app::state::State;

@@ -12,7 +12,7 @@ use handscope::app::action::Action;
 use handscope::app::checkup::CheckupAction;
 use handscope::app::env::Env;
 use handscope::app::exhibit::{ExhibitAction, Exhibition};
-use handscope::app::hands::action::HandsAction;
+use handscope::app::hands::list::HandsAction;
 use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::procedures::procedure::ProcedureAction;
 use handscope::app::settings::Settings;

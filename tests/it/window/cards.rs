@@ -4,7 +4,7 @@ use crate::setup::window::{Bench, CLEAR_ERROR, LARGE, Role, SPEED_SET};
 use egui::{Key, Vec2, vec2};
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
-use handscope::app::params::action::ParamAction;
+use handscope::app::params::state::ParamAction;
 use handscope::app::procedures::{Procedure, ProcedureAction};
 use handscope::app::settings::Language;
 use handscope::hand::{Dof, Span, register};

@@ -7,7 +7,7 @@ use egui::{Key, Modifiers};
 use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::app::hands::Hand;
-use handscope::app::hands::action::HandsAction;
+use handscope::app::hands::list::HandsAction;
 use handscope::app::notices::NoticeKind;
 use handscope::app::settings::Settings;
 use handscope::app::slot::SlotId;

@@ -4,7 +4,7 @@
 use crate::setup::window::{ANGLE_SET, Bench, Role};
 use handscope::app::action::Action;
 use handscope::app::hands::Hand;
-use handscope::app::hands::action::HandsAction;
+use handscope::app::hands::list::HandsAction;
 use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::notices::NoticeKind;
 use handscope::app::slot::SlotId;

@@ -5,7 +5,7 @@ use crate::window::tune;
 use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::app::hands::Mover;
-use handscope::app::hands::action::HandsAction;
+use handscope::app::hands::list::HandsAction;
 use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::notices::NoticeKind;
 use handscope::app::recordings::recording::HandRecording;
