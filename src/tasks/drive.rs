@@ -5,7 +5,7 @@ use crate::hand::{ArmEpoch, HandSample, Moment, Setpoints};
 use crate::link::{Clock, Lease, LeaseRefusal, LinkStatus, PollRates, Records, Stop};
 use crate::record::{Abort, Disarmed, LinkState, Record, SetpointConflict, WriteCause};
 use crate::tasks::hand::TaskHand;
-use crate::tasks::program::{Ended, Order, Program, Seen};
+use crate::tasks::program::{AfterAbort, Ended, Order, Program, Seen};
 use crate::trials::limits::{Stall, fault, heat_reason};
 use futures::{FutureExt as _, Stream, StreamExt as _};
 use std::pin::pin;
@@ -162,15 +162,12 @@ pub async fn drive<H: TaskHand, P: Program>(
         if !report(&mut program, sent.as_ref()) {
             program.abort(Abort::NotKept, clock.now());
         }
-        let is_early = matches!(program.ended(), Some(Err(why)) if why != Abort::TakenOver);
-        if !is_early && order != Some(Order::Stop) {
-            continue;
-        }
-        if P::WAITS_FOR_REST {
-            stop = Some(hand.stopped().await);
-        } else if hand.check(at.lease).is_err() || hand.status().armed.is_some() {
-            // Where control outlasts the arming, the session has stopped the hand already.
-            hand.stop();
+        match (program.ended(), P::AFTER_ABORT) {
+            (Some(Err(Abort::TakenOver)), _) => {}
+            (Some(Err(_)), AfterAbort::Stop) => stop = Some(hand.stopped().await),
+            (Some(Err(Abort::LinkLost)), AfterAbort::StopAfterLinkLoss) => hand.stop(),
+            _ if order == Some(Order::Stop) => stop = Some(hand.stopped().await),
+            _ => {}
         }
     }
     report(&mut program, None);
@@ -199,9 +196,11 @@ impl<H: TaskHand> Driving<'_, H> {
                 self.sample = *sample;
                 program.read(&self.sample, fresh, now);
             }
-            Some(Record::Sent { at, cause, .. }) if cause == WriteCause::Setpoint => {
-                program.sent(at);
-            }
+            Some(Record::Sent {
+                at,
+                cause: WriteCause::Setpoint,
+                ..
+            }) => program.sent(at),
             _ => {}
         }
     }

@@ -13,7 +13,7 @@ use crate::link::{ArmRequest, Clock, HoldToRun, Lease};
 use crate::record::{Abort, Disarmed};
 use crate::tasks::drive::{Arming, DriveStart, drive};
 use crate::tasks::hand::TaskHand;
-use crate::tasks::program::{Ended, Order, Program, Seen};
+use crate::tasks::program::{AfterAbort, Ended, Order, Program, Seen};
 use futures::stream::poll_fn;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -133,7 +133,7 @@ struct FollowRun {
 impl Program for FollowRun {
     type Input = Offer;
     type Outcome = FollowEnd;
-    const WAITS_FOR_REST: bool = false;
+    const AFTER_ABORT: AfterAbort = AfterAbort::StopAfterLinkLoss;
 
     fn input(&mut self, mut offer: Offer, _seen: &Seen<'_>) -> Option<Order> {
         let locked = self.start.terms.borrow().locked;

@@ -8,7 +8,7 @@ use crate::poses::way::{Targets, way};
 use crate::record::{Abort, Rest};
 use crate::tasks::drive::{Armed, drive};
 use crate::tasks::hand::TaskHand;
-use crate::tasks::program::{Ended, Order, Program, Seen};
+use crate::tasks::program::{AfterAbort, Ended, Order, Program, Seen};
 use futures::stream::pending;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -81,7 +81,7 @@ struct Moving {
 impl Program for Moving {
     type Input = Abort;
     type Outcome = MoveEnd;
-    const WAITS_FOR_REST: bool = false;
+    const AFTER_ABORT: AfterAbort = AfterAbort::StopAfterLinkLoss;
 
     fn input(&mut self, why: Abort, seen: &Seen<'_>) -> Option<Order> {
         self.abort(why, seen.now);

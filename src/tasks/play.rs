@@ -12,7 +12,7 @@ use crate::poses::way::Targets;
 use crate::record::Abort;
 use crate::tasks::drive::{Armed, drive};
 use crate::tasks::hand::TaskHand;
-use crate::tasks::program::{Ended, Order, Program, Seen};
+use crate::tasks::program::{AfterAbort, Ended, Order, Program, Seen};
 use futures::stream::poll_fn;
 use tokio::sync::mpsc;
 
@@ -111,7 +111,7 @@ impl Playing {
 impl Program for Playing {
     type Input = PlayCommand;
     type Outcome = PlayEnd;
-    const WAITS_FOR_REST: bool = false;
+    const AFTER_ABORT: AfterAbort = AfterAbort::Nothing;
 
     fn input(&mut self, command: PlayCommand, seen: &Seen<'_>) -> Option<Order> {
         match command {

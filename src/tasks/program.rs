@@ -28,6 +28,18 @@ pub enum Order {
     GiveBack(Disarmed),
 }
 
+/// What the loop does after an early end (`handscope help safety` has the table). The session has disarmed the hand then, and held it
+/// where that is the rule for all. Whoever was granted control meanwhile is left alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AfterAbort {
+    /// Stop the hand, also one that is back from a lost link or that another controller moves, and wait for rest: nobody may be near.
+    Stop,
+    /// Stop a hand whose link was lost, once it is back. Nothing is waited for.
+    StopAfterLinkLoss,
+    /// Nothing: the user at the window decides.
+    Nothing,
+}
+
 /// What is known of the hand in one step.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen<'a> {
@@ -58,8 +70,8 @@ pub trait Program {
     type Outcome: Copy;
     /// How often it wants the hand to be read; `None` leaves that as it is.
     const RATES: Option<PollRates> = None;
-    /// Whether its early end is reported only once feedback says how the stop went.
-    const WAITS_FOR_REST: bool = true;
+    /// What the loop does after an early end.
+    const AFTER_ABORT: AfterAbort = AfterAbort::Stop;
 
     /// Receives user input.
     fn input(&mut self, input: Self::Input, seen: &Seen<'_>) -> Option<Order>;

@@ -307,8 +307,10 @@ fn ended(end: Ended<FollowEnd>, sender: &str) -> String {
             Disarmed::FrozenFeedback => {
                 return format!("{why}: the hand is held where it must be, look at it");
             }
+            Disarmed::Person => return format!("{why}, and goes where it was told to go last"),
             _ => why.to_string(),
         },
+        Err(why @ Abort::OtherController { .. }) => return format!("{why}, and may move the hand"),
         Err(why) => why.to_string(),
     };
     format!("{why}: the hand was stopped")

@@ -20,6 +20,9 @@ use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
 use tokio::time::sleep;
 
+/// A task that follows, with its end and its phases.
+type Following = JoinHandle<(Ended<FollowEnd>, Vec<FollowPhase>)>;
+
 const LIMITS: FollowLimits = FollowLimits {
     lead: 120,
     rate: 600,
@@ -107,11 +110,7 @@ impl Stage {
     }
 
     /// A person lets what is offered here move the hand.
-    pub(super) fn follow(
-        &self,
-        lease: Lease,
-        taken: mpsc::Receiver<Offer>,
-    ) -> JoinHandle<(Ended<FollowEnd>, Vec<FollowPhase>)> {
+    pub(super) fn follow(&self, lease: Lease, taken: mpsc::Receiver<Offer>) -> Following {
         let (link, start) = (self.link.clone(), self.beginning(lease));
         tokio::spawn(async move {
             let mut phases = Vec::new();
@@ -126,13 +125,7 @@ impl Stage {
     }
 
     /// A person lets this source move the hand.
-    pub(super) fn start(
-        &self,
-        lease: Lease,
-    ) -> (
-        mpsc::Sender<Offer>,
-        JoinHandle<(Ended<FollowEnd>, Vec<FollowPhase>)>,
-    ) {
+    pub(super) fn start(&self, lease: Lease) -> (mpsc::Sender<Offer>, Following) {
         let (offers, taken) = mpsc::channel(64);
         (offers, self.follow(lease, taken))
     }
@@ -321,7 +314,7 @@ fn whoever_moved_the_hand_before_is_refused_and_a_stop_ends_all() {
         let person = stage.link.grant(Owner::Person);
         let here = stage.index().len();
         stage.send(&offers, |_| 0, 300).await;
-        assert!(matches!(task.await.unwrap().0, Err(_)));
+        task.await.unwrap().0.unwrap_err();
         assert_eq!(stage.index().len(), here, "nothing of the one before");
         let mut setpoints = Setpoints::none(stage.link.status().armed.unwrap());
         setpoints.angle[Dof::Index] = Some(Target::Go(Angle::MAX));

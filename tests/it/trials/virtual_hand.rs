@@ -164,8 +164,7 @@ impl<H: RegisterHand> VirtualHand<H> {
                 }
                 Some(Order::Stop) => stopped = true,
                 Some(Order::Disarm) => self.disarmed = true,
-                Some(order) => panic!("{order:?}"),
-                None => {}
+                order => assert_eq!(order, None, "the hand is armed once"),
             }
             meanwhile(&mut self.hand, &mut program);
         }

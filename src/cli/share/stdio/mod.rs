@@ -56,7 +56,7 @@ pub(crate) struct StdioHand<'a> {
 /// How a task ended.
 enum Done {
     Armed(Result<Right, Refused>),
-    Moved(Result<MoveReport, Refused>),
+    Moved(Result<Box<MoveReport>, Refused>),
     Followed(Result<Ended<FollowEnd>, Refused>),
     /// The hand was stopped; whether feedback shows that it rests.
     Stopped(anyhow::Result<()>),
@@ -443,7 +443,7 @@ impl Script<'_> {
                 seen,
                 clock: link.clock(),
             };
-            Done::Moved(Ok(move_to(&link, armed, start).await))
+            Done::Moved(Ok(Box::new(move_to(&link, armed, start).await)))
         };
         self.begin(Task {
             id,
