@@ -164,7 +164,9 @@ pub async fn drive<H: TaskHand, P: Program>(
         }
         match (program.ended(), P::AFTER_ABORT) {
             (Some(Err(Abort::TakenOver)), _) => {}
-            (Some(Err(_)), AfterAbort::Stop) => stop = Some(hand.stopped().await),
+            (Some(Err(Abort::NotKept)), _) | (Some(Err(_)), AfterAbort::Stop) => {
+                stop = Some(hand.stopped().await);
+            }
             (Some(Err(Abort::LinkLost)), AfterAbort::StopAfterLinkLoss) => hand.stop(),
             _ if order == Some(Order::Stop) => stop = Some(hand.stopped().await),
             _ => {}

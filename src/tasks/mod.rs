@@ -1,5 +1,8 @@
 //! What takes several steps at a hand, each task written once as an async function. The window and the command line call the
 //! same. A task tells its steps as they begin and gives its result at the end; it asks the user nothing itself and draws nothing.
+//!
+//! What moves an armed hand over time is a [`Program`](program::Program): a pure state machine. [`drive`](drive::drive) is the one loop
+//! that runs them and has the safety rules.
 #![warn(missing_docs)]
 
 pub mod apply;

@@ -15,6 +15,7 @@ pub(crate) mod program;
 pub(crate) mod recorded;
 #[cfg(unix)]
 pub(crate) mod referee;
+pub(crate) mod shape;
 pub(crate) mod skipped;
 pub(crate) mod soak;
 pub(crate) mod states;

@@ -1,9 +1,11 @@
 //! The real program as a process: runs it to its end, or keeps a simulated hand running beside a test. Claims nothing.
 
+use crate::setup::shape::check_shape;
 #[cfg(unix)]
 use nix::sys::signal::{Signal, kill};
 #[cfg(unix)]
 use nix::unistd::Pid;
+use std::ffi::OsStr;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
@@ -21,21 +23,50 @@ pub(crate) struct Ended {
     pub(crate) out: String,
     pub(crate) err: String,
     pub(crate) took: Duration,
+    /// Our command that it was, if it was one.
+    json_of: Option<String>,
 }
 
 impl Ended {
-    /// Every line of standard output as JSON.
+    /// Every line of standard output as JSON, which has the shape that is documented.
     pub(crate) fn lines(&self) -> Vec<serde_json::Value> {
-        self.out
+        let lines: Vec<_> = self
+            .out
             .lines()
             .map(|line| serde_json::from_str(line).unwrap())
-            .collect()
+            .collect();
+        if let Some(command) = self
+            .json_of
+            .as_ref()
+            .filter(|_| matches!(self.code, Some(0 | 1)))
+        {
+            check_shape(command, &lines);
+        }
+        lines
     }
 
     pub(crate) fn ok(self) -> Self {
         assert_eq!(self.code, Some(0), "{}{}", self.out, self.err);
         self
     }
+}
+
+/// Commands that have commands of their own.
+const GROUPS: [&str; 1] = ["params"];
+
+/// The name of our command that a process runs.
+fn json_of(command: &Command) -> Option<String> {
+    let is_ours = command.get_program() == env!("CARGO_BIN_EXE_handscope");
+    let args: Vec<&str> = command.get_args().filter_map(OsStr::to_str).collect();
+    let (name, more) = args.split_first()?;
+    if !is_ours || name.starts_with('-') {
+        return None;
+    }
+    if !GROUPS.contains(name) {
+        return Some((*name).to_owned());
+    }
+    let own = more.iter().find(|arg| !arg.starts_with('-'))?;
+    Some(format!("{name}-{own}"))
 }
 
 /// The program as for a user of its own, of whom nothing is kept yet.
@@ -69,6 +100,7 @@ pub(crate) fn start(args: &[&str]) -> Running {
 /// Starts a command and listens to both its outputs.
 pub(crate) fn listen(mut command: Command) -> Running {
     let begun = Instant::now();
+    let json_of = json_of(&command);
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     let out = lines_of(child.stdout.take().unwrap());
@@ -79,6 +111,7 @@ pub(crate) fn listen(mut command: Command) -> Running {
         err,
         begun,
         heard: String::new(),
+        json_of,
     }
 }
 
@@ -102,6 +135,7 @@ pub(crate) struct Running {
     err: Receiver<String>,
     begun: Instant,
     heard: String,
+    json_of: Option<String>,
 }
 
 impl Running {
@@ -166,6 +200,7 @@ impl Running {
             out,
             err: err.join("\n"),
             took,
+            json_of: self.json_of.take(),
         }
     }
 }
