@@ -1,5 +1,6 @@
 //! The simulated hand behind serial CAN adapters on pseudo-terminals, read by the other commands.
 
+use crate::setup::busy::unless_busy;
 use crate::setup::process::{Running, run, start};
 use std::path::Path;
 
@@ -56,22 +57,24 @@ fn a_wrong_bit_rate_or_id_is_silence_in_words() {
 
 #[test]
 fn the_makers_adapter_is_looked_at_by_doctor_traffic_and_scan() {
-    let folder = tempfile::tempdir().unwrap();
-    let (_sim, hand) = sim_on_adapter("usbcan", &folder.path().join("adapter"), &["--id", "7"]);
-    let hand = format!("{hand}?id=7");
-    run(&["doctor", "--for", "1", "--hand", &hand]).ok();
-    let wire = run(&["watch", "--wire", "--for", "1", "--hand", &hand]).ok();
-    let asked = "-> read          id 7   HAND_ID  [AA AA 07 00 FA 00 01 ";
-    assert!(wire.out.contains(asked), "{}", wire.out);
-    let wrong = run(&["read", "TEMP", "--hand", &hand.replace("id=7", "id=2")]);
-    assert!(wrong.err.contains("no answer from id 2"), "{}", wrong.err);
-    let port = hand["usbcan:".len()..].split('?').next().unwrap();
-    let scan = [
-        "scan", "--json", "--ids", "6-8", "--serial", port, "--usbcan", port,
-    ];
-    let found = run(&scan).ok();
-    let url = &found.lines()[0]["hand"]["url"];
-    assert_eq!(*url, format!("usbcan:{port}?baud=115200&id=7"));
+    unless_busy(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let (_sim, hand) = sim_on_adapter("usbcan", &folder.path().join("adapter"), &["--id", "7"]);
+        let hand = format!("{hand}?id=7");
+        run(&["doctor", "--for", "1", "--hand", &hand]).ok();
+        let wire = run(&["watch", "--wire", "--for", "1", "--hand", &hand]).ok();
+        let asked = "-> read          id 7   HAND_ID  [AA AA 07 00 FA 00 01 ";
+        assert!(wire.out.contains(asked), "{}", wire.out);
+        let wrong = run(&["read", "TEMP", "--hand", &hand.replace("id=7", "id=2")]);
+        assert!(wrong.err.contains("no answer from id 2"), "{}", wrong.err);
+        let port = hand["usbcan:".len()..].split('?').next().unwrap();
+        let scan = [
+            "scan", "--json", "--ids", "6-8", "--serial", port, "--usbcan", port,
+        ];
+        let found = run(&scan).ok();
+        let url = &found.lines()[0]["hand"]["url"];
+        assert_eq!(*url, format!("usbcan:{port}?baud=115200&id=7"));
+    });
 }
 
 #[test]
