@@ -34,7 +34,7 @@ pub struct Armed {
 #[derive(Debug, Clone, Copy)]
 pub struct DriveStart {
     /// Who arms the hand.
-    pub arming: Arming,
+    pub armed_by: ArmedBy,
     /// The right to move the hand.
     pub lease: Lease,
     /// What was read until now.
@@ -45,19 +45,19 @@ pub struct DriveStart {
 
 /// Who arms the hand for a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Arming {
+pub enum ArmedBy {
     /// The user did. The program ends with this arming.
-    ByUser(ArmEpoch),
+    User(ArmEpoch),
     /// The program does, as often as it needs. It ends with its lease.
-    ByProgram,
+    Program,
     /// Nobody: the program disarmed the hand, which must not move.
-    Off,
+    Nobody,
 }
 
 impl From<Armed> for DriveStart {
     fn from(armed: Armed) -> Self {
         Self {
-            arming: Arming::ByUser(armed.epoch),
+            armed_by: ArmedBy::User(armed.epoch),
             lease: armed.lease,
             seen: armed.seen,
             clock: armed.clock,
@@ -110,7 +110,7 @@ pub async fn drive<H: TaskHand, P: Program>(
         hand,
         records: hand.records(),
         sample: start.seen,
-        arming: start.arming,
+        armed_by: start.armed_by,
         lease: start.lease,
         foreign: None,
         turns: Turns::from(clock.now()),
@@ -184,7 +184,7 @@ struct Driving<'a, H> {
     hand: &'a H,
     records: Records,
     sample: HandSample,
-    arming: Arming,
+    armed_by: ArmedBy,
     lease: Lease,
     /// What another controller was seen to write until the program disarmed.
     foreign: Option<SetpointConflict>,
@@ -219,7 +219,7 @@ impl<H: TaskHand> Driving<'_, H> {
             }
             Order::Disarm => {
                 hand.disarm();
-                (self.arming, self.foreign) = (Arming::Off, status.foreign_setpoint);
+                (self.armed_by, self.foreign) = (ArmedBy::Nobody, status.foreign_setpoint);
                 Ok(())
             }
             Order::Stop => Ok(()),
@@ -234,13 +234,13 @@ impl<H: TaskHand> Driving<'_, H> {
     /// Whether the program must not go on.
     fn broken(&self, status: &LinkStatus) -> bool {
         let is_refused = || self.hand.check(self.lease).is_err();
-        match self.arming {
-            Arming::ByUser(epoch) => {
+        match self.armed_by {
+            ArmedBy::User(epoch) => {
                 let is_armed = status.armed == Some(epoch) && status.state != LinkState::Fault;
                 !status.state.is_live() || !is_armed || is_refused()
             }
-            Arming::ByProgram => is_refused(),
-            Arming::Off => {
+            ArmedBy::Program => is_refused(),
+            ArmedBy::Nobody => {
                 let is_moved = status.armed.is_some() || status.foreign_setpoint != self.foreign;
                 !status.state.is_live() || is_moved
             }
@@ -253,7 +253,7 @@ impl<H: TaskHand> Driving<'_, H> {
         if !status.state.is_live() {
             return Abort::LinkLost;
         }
-        if self.arming == Arming::Off {
+        if self.armed_by == ArmedBy::Nobody {
             return match status.armed {
                 Some(_) => Abort::ArmedAnew,
                 None => Abort::OtherController { wrote },
@@ -276,7 +276,7 @@ impl<H: TaskHand> Driving<'_, H> {
         {
             return why;
         }
-        let is_anew = |epoch| Arming::ByUser(epoch) != self.arming;
+        let is_anew = |epoch| ArmedBy::User(epoch) != self.armed_by;
         if refused.is_none() && status.armed.is_some_and(is_anew) {
             return Abort::ArmedAnew;
         }

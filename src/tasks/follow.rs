@@ -11,7 +11,7 @@ use crate::inputs::follow::{
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Clock, HoldToRun, Lease};
 use crate::record::{Abort, Disarmed};
-use crate::tasks::drive::{Arming, DriveStart, drive};
+use crate::tasks::drive::{ArmedBy, DriveStart, drive};
 use crate::tasks::hand::TaskHand;
 use crate::tasks::program::{AfterAbort, Ended, Order, Program, Seen};
 use futures::stream::poll_fn;
@@ -83,7 +83,7 @@ pub async fn follow<H: TaskHand>(
 ) -> Ended<FollowEnd> {
     let clock = start.clock;
     let begin = DriveStart {
-        arming: Arming::ByProgram,
+        armed_by: ArmedBy::Program,
         lease: start.lease,
         seen: start.seen,
         clock,

@@ -293,7 +293,7 @@ impl FollowCommand<'_> {
 fn ended(end: Ended<FollowEnd>, sender: &str) -> String {
     let why = match end {
         Ok(FollowEnd::Silent | FollowEnd::Gone) => format!("{sender} fell silent"),
-        Err(Abort::TakenOver) => return "another controller has control of the hand now".into(),
+        Err(why @ Abort::TakenOver) => return why.to_string(),
         Err(Abort::LinkLost) => {
             let why = Disarmed::LinkLost;
             return format!("{why}: nothing reached the hand, which may still finish its move");

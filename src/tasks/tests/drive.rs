@@ -15,6 +15,13 @@ use tokio::task::JoinHandle;
 use tokio::time::sleep;
 
 const EPOCH: ArmEpoch = ArmEpoch(1);
+/// What another controller wrote.
+const FOREIGN: SetpointConflict = SetpointConflict {
+    register: SetpointRegister::AngleSet,
+    dof: Dof::Index,
+    holds: Some(300),
+    wrote: Some(1000),
+};
 
 /// Moves the index finger in each step, without end; `pauses` disarms first.
 struct Restless {
@@ -81,12 +88,7 @@ fn start(hand: &FakeHand, pauses: bool, reports: usize) -> JoinHandle<EndReport>
 async fn whatever_breaks_a_program_off_it_is_named_and_the_hand_is_stopped() {
     type Break = fn(&FakeHand);
     let fault = Faults::from_raw(1);
-    let wrote = Some(SetpointConflict {
-        register: SetpointRegister::AngleSet,
-        dof: Dof::Index,
-        holds: Some(300),
-        wrote: Some(1000),
-    });
+    let wrote = Some(FOREIGN);
     let ways: [(Break, Abort); 8] = [
         (
             |hand| hand.facts().status.state = LinkState::Offline,
@@ -136,12 +138,7 @@ async fn whatever_breaks_a_program_off_it_is_named_and_the_hand_is_stopped() {
         (
             |hand| {
                 hand.disarm_for(Disarmed::OtherController);
-                hand.facts().status.foreign_setpoint = Some(SetpointConflict {
-                    register: SetpointRegister::AngleSet,
-                    dof: Dof::Index,
-                    holds: Some(300),
-                    wrote: Some(1000),
-                });
+                hand.facts().status.foreign_setpoint = Some(FOREIGN);
             },
             Abort::OtherController { wrote },
         ),
@@ -187,22 +184,12 @@ async fn a_report_that_is_not_taken_stops_the_hand() {
 #[tokio::test(start_paused = true)]
 async fn while_a_program_keeps_the_hand_disarmed_whoever_moves_it_ends_it_with_a_stop() {
     type Break = fn(&FakeHand);
-    let wrote = Some(SetpointConflict {
-        register: SetpointRegister::AngleSet,
-        dof: Dof::Index,
-        holds: Some(300),
-        wrote: Some(1000),
-    });
+    let wrote = Some(FOREIGN);
     let ways: [(Break, Abort); 2] = [
         (|hand| hand.arm_as(2), Abort::ArmedAnew),
         (
             |hand| {
-                hand.facts().status.foreign_setpoint = Some(SetpointConflict {
-                    register: SetpointRegister::AngleSet,
-                    dof: Dof::Index,
-                    holds: Some(300),
-                    wrote: Some(1000),
-                });
+                hand.facts().status.foreign_setpoint = Some(FOREIGN);
             },
             Abort::OtherController { wrote },
         ),
