@@ -79,11 +79,18 @@ impl Drop for LinkShared {
 /// Opens a link on this runtime and keeps it open until the last handle is dropped. Gives its records from the first on.
 /// Writes nothing by itself.
 pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle, Records) {
+    let (handle, ends, records) = channels(config.clock);
+    runtime.spawn(Session::new(config, ends).run());
+    (handle, records)
+}
+
+/// A handle, the ends that its session holds, and its records from the first on.
+pub(crate) fn channels(clock: Clock) -> (LinkHandle, Ends, Records) {
     let wanted = Arc::new(watch::Sender::new(PendingControl::default()));
-    let (requests, asked) = mpsc::channel(REQUESTS_MAX);
-    let (told, records) = broadcast::channel(RECORDS_MAX);
+    let (requests_in, requests) = mpsc::channel(REQUESTS_MAX);
+    let (records_in, records) = broadcast::channel(RECORDS_MAX);
     let (status_in, status) = watch::channel(LinkStatus {
-        since: config.clock.now(),
+        since: clock.now(),
         ..LinkStatus::default()
     });
     let (stats_in, stats) = watch::channel(LinkStats::default());
@@ -91,25 +98,24 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle
     let tap = WireTap::default();
     let shared = LinkShared {
         wanted: Arc::clone(&wanted),
-        requests,
-        records: told.downgrade(),
+        requests: requests_in,
+        records: records_in.downgrade(),
         status,
         stats,
         image,
-        clock: config.clock,
+        clock,
         tap: tap.clone(),
     };
     let ends = Ends {
         wanted,
-        requests: asked,
-        records: told,
+        requests,
+        records: records_in,
         status: status_in,
         stats: stats_in,
         image: image_in,
         tap,
     };
-    runtime.spawn(Session::new(config, ends).run());
-    (LinkHandle(Arc::new(shared)), Records::of(records))
+    (LinkHandle(Arc::new(shared)), ends, Records::of(records))
 }
 
 impl LinkHandle {

@@ -1,44 +1,44 @@
-//! Whether a finger touches something: what its fingertip and its joints' forces say together.
+//! Contact of a finger, judged from its fingertip and the forces of its joints together.
 
 use crate::hand::grip::thresholds::GripThresholds;
 
-/// Share of a contact threshold above which a finger that touched still does.
+/// Share of a contact threshold above which a finger in contact stays in contact.
 pub(super) const STILL_TOUCHES: f32 = 0.5;
-/// So much force at rest over the contact threshold may be a drift of the sensor's zero, or friction, g.
+/// Force at rest over the contact threshold that may still be a drift of the sensor's zero, or friction, g.
 const UNSURE_G: f32 = 120.0;
 
-/// What is felt at one reading.
+/// Measurements of one reading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Felt {
     /// Normal force of the fingertip, N; `None` where it is not read.
     pub(super) tip_n: Option<f32>,
-    /// The most force over a joint's zero and what is known of its free motion, g; `None` before a zero was learnt.
+    /// Largest force over a joint's zero and its known free motion, g; `None` before a zero was learned.
     pub(super) over_g: Option<f32>,
-    /// That joint's force of free motion is known at its angle.
+    /// The force of free motion of that joint is known at its angle.
     pub(super) is_free_known: bool,
-    /// The drive says that the force threshold stopped it.
+    /// The drive reports that the force threshold stopped it.
     pub(super) is_stopped_by_force: bool,
-    /// It touched at the reading before.
+    /// The finger was in contact at the previous reading.
     pub(super) touched: bool,
-    /// It holds something, by its fingertip or not.
+    /// `None` unless the finger holds something; true if its fingertip was in contact.
     pub(super) held_by_tip: Option<bool>,
 }
 
-/// What follows from that.
+/// Result of the judgement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Contact {
-    /// Neither fingertip nor force tell anything.
+    /// No fingertip reading and no known zero of the force.
     Unknown,
-    /// It touches nothing.
+    /// No contact.
     Nothing,
     /// Force and fingertip contradict each other, or the force alone may be friction.
     Unclear,
-    /// It touches something.
+    /// Contact.
     Touching,
 }
 
 impl Contact {
-    /// A fingertip that touches is proof, and one that touches nothing outweighs as much force as drift and friction explain.
+    /// A fingertip in contact is proof; one without contact outweighs any force that drift and friction can explain.
     pub(super) fn of(felt: &Felt, thresholds: &GripThresholds) -> Self {
         let share = if felt.touched { STILL_TOUCHES } else { 1.0 };
         let contact_g = f32::from(thresholds.contact_g);

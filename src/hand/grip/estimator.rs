@@ -1,4 +1,4 @@
-//! The grip of a whole hand, reading by reading.
+//! Estimates the grip of a whole hand, reading by reading.
 
 use crate::hand::dof::PerFinger;
 use crate::hand::feedback::group::Groups;
@@ -10,7 +10,7 @@ use crate::hand::grip::state::{Grip, GripEstimate, GripState};
 use crate::hand::grip::thresholds::GripThresholds;
 use crate::hand::moment::Moment;
 
-/// Follows the grip of one hand. It is given each reading with its moment; the same readings give the same states.
+/// Estimator of the grip of one hand. It receives each reading with its time; the same readings give the same states.
 ///
 /// ```
 /// use handscope_core::hand::grip::{GripEstimator, GripState};
@@ -26,7 +26,7 @@ pub struct GripEstimator {
     fingers: PerFinger<FingerEstimator>,
     grasp: GripEstimate,
     free: FreeForce,
-    /// Closes that taught it something.
+    /// Number of closes from which it learned something.
     learned: u64,
 }
 
@@ -37,7 +37,7 @@ impl Default for GripEstimator {
 }
 
 impl GripEstimator {
-    /// One that has seen nothing.
+    /// Creates an estimator without history.
     pub fn new(thresholds: GripThresholds) -> Self {
         Self {
             thresholds,
@@ -48,7 +48,7 @@ impl GripEstimator {
         }
     }
 
-    /// One that knows what this hand's joints read when they touch nothing.
+    /// Creates an estimator that knows the free-motion forces of this hand's joints.
     pub fn knowing(free: FreeForce) -> Self {
         Self {
             free,
@@ -56,27 +56,27 @@ impl GripEstimator {
         }
     }
 
-    /// Knows from now on what this hand's joints read when they touch nothing.
+    /// Replaces the known free-motion forces of this hand's joints.
     pub const fn know(&mut self, free: FreeForce) {
         self.free = free;
     }
 
-    /// What it knows of that, with what it learnt since: each close that touches nothing teaches it.
+    /// Free-motion forces known so far; each close that touches nothing improves them.
     pub const fn free_force(&self) -> &FreeForce {
         &self.free
     }
 
-    /// How many closes taught it something: what it knows is worth keeping again when this rises.
+    /// Number of closes that changed the known free-motion forces; when it rises, they are worth saving again.
     pub const fn learned(&self) -> u64 {
         self.learned
     }
 
-    /// What it judges by.
+    /// Thresholds in use.
     pub const fn thresholds(&self) -> GripThresholds {
         self.thresholds
     }
 
-    /// Judges by other thresholds from now on. What it knows of the hand stays.
+    /// Uses other thresholds from now on. The learned forces and the history stay.
     pub fn judge_by(&mut self, thresholds: GripThresholds) {
         if self.thresholds == thresholds {
             return;
@@ -87,7 +87,7 @@ impl GripEstimator {
         }
     }
 
-    /// Takes what was read at `at`, where `fresh` is new in it, and tells the grip.
+    /// Updates the grip with a sample read at `at`, in which the groups `fresh` are new, and returns it.
     pub fn take(&mut self, sample: &HandSample, fresh: Groups, at: Moment) -> Grip {
         let reading = ReadingAt {
             at,
@@ -122,7 +122,7 @@ impl GripEstimator {
         self.grip()
     }
 
-    /// Takes on what closes that touched nothing measured.
+    /// Merges the measurements of closes that touched nothing.
     fn learn(&mut self) {
         let mut is_news = false;
         for (_, finger) in self.fingers.iter_mut() {
@@ -133,7 +133,7 @@ impl GripEstimator {
         self.learned += u64::from(is_news);
     }
 
-    /// The grip as of the newest reading.
+    /// Grip as of the newest reading.
     pub fn grip(&self) -> Grip {
         Grip {
             fingers: PerFinger::from_fn(|finger| self.fingers[finger].estimate),
@@ -142,7 +142,7 @@ impl GripEstimator {
         }
     }
 
-    /// The grip as it is known at `now`; unknown where readings are not believed.
+    /// Grip at time `now`; unknown if `is_believed` is false.
     pub fn known(&self, is_believed: bool, now: Moment) -> Grip {
         if is_believed {
             self.grip().at(now)
@@ -151,7 +151,7 @@ impl GripEstimator {
         }
     }
 
-    /// What needs the user comes first; a grasp holds once no finger is on its way.
+    /// States that need the user's attention come first; a grasp holds once no finger is in motion.
     fn grasp_state(&self, fingers: &PerFinger<GripEstimate>) -> GripState {
         let count = |state: GripState| {
             let states = fingers.as_array().iter().map(|finger| finger.state);

@@ -1,4 +1,4 @@
-//! What one finger's state rests on, taken out of a sample: fresh and sensible, or not at all.
+//! Evidence for the state of one finger, extracted from a sample: fresh and plausible, or absent.
 
 use crate::hand::dof::{Dof, Finger};
 use crate::hand::feedback::group::{Group, Groups};
@@ -13,7 +13,7 @@ use crate::hand::moment::{Moment, Timed};
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// Grams of a newton.
+/// Grams-force per newton.
 const G_PER_N: f32 = 102.0;
 /// Joints of the thumb; the other fingers have one.
 pub(super) const JOINTS_MAX: usize = 2;
@@ -22,11 +22,11 @@ pub(super) const JOINTS_MAX: usize = 2;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct JointEvidence {
     pub(super) dof: Dof,
-    /// 0..=1000.
+    /// Angle, 0..=1000.
     pub(super) angle: i16,
-    /// As the sensor says it, with its error of zero, g.
+    /// Force as the sensor reports it, including its zero error, g.
     pub(super) force_g: i16,
-    /// mA, if it is known.
+    /// Motor current, mA; `None` if it is not known or out of range.
     pub(super) current_ma: Option<i16>,
     pub(super) status: Status,
 }
@@ -36,7 +36,7 @@ pub(super) struct JointEvidence {
 pub(super) struct TipEvidence {
     /// Normal force, N.
     pub(super) normal_n: f32,
-    /// For the slip detector, if this reading of it is new.
+    /// Reading for the slip detector; `None` if it is not new.
     pub(super) news: Option<HeldMoment>,
 }
 
@@ -47,19 +47,19 @@ impl TipEvidence {
     }
 }
 
-/// What is known of one finger at one reading.
+/// Evidence for one finger at one reading.
 #[derive(Debug, Clone)]
 pub(super) struct FingerEvidence {
     pub(super) joints: ArrayVec<JointEvidence, JOINTS_MAX>,
-    /// `None` where fingertips are not read, or are read too seldom.
+    /// `None` where fingertips are not read or read too rarely.
     pub(super) tip: Option<TipEvidence>,
-    /// When the angles were there.
+    /// Time at which the angles were received.
     pub(super) angle_at: Moment,
-    /// When the oldest of it was asked for.
+    /// Request time of the oldest part.
     pub(super) asked: Moment,
 }
 
-/// Of which moment a reading is, and how old its parts may be.
+/// Time of a reading, the groups that are new in it, and the allowed age of its parts.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ReadingAt {
     pub(super) at: Moment,
@@ -68,7 +68,7 @@ pub(super) struct ReadingAt {
 }
 
 impl FingerEvidence {
-    /// What a sample says of a finger; `None` if angle, force or status are missing, old or make no sense.
+    /// Extracts the evidence for a finger; `None` if angle, force or status are missing, old or implausible.
     pub(super) fn of(sample: &HandSample, finger: Finger, reading: ReadingAt) -> Option<Self> {
         let angle = reading.known(sample.angle)?;
         let force = reading.known(sample.force)?;
@@ -99,13 +99,13 @@ impl FingerEvidence {
         })
     }
 
-    /// Whether its fingertip touches nothing; true where it is not read.
+    /// Returns true if the fingertip touches nothing or is not read.
     pub(super) fn is_tip_free(&self, thresholds: &GripThresholds) -> bool {
         let least = thresholds.contact_n * STILL_TOUCHES;
         self.tip.is_none_or(|tip| tip.normal_n < least)
     }
 
-    /// The joint that bends the finger.
+    /// Returns the joint that bends the finger.
     pub(super) fn bend(&self) -> Option<&JointEvidence> {
         let is_bend = |joint: &&JointEvidence| joint.dof == joint.dof.finger().bend();
         self.joints.iter().find(is_bend)

@@ -1,4 +1,4 @@
-//! The state of one finger, reading by reading.
+//! State estimator of one finger, updated with each reading.
 
 use crate::hand::dof::{Dof, PerDof};
 use crate::hand::feedback::status::Status;
@@ -13,47 +13,47 @@ use crate::hand::moment::Moment;
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// Share of each newer force that the zero takes on while a finger is open and free.
+/// Weight of each new force in the running zero while a finger is open and touches nothing.
 const ZERO_SHARE: f32 = 0.05;
-/// A finger that opened so far since its last contact let go by itself, units of angle.
+/// Opening since the last contact from which a finger has released on its own, units of angle.
 const LETS_GO: i16 = 8;
-/// A slip is told for so long after it was last seen, s.
+/// A slip is reported for this long after it was last seen, s.
 const SLIP_TOLD_S: f64 = 0.15;
-/// A grip that was too hard is not any more below this share of the threshold.
+/// A grip that was too hard stays so down to this share of the threshold.
 const SOFTER: f32 = 0.9;
-/// The force at the end of a free close counts for so long: later the sensor's zero drifts.
+/// The force at the end of a free close is used for this long; after that the sensor's zero drifts.
 const ARRIVED_DURATION: Duration = Duration::from_millis(500);
 
-/// What a finger held, until it opens or touches something else.
+/// Contact of a finger, remembered until the finger opens or touches something else.
 #[derive(Debug, Clone, Copy)]
 struct HeldAt {
-    /// Angle of the finger when it was last in contact.
+    /// Angle of the finger at its last contact.
     angle: i16,
-    /// Its fingertip was in contact.
+    /// The fingertip was in contact.
     by_tip: bool,
-    /// When contact was first missed.
+    /// Time at which contact was first missing.
     gone: Option<Moment>,
 }
 
-/// A close under way in which nothing was touched yet.
+/// A close under way that has not touched anything yet.
 #[derive(Debug, Clone, Default)]
 struct FreeWay {
     joints: ArrayVec<(Dof, FreeClose), JOINTS_MAX>,
-    /// When it arrived at its target.
+    /// Time at which it reached its target.
     arrived: Option<Moment>,
 }
 
-/// What a finger is judged by besides its own evidence.
+/// Context in which a finger is judged, besides its own evidence.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scene<'a> {
     pub(super) at: Moment,
     pub(super) thresholds: &'a GripThresholds,
     pub(super) free: &'a FreeForce,
-    /// All fingertips are read, and none touches anything.
+    /// All fingertips are read and none touches anything.
     pub(super) is_hand_free: bool,
 }
 
-/// One finger, and what must be remembered of it.
+/// Estimator of one finger with its history.
 #[derive(Debug, Clone)]
 pub(super) struct FingerEstimator {
     motion: PerDof<JointMotion>,
@@ -62,7 +62,7 @@ pub(super) struct FingerEstimator {
     slip: SlipDetector,
     held: Option<HeldAt>,
     way: Option<FreeWay>,
-    /// Free closes that are over, for the hand to take.
+    /// Completed free closes, for the hand's estimator to collect.
     pub(super) learned: ArrayVec<(Dof, FreeClose), JOINTS_MAX>,
     pub(super) estimate: GripEstimate,
 }
@@ -81,12 +81,12 @@ impl FingerEstimator {
         }
     }
 
-    /// Judges slips by other thresholds from now on.
+    /// Uses other slip thresholds from now on.
     pub(super) const fn judge_by(&mut self, thresholds: &GripThresholds) {
         self.slip.judge_by(thresholds);
     }
 
-    /// Without evidence nothing is known, and what was held may be gone. The zero of the force sensor stays.
+    /// Resets the state to unknown and drops what was held, as there is no evidence. The zero of the force sensor stays.
     pub(super) fn forget(&mut self, at: Moment, thresholds: &GripThresholds) {
         self.motion = PerDof::from_fn(|_| JointMotion::default());
         self.touches = false;
@@ -97,7 +97,7 @@ impl FingerEstimator {
         self.estimate.become_state(GripState::Unknown, at, asked);
     }
 
-    /// Takes what is known of the finger at this moment.
+    /// Updates the state with the evidence of one reading.
     pub(super) fn take(&mut self, evidence: &FingerEvidence, scene: Scene<'_>) {
         for joint in &evidence.joints {
             self.motion[joint.dof].take(evidence.angle_at, joint.angle);
@@ -157,7 +157,7 @@ impl FingerEstimator {
         Felt {
             tip_n: evidence.tip.map(|tip| tip.normal_n),
             over_g: most.map(|(over_g, _)| over_g),
-            // Where it rests and touches nothing, no friction was met.
+            // A finger at rest that touches nothing has met no friction.
             is_free_known: most.is_some_and(|(_, is_known)| is_known)
                 || self.estimate.state == GripState::Empty,
             is_stopped_by_force: is_stopped,
@@ -166,7 +166,7 @@ impl FingerEstimator {
         }
     }
 
-    /// The slip detector begins anew with each contact.
+    /// Feeds the slip detector, which restarts with each contact.
     fn feel(&mut self, tip: Option<TipEvidence>, thresholds: &GripThresholds) {
         let Some(tip) = tip else {
             return;
@@ -186,7 +186,7 @@ impl FingerEstimator {
         }
     }
 
-    /// Follows a close in which nothing is touched. What it measures counts once it is over: no close excuses itself.
+    /// Follows a close in which nothing is touched. Its measurement counts only once it is over: no close excuses its own force.
     fn watch_way(&mut self, evidence: &FingerEvidence, now: &FingerNow, scene: Scene<'_>) {
         let is_open = now.is_open(scene.thresholds);
         if now.is_releasing || is_open && !now.is_moving {
@@ -240,14 +240,14 @@ impl FingerEstimator {
             (Contact::Nothing | Contact::Unclear, _) if now.is_open(thresholds) => GripState::Open,
             (Contact::Unclear, _) if self.is_too_hard(now, thresholds) => GripState::TooHard,
             (Contact::Unclear, _) => GripState::Unknown,
-            // Something stopped it, which the fingertip alone does not feel.
+            // Something stopped it that the fingertip alone does not feel.
             (Contact::Nothing, None) if now.is_stopped && !now.is_force_known => GripState::Unknown,
             (Contact::Nothing, None) => GripState::Empty,
         }
     }
 
     fn touching(&mut self, now: &FingerNow, thresholds: &GripThresholds) -> GripState {
-        // Touched by somebody, not gripping.
+        // The user touches the finger; it does not grip.
         let is_idle = now.is_open(thresholds) && !now.is_stopped_by_force && !now.is_moving;
         if now.is_releasing || is_idle {
             self.held = None;
@@ -280,7 +280,7 @@ impl FingerEstimator {
             || now.current_ma.is_some_and(draws)
     }
 
-    /// Contact is missed at a finger that did not open: for a moment that may be noise, then what it held is lost.
+    /// Contact is missing at a finger that did not open: at first that may be noise, after the delay the object counts as lost.
     fn missing(&mut self, held: HeldAt, now: &FingerNow, thresholds: &GripThresholds) -> GripState {
         let gone = held.gone.unwrap_or(now.at);
         self.held = Some(HeldAt {
@@ -294,24 +294,24 @@ impl FingerEstimator {
     }
 }
 
-/// One finger at one reading, as far as its state needs it.
+/// One finger at one reading, reduced to what its state depends on.
 #[derive(Debug, Clone, Copy)]
 struct FingerNow {
     at: Moment,
-    /// Of the joint that bends it.
+    /// Angle of the joint that bends the finger.
     angle: i16,
     is_moving: bool,
     is_releasing: bool,
     is_stopped_by_force: bool,
-    /// A drive stopped at its force threshold, or to protect itself.
+    /// A drive stopped at its force threshold or to protect itself.
     is_stopped: bool,
     is_overloaded: bool,
-    /// The zero of its force sensors is known.
+    /// The zero of its force sensors has been learned.
     is_force_known: bool,
     contact: Contact,
-    /// Its fingertip touches.
+    /// The fingertip touches.
     by_tip: bool,
-    /// The largest of fingertip and joints.
+    /// Largest load of the fingertip and the joints.
     load_g: f32,
     current_ma: Option<i16>,
 }
@@ -321,7 +321,7 @@ impl FingerNow {
         i32::from(self.angle) >= i32::from(thresholds.open_from)
     }
 
-    /// Whether it opens, or opened since it was at this angle.
+    /// Returns true if the finger opens, or has opened since it was at angle `from`.
     fn is_let_go(&self, from: i16) -> bool {
         self.is_releasing || self.angle - from >= LETS_GO
     }

@@ -1,18 +1,18 @@
-//! Force that a joint's sensor reads while it bends and touches nothing: friction of its own mechanics, by angle.
+//! Force that a joint's sensor reads while the joint bends and touches nothing: friction of its own mechanics, by angle.
 
 use crate::hand::dof::{Dof, PerDof};
 use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Angles at which it is kept, in counts from each other.
+/// Distance between the stored angles, in counts.
 const KNOT: i16 = 50;
 const KNOTS: usize = 21;
-/// It is known at angles at most so far from a knot that was measured.
+/// Largest distance between an angle and a measured knot for which a value is known.
 const KNOWN_TOLERANCE: i16 = 125;
-/// No friction is more, g: more was something in the way.
+/// Upper limit of the friction, g; a larger force means that something was in the way.
 const FREE_MAX_G: f32 = 200.0;
-/// Share that a newer measurement takes on. What was in the way of one close adds force, and never takes any away.
+/// Weight of a newer measurement that is lower or higher. An obstacle during a close adds force and never reduces it.
 const LESS_SHARE: f32 = 0.5;
 const MORE_SHARE: f32 = 0.1;
 
@@ -21,12 +21,12 @@ const MORE_SHARE: f32 = 0.1;
 #[serde(try_from = "Kept", into = "Kept")]
 pub struct FreeForce(PerDof<Knots>);
 
-/// As a file has it: a list of forces for each joint of which something is known.
+/// Form in files: a list of forces for each joint with any known value.
 type Kept = BTreeMap<Dof, Vec<Option<f32>>>;
 
 type Knots = [Option<f32>; KNOTS];
 
-/// What a file says is no force of free motion.
+/// Error for values in a file that cannot be forces of free motion.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {KNOTS} forces of at most {FREE_MAX_G} g are needed", dof.name())]
 pub struct NoFreeForce {
@@ -57,7 +57,7 @@ impl TryFrom<Kept> for FreeForce {
 }
 
 impl FreeForce {
-    /// What a joint reads over its zero at this angle when it touches nothing, g; `None` where that was never measured.
+    /// Force over its zero that a joint reads at this angle when it touches nothing, g; `None` where it was never measured.
     pub fn at(&self, dof: Dof, angle: i16) -> Option<f32> {
         let mut known = known(&self.0[dof]);
         let below = known.clone().rfind(|(at, _)| *at <= angle);
@@ -73,13 +73,13 @@ impl FreeForce {
         }
     }
 
-    /// The joints of which something is known.
+    /// Joints with at least one known value.
     pub fn known(&self) -> impl Iterator<Item = Dof> {
         let joints = self.0.iter();
         joints.filter_map(|(dof, knots)| known(knots).next().map(|_| dof))
     }
 
-    /// Takes on what a close that touched nothing measured. False if it changed nothing worth keeping.
+    /// Merges the measurement of a close that touched nothing. Returns true if a value changed by at least 1 g.
     pub(super) fn learn(&mut self, dof: Dof, close: &FreeClose) -> bool {
         let mut is_news = false;
         for (own, felt) in self.0[dof].iter_mut().zip(close.means()) {
@@ -99,14 +99,14 @@ impl FreeForce {
         is_news
     }
 
-    /// Takes on each joint of which the other knows something.
+    /// Replaces the values of each joint that `newer` knows.
     pub fn take(&mut self, newer: &Self) {
         for dof in newer.known() {
             self.0[dof] = newer.0[dof];
         }
     }
 
-    /// Takes on what was measured of a hand that is known to be empty, which counts more than a close.
+    /// Overwrites with the measurement of a hand known to be empty, which is more reliable than an ordinary close.
     pub fn put(&mut self, dof: Dof, close: &FreeClose) {
         for (own, felt) in self.0[dof].iter_mut().zip(close.means()) {
             *own = felt.or(*own);
@@ -114,19 +114,19 @@ impl FreeForce {
     }
 }
 
-/// Angles with what is known there.
+/// Iterates over the angles with a known value.
 fn known(knots: &Knots) -> impl DoubleEndedIterator<Item = (i16, f32)> + Clone {
     let angles = (0..).step_by(KNOT.unsigned_abs().into());
     let known = angles.zip(knots).filter_map(|(at, g)| Some((at, (*g)?)));
     known.collect::<ArrayVec<_, KNOTS>>().into_iter()
 }
 
-/// What one joint reads over its zero on one way, by angle.
+/// Force of one joint over its zero during one close, by angle.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FreeClose([(f32, f32); KNOTS]);
 
 impl FreeClose {
-    /// Takes one reading, g over the zero of the joint.
+    /// Adds one reading, in g over the zero of the joint.
     pub fn take(&mut self, angle: i16, force_g: f32) {
         let knot = usize::try_from(angle.saturating_add(KNOT / 2) / KNOT).unwrap_or_default();
         if let Some((sum, count)) = self.0.get_mut(knot) {

@@ -1,4 +1,4 @@
-//! What is gripped: the state of each finger and of the grasp, from what the hand reads. No clock; each reading brings its moment.
+//! Grip estimation: the state of each finger and of the grasp, from the hand's readings. No clock; each reading carries its time.
 
 mod contact;
 mod estimator;

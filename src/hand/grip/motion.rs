@@ -1,22 +1,22 @@
-//! Whether a joint moves, from its angle and from what its drive says.
+//! Motion of a joint, detected from its angle and the status of its drive.
 
 use crate::hand::feedback::status::Status;
 use crate::hand::moment::Moment;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Angles nearer to each other in time than this are one.
+/// Angles read within this time of each other are merged.
 const STEP: Duration = Duration::from_millis(8);
 /// A joint moves if its angle changed by more than [`FAST_UNITS`] within this time.
 const FAST: Duration = Duration::from_millis(100);
 const FAST_UNITS: i16 = 3;
-/// A drive that says it moves does not if its angle changed by less than [`SLOW_UNITS`] within this time: it pushes.
+/// A drive that reports motion does not move if its angle changed by less than [`SLOW_UNITS`] within this time: it pushes.
 const SLOW: Duration = Duration::from_millis(500);
 const SLOW_UNITS: i16 = 2;
-/// Angles that are kept: [`SLOW`] by [`STEP`], and room.
+/// Capacity of the angle history: [`SLOW`] divided by [`STEP`], with some reserve.
 const KEPT_MAX: usize = 80;
 
-/// The last half second of one joint.
+/// Angles of one joint over the last half second.
 #[derive(Debug, Clone, Default)]
 pub(super) struct JointMotion {
     angles: VecDeque<(Moment, i16)>,
@@ -24,7 +24,7 @@ pub(super) struct JointMotion {
 }
 
 impl JointMotion {
-    /// Takes an angle, 0..=1000, as it was read.
+    /// Adds an angle, 0..=1000, with the time at which it was read.
     pub(super) fn take(&mut self, at: Moment, angle: i16) {
         self.began.get_or_insert(at);
         if let Some((newest, known)) = self.angles.back_mut()
@@ -44,7 +44,7 @@ impl JointMotion {
         self.angles.push_back((at, angle));
     }
 
-    /// Whether it moves at this moment.
+    /// Returns true if the joint moves at time `at`.
     pub(super) fn is_moving(&self, at: Moment, status: Status) -> bool {
         if self.range(at, FAST) > FAST_UNITS {
             return true;

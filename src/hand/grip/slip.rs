@@ -1,5 +1,5 @@
-//! Slips of a held object: friction that rises, at once or for seconds, reading by reading. A tangential force that only turns is the
-//! wrist's.
+//! Slip detection for a held object, reading by reading: friction that rises, at once or over seconds. A tangential force that only
+//! turns is caused by the wrist.
 
 use crate::hand::grip::thresholds::GripThresholds;
 use crate::hand::statistics::median;
@@ -7,60 +7,60 @@ use std::collections::VecDeque;
 
 /// Normal force below which there is nothing to slip, N.
 pub const HELD_N: f64 = 0.2;
-/// The reference: the median of this many seconds before.
+/// Reference period: the median of this many seconds before the reading.
 const BEFORE_S: f64 = 0.5;
-/// Slips nearer to each other than this are one.
+/// Slips closer to each other than this are one slip.
 pub const APART_S: f64 = 0.4;
-/// Values that are needed before a jump can be told.
+/// Fewest values from which a jump can be detected.
 pub const BEFORE_LEAST: usize = 3;
-/// Friction creeps if its median is so much above that of half a second earlier. What it was before it began to is the reference then.
+/// Rise of the median ratio over half a second from which friction creeps. The ratio before the creep is then the reference.
 const CREEPS: f64 = 0.02;
-/// Creeping is judged by the median of so many readings.
+/// Number of readings whose median is the current level of a creep.
 const LEVEL_COUNT: usize = 5;
-/// Share of the rise that is enough where the tangential force turns as well.
+/// Share of the rise that suffices where the tangential force turns as well.
 const TURNED_SHARE: f64 = 0.75;
-/// Moments that are kept: a second of a sensor that is read 500 times a second.
+/// Capacity of the history: one second of a sensor that is read 500 times a second.
 const KEPT_MAX: usize = 512;
 
-/// One moment of holding.
+/// One reading while the fingertip holds something.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeldMoment {
-    /// When it was read, s from whenever.
+    /// Time of the reading, s from an arbitrary origin.
     pub t: f64,
-    /// Tangential by normal force.
+    /// Ratio of tangential to normal force.
     pub ratio: f64,
-    /// Degrees of the tangential force; `None` if not known.
+    /// Direction of the tangential force, degrees; `None` if not known.
     pub direction: Option<f64>,
 }
 
-/// How a moment differs from those before.
+/// Difference between a reading and those before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlipJump {
-    /// When it was read, s from whenever.
+    /// Time of the reading, s from an arbitrary origin.
     pub t: f64,
-    /// Rise of tangential by normal force.
+    /// Rise of the ratio of tangential to normal force.
     pub ratio: f64,
     /// Turn of the tangential force, degrees; `None` if the direction was not known.
     pub turn_deg: Option<f64>,
 }
 
-/// Finds slips on one fingertip. A rise counts if two readings in a row show it, so slips are seen one reading late.
+/// Finds slips on one fingertip. A rise counts if two readings in a row show it, so slips are detected one reading late.
 #[derive(Debug, Clone)]
 pub struct SlipDetector {
     ratio_jump: f64,
     turn_deg: f64,
     held: VecDeque<HeldMoment>,
-    /// The ratio before it began to creep.
+    /// Ratio before the current creep.
     crept_from: Option<f64>,
     pending: Option<SlipJump>,
-    /// When it was last seen to slip.
+    /// Time of the last detected slip.
     last: Option<f64>,
-    /// When the ratio was last seen to jump.
+    /// Time of the last jump of the ratio.
     jumped: Option<f64>,
 }
 
 impl SlipDetector {
-    /// One that has seen nothing.
+    /// Creates a detector without history.
     pub fn new(thresholds: &GripThresholds) -> Self {
         Self {
             ratio_jump: thresholds.slip_ratio,
@@ -73,18 +73,18 @@ impl SlipDetector {
         }
     }
 
-    /// Judges by other thresholds from now on.
+    /// Uses other thresholds from now on.
     pub(super) const fn judge_by(&mut self, thresholds: &GripThresholds) {
         self.ratio_jump = thresholds.slip_ratio;
         self.turn_deg = thresholds.slip_turn_deg;
     }
 
-    /// When it was last seen to slip, s.
+    /// Time of the last detected slip, s; `None` before the first.
     pub const fn last(&self) -> Option<f64> {
         self.last
     }
 
-    /// Takes the next moment of holding. Gives the first and the second of two rises in a row.
+    /// Adds the next reading. Returns the first and the second of two rises in a row.
     pub fn take(&mut self, now: HeldMoment) -> Option<(SlipJump, SlipJump)> {
         let jump = self.jump(&now);
         if self.held.len() >= KEPT_MAX {
@@ -105,7 +105,7 @@ impl SlipDetector {
         both
     }
 
-    /// How a moment differs from those just before it. Moments of a slip that is going on are no measure.
+    /// Rise of a reading over those just before it. Readings of a slip in progress are left out of the reference.
     fn jump(&self, now: &HeldMoment) -> Option<SlipJump> {
         let is_recent = |moment: &&HeldMoment| moment.t >= now.t - BEFORE_S;
         let is_calm = |moment: &&HeldMoment| {
@@ -121,9 +121,9 @@ impl SlipDetector {
         })
     }
 
-    /// How far the ratio rose since it began to creep, if it still does.
+    /// Rise of the ratio since it began to creep, if it still creeps.
     fn crept(&mut self, now: &HeldMoment) -> Option<SlipJump> {
-        // What jumped is where it is now, whatever it was before.
+        // A jump sets a new level; the readings before it no longer count.
         let begins = self.jumped.unwrap_or(f64::NEG_INFINITY);
         let is_newer = |moment: &&HeldMoment| moment.t > now.t - BEFORE_S;
         let since = self.held.iter().filter(|moment| moment.t > begins);
@@ -150,13 +150,13 @@ impl SlipDetector {
     }
 }
 
-/// The median ratio; `None` of too few moments.
+/// Median ratio; `None` for too few readings.
 fn middle(moments: &[&HeldMoment]) -> Option<f64> {
     let ratios: Vec<f64> = moments.iter().map(|moment| moment.ratio).collect();
     median(&ratios).filter(|_| moments.len() >= BEFORE_LEAST)
 }
 
-/// Degrees between a direction and the middle of those before, the short way round.
+/// Angle between the current direction and the median of those before, degrees, the short way round.
 fn turn(before: &[&HeldMoment], now: &HeldMoment) -> Option<f64> {
     let direction = now.direction?;
     let round = |degrees: f64| (degrees + 180.0).rem_euclid(360.0) - 180.0;

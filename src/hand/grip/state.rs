@@ -1,35 +1,35 @@
-//! The states of a grip, each with its beginning and the age of what it rests on.
+//! States of a grip, each with its start and the age of the readings behind it.
 
 use crate::hand::dof::PerFinger;
 use crate::hand::moment::Moment;
 use serde::Serialize;
 use std::time::Duration;
 
-/// What a finger, or the whole grasp, does to an object.
+/// State of a finger, or of the whole grasp, with respect to an object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GripState {
-    /// What it would rest on is missing, old, or contradicts itself.
+    /// The readings are missing, old or contradictory.
     #[default]
     Unknown,
-    /// At rest, open.
+    /// At rest and open.
     Open,
-    /// On its way, with or without contact.
+    /// In motion, with or without contact.
     Moving,
-    /// At rest, closed, and nothing in the way.
+    /// At rest and closed, with nothing in the way.
     Empty,
-    /// At rest, and pressing on something that stays where it is.
+    /// At rest, pressing on something that does not move.
     Holding,
-    /// Pressing on something that slides, or is about to.
+    /// Pressing on something that slides or is about to slide.
     Slipping,
-    /// It held something, which is gone though the finger did not open. Until the finger opens or touches something.
+    /// Lost the object without opening. Lasts until the finger opens or touches something.
     Lost,
     /// Pressing harder than the threshold allows.
     TooHard,
 }
 
 impl GripState {
-    /// All.
+    /// All states, in the order of [`Self::number`].
     pub const ALL: [Self; 8] = [
         Self::Unknown,
         Self::Open,
@@ -41,12 +41,12 @@ impl GripState {
         Self::TooHard,
     ];
 
-    /// Stable number, as tables of numbers have it: 0 unknown to 7 too hard, in the order of [`Self::ALL`].
+    /// Stable number for numeric tables: 0 (unknown) to 7 (too hard), in the order of [`Self::ALL`].
     pub const fn number(self) -> u8 {
         self as u8
     }
 
-    /// Stable lower-case name, as JSON has it.
+    /// Stable lower-case name, as in JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Unknown => "unknown",
@@ -61,24 +61,24 @@ impl GripState {
     }
 }
 
-/// A state with its beginning and what it rests on.
+/// A state, its start and the age of its evidence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct GripEstimate {
-    /// The state.
+    /// Current state.
     pub state: GripState,
-    /// When it was first told.
+    /// Time at which the state was entered.
     pub since: Moment,
-    /// When the oldest of the readings that it rests on was asked for; `None` while it rests on nothing.
+    /// Request time of the oldest reading behind the state; `None` without any reading.
     pub asked: Option<Moment>,
 }
 
 impl GripEstimate {
-    /// Age of the oldest reading that it rests on.
+    /// Age of the oldest reading behind the state.
     pub fn age(&self, now: Moment) -> Option<Duration> {
         self.asked.map(|asked| now.since(asked))
     }
 
-    /// Takes a newer state; its beginning stays if it is the same.
+    /// Sets the state; its start is unchanged if the state is the same.
     pub(crate) fn become_state(&mut self, state: GripState, at: Moment, asked: Option<Moment>) {
         if self.state != state {
             self.since = at;
@@ -95,19 +95,19 @@ impl GripEstimate {
     }
 }
 
-/// The grip of a hand as the newest reading shows it.
+/// Grip of a hand according to the newest reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Grip {
-    /// Of each finger; the thumb's is of both its joints.
+    /// One estimate per finger; the thumb's covers both its joints.
     pub fingers: PerFinger<GripEstimate>,
-    /// Of all together.
+    /// Estimate for all fingers together.
     pub grasp: GripEstimate,
-    /// How long a reading counts.
+    /// Age up to which a reading counts.
     pub fresh_for: Duration,
 }
 
 impl Grip {
-    /// Nothing is known, since then.
+    /// Unknown grip since `since`.
     pub fn unknown(since: Moment) -> Self {
         let estimate = GripEstimate {
             since,
@@ -120,7 +120,7 @@ impl Grip {
         }
     }
 
-    /// The grip as it is known at `now`: what rests on old readings is unknown.
+    /// Returns the grip at time `now`; a state whose readings are too old becomes unknown.
     #[must_use]
     pub fn at(&self, now: Moment) -> Self {
         Self {

@@ -1,34 +1,34 @@
-//! What a grip's state is told by: one named number for each decision.
+//! Thresholds of the grip states: one named number per decision.
 
 use crate::hand::units::decimal;
 use std::time::Duration;
 
-/// Where one state of a grip ends and another begins.
+/// Limits between the states of a grip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GripThresholds {
-    /// A finger at rest is open from this angle on, 0..=1000; below it, it is closed.
+    /// Angle from which a finger at rest is open, 0..=1000; below it the finger is closed.
     pub open_from: u16,
-    /// Force over the joint's own zero from which it touches something, g. Below half of it, it does not.
+    /// Force over the joint's own zero from which the joint touches something, g. Contact ends below half of it.
     pub contact_g: u16,
-    /// Normal force of the fingertip from which it touches something, N. Below half of it, it does not.
+    /// Normal force of the fingertip from which it touches something, N. Contact ends below half of it.
     pub contact_n: f32,
-    /// Force from which it presses too hard, g; the fingertip's newtons count likewise.
+    /// Force from which a finger presses too hard, g; also applied to the fingertip's force.
     pub too_hard_g: u16,
     /// Current from which a drive with contact presses too hard, mA.
     pub too_hard_ma: u16,
-    /// Rise of tangential by normal force that is a slip: over that of the half second before, or since it began to creep.
+    /// Rise of the ratio of tangential to normal force that counts as a slip, relative to the half second before or to the start of creeping.
     pub slip_ratio: f64,
-    /// Turn of the tangential force with which less of a rise is a slip, degrees. A turn alone is none: the wrist turns, too.
+    /// Turn of the tangential force with which a smaller rise is a slip, degrees. A turn alone is none: the wrist turns, too.
     pub slip_turn_deg: f64,
-    /// Contact is lost if it stays away for so long and the finger did not open, ms.
+    /// Absence of contact after which contact is lost, if the finger did not open, ms.
     pub lost_after_ms: u16,
-    /// Older readings are no evidence, ms.
+    /// Age beyond which a reading is no evidence, ms.
     pub fresh_ms: u16,
-    /// Fingers that must hold for the grasp to hold, 1..=5; 2 for a pinch.
+    /// Number of fingers that must hold for the grasp to hold, 1..=5; 2 for a pinch.
     pub least_fingers: u8,
 }
 
-/// One of [`GripThresholds`], to be named and set.
+/// Identifies one field of [`GripThresholds`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum GripThreshold {
     /// [`GripThresholds::open_from`].
@@ -54,7 +54,7 @@ pub enum GripThreshold {
 }
 
 impl GripThreshold {
-    /// All.
+    /// All thresholds.
     pub const ALL: [Self; 10] = [
         Self::OpenFrom,
         Self::ContactForce,
@@ -68,7 +68,7 @@ impl GripThreshold {
         Self::LeastFingers,
     ];
 
-    /// Stable name, as files have it.
+    /// Stable name, as in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::OpenFrom => "open_from",
@@ -84,12 +84,12 @@ impl GripThreshold {
         }
     }
 
-    /// The one of this name.
+    /// Returns the threshold with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|own| own.name() == name)
     }
 
-    /// Least and most that it may be, in its unit.
+    /// Allowed minimum and maximum, in the threshold's unit.
     pub const fn range(self) -> (f64, f64) {
         match self {
             Self::OpenFrom => (100.0, 1000.0),
@@ -105,7 +105,7 @@ impl GripThreshold {
         }
     }
 
-    /// What it is among these.
+    /// Returns its value in `all`.
     pub fn of(self, all: &GripThresholds) -> f64 {
         match self {
             Self::OpenFrom => all.open_from.into(),
@@ -121,7 +121,7 @@ impl GripThreshold {
         }
     }
 
-    /// Sets it among these. False, and nothing is set, for what is out of range or no whole number where one is needed.
+    /// Sets its value in `all`. Returns false, and sets nothing, if `to` is out of range or a fraction where a whole number is needed.
     pub fn set(self, all: &mut GripThresholds, to: f64) -> bool {
         let (least, most) = self.range();
         let is_whole = !matches!(self, Self::ContactTip | Self::SlipRatio | Self::SlipTurn);
@@ -152,7 +152,7 @@ impl GripThreshold {
 }
 
 impl GripThresholds {
-    /// Those that are not as usual, and what they are.
+    /// Thresholds that differ from the default, with their values.
     pub fn unusual(&self) -> impl Iterator<Item = (GripThreshold, f64)> {
         let usual = Self::default();
         let all = GripThreshold::ALL.into_iter();
@@ -179,12 +179,12 @@ impl Default for GripThresholds {
 }
 
 impl GripThresholds {
-    /// How long a reading counts.
+    /// Age up to which a reading counts.
     pub const fn fresh_for(&self) -> Duration {
         Duration::from_millis(self.fresh_ms as u64)
     }
 
-    /// How long contact must stay away to be lost.
+    /// Absence of contact after which contact is lost.
     pub const fn lost_after(&self) -> Duration {
         Duration::from_millis(self.lost_after_ms as u64)
     }
