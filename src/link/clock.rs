@@ -1,10 +1,10 @@
-//! The program's one clock. Sessions and shells read it; everything else is given moments.
+//! The program's one clock. Sessions and shells read it; everything else receives moments.
 
 use crate::hand::Moment;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// A shorter sleep is one that nobody notices.
+/// Shorter sleeps are ignored.
 const MIN_SLEEP: Duration = Duration::from_secs(1);
 
 /// A clock that never goes back, counted from its start. Copies count from the same start.
@@ -21,7 +21,7 @@ impl Clock {
         Self::with_sleep(asleep)
     }
 
-    /// The same inside a paused tokio runtime. Threads outside of it, for which this time passes too fast, are waited for.
+    /// The same inside a paused tokio runtime. Threads outside of it, for which this time passes too fast, are awaited.
     pub fn start_virtual() -> Self {
         Self {
             is_virtual: true,
@@ -29,12 +29,12 @@ impl Clock {
         }
     }
 
-    /// True of one that was started by [`Self::start_virtual`].
+    /// True if it was started by [`Self::start_virtual`].
     pub const fn is_virtual(&self) -> bool {
         self.is_virtual
     }
 
-    /// The same, with a source of its own for how long the computer was asleep since it was started; `None` where that is not known.
+    /// The same, with its own source for the total sleep time since the computer started; `None` if that is unknown.
     pub fn with_sleep(asleep: fn() -> Option<Duration>) -> Self {
         Self {
             start: Instant::now(),
@@ -54,8 +54,8 @@ impl Clock {
     }
 }
 
-/// Notices that the computer slept: of the system's two clocks that nobody sets, one goes on during sleep and the other does not.
-/// A step of the wall clock, by hand or by NTP, is no sleep.
+/// Detects that the computer slept: of the system's two unsettable clocks, one continues during sleep and the other
+/// does not. A step of the wall clock, by hand or by NTP, does not count as sleep.
 #[derive(Debug)]
 pub(crate) struct SleepWatch {
     source: fn() -> Option<Duration>,
@@ -70,7 +70,7 @@ impl SleepWatch {
         }
     }
 
-    /// How long the computer slept since the last call, if it did and the system tells.
+    /// Time that the computer slept since the last call; `None` if it did not or the system does not report it.
     pub(crate) fn slept(&mut self) -> Option<Duration> {
         self.slept_at((self.source)())
     }
@@ -82,17 +82,17 @@ impl SleepWatch {
     }
 }
 
-/// How long the computer was asleep since it was started.
+/// Total sleep time since the computer started.
 #[cfg(target_os = "linux")]
 fn asleep() -> Option<Duration> {
     use nix::time::{ClockId, clock_gettime};
-    // In this order, what passes between the two calls is no sleep.
+    // In this order, time between the two calls does not count as sleep.
     let awake = Duration::from(clock_gettime(ClockId::CLOCK_MONOTONIC).ok()?);
     let all = Duration::from(clock_gettime(ClockId::CLOCK_BOOTTIME).ok()?);
     Some(all.saturating_sub(awake))
 }
 
-/// This system has no pair of such clocks: a computer that slept is one that stalled.
+/// This system has no such pair of clocks: a sleep appears as a stall.
 #[cfg(not(target_os = "linux"))]
 fn asleep() -> Option<Duration> {
     None

@@ -1,24 +1,24 @@
-//! What a link is opened with.
+//! Configuration of a link.
 
 use crate::link::clock::Clock;
 use crate::link::poll::plan::PollRates;
 use crate::transport::{Dial, Endpoint};
 use std::sync::Arc;
 
-/// Called when something new is there, from any thread. Must return at once.
+/// Callback for new records or a new status; called from any thread, and must return at once.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// What a link is opened with.
+/// Configuration of a link.
 #[derive(Clone)]
 pub struct LinkConfig {
-    /// Where the hand is and how it is spoken to.
+    /// Address and protocol of the hand.
     pub endpoint: Endpoint,
-    /// How often to read what.
+    /// Poll rates.
     pub rates: PollRates,
     /// The program's clock.
     pub clock: Clock,
-    /// How wires are opened; tests put a simulated hand here.
+    /// Opens wires; tests use a simulated hand here.
     pub dial: Arc<dyn Dial>,
-    /// Called when a record waits.
+    /// Called when a record or a new status is available.
     pub wake: Wake,
 }

@@ -1,4 +1,4 @@
-//! The program's end of a link: what may be said to it and what is heard. Only a request waits, for its answer.
+//! The program's handle to a link: its requests and its records. Only a request waits, for its reply.
 
 use crate::hand::{ArmEpoch, HandCommand, Moment, Setpoints, Setting, Span};
 use crate::link::clock::Clock;
@@ -22,16 +22,15 @@ use std::time::Duration;
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 use tokio::time::timeout;
 
-/// Requests that may wait: the user cannot ask faster than this drains.
+/// Capacity of the request queue: the user cannot send requests faster than it drains.
 pub const REQUESTS_MAX: usize = 16;
-/// Records that may wait for a reader: ten seconds of samples at full rate of a serial line.
+/// Capacity of the record queue of a reader: ten seconds of samples at full rate of a serial line.
 pub const RECORDS_MAX: usize = 1024;
 
-/// An arming that has no answer by then has none: longer than one takes on the slowest way to a hand.
+/// Time after which an arming counts as unanswered: longer than it takes on the slowest link.
 const ARM_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// One open link, for as many as want to use it. The wire closes with the last of its handles; the hand keeps what it was
-/// told last.
+/// One open link, shared by its copies. The wire closes with the last handle; the hand keeps its last targets.
 ///
 /// ```no_run
 /// # async fn example() -> Result<(), Box<dyn std::error::Error>> {
@@ -76,7 +75,7 @@ impl Drop for LinkShared {
     }
 }
 
-/// Opens a link on this runtime and keeps it open until the last handle is dropped. Gives its records from the first on.
+/// Opens a link on this runtime and keeps it open until the last handle is dropped. Returns its records from the start.
 /// Writes nothing by itself.
 pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle, Records) {
     let (handle, ends, records) = channels(config.clock);
@@ -84,7 +83,7 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle
     (handle, records)
 }
 
-/// A handle, the ends that its session holds, and its records from the first on.
+/// Returns a handle, the session's ends of its channels, and its records from the start.
 pub(crate) fn channels(clock: Clock) -> (LinkHandle, Ends, Records) {
     let wanted = Arc::new(watch::Sender::new(PendingControl::default()));
     let (requests_in, requests) = mpsc::channel(REQUESTS_MAX);
@@ -119,10 +118,10 @@ pub(crate) fn channels(clock: Clock) -> (LinkHandle, Ends, Records) {
 }
 
 impl LinkHandle {
-    /// Where the link stands now.
+    /// The present status.
     pub fn status(&self) -> LinkStatus {
         let mut status = self.0.status.borrow().clone();
-        // Granted at once, and not when the session next looks.
+        // Visible at once, not only after the session's next step.
         status.holder = self.0.wanted.borrow().book.holder();
         status
     }
@@ -132,9 +131,9 @@ impl LinkHandle {
         *self.0.stats.borrow()
     }
 
-    /// Stops the hand where it is, before anything else, and disarms. Everything not yet sent is dropped, and whoever might move
-    /// the hand may no more. It acts at once, also if the request is dropped; awaited, it ends with what feedback says of the stop.
-    /// Without a live link it stays pending for [`STOP_PENDING`].
+    /// Stops the hand in place, before anything else, and disarms. Everything not yet sent is dropped, and the lease
+    /// ends. It acts at once, even if the returned request is dropped; awaiting it yields the outcome according to
+    /// feedback. Without a live link it stays pending for [`STOP_PENDING`].
     ///
     /// [`STOP_PENDING`]: crate::link::STOP_PENDING
     pub fn stop(&self) -> StopRequest {
@@ -144,7 +143,8 @@ impl LinkHandle {
         StopRequest { link, pressed }
     }
 
-    /// The status, in which no stop is confirmed by rest that was seen before `pressed`, or while the session has not taken the stop.
+    /// The status; a stop does not count as confirmed by rest seen before `pressed`, or while the session has not
+    /// applied the stop.
     pub(crate) fn status_since(&self, pressed: Moment) -> LinkStatus {
         let is_waiting = self.0.wanted.borrow().stop;
         let mut status = self.status();
@@ -159,7 +159,7 @@ impl LinkHandle {
         status
     }
 
-    /// Disarms: no more setpoints pass, and whoever might move the hand may no more. The hand keeps its last targets.
+    /// Disarms: setpoints are rejected from now on, and the lease ends. The hand keeps its last targets.
     pub fn disarm(&self) {
         self.end(Disarmed::Person, PendingControl::disarm);
     }
@@ -171,8 +171,8 @@ impl LinkHandle {
         });
     }
 
-    /// Grants the right to move the hand. The user must have asked for it. Nothing that the holder before sent passes any more;
-    /// an armed hand stays armed.
+    /// Grants a lease. The user must have requested it. Nothing from the previous owner is sent after this; an armed
+    /// hand stays armed.
     pub fn grant(&self, owner: Owner) -> Lease {
         let mut granted = None;
         self.0
@@ -181,18 +181,18 @@ impl LinkHandle {
         granted.unwrap_or_else(|| unreachable!("the slot is modified at once"))
     }
 
-    /// Whether a lease still holds.
+    /// Checks that a lease is still valid.
     ///
     /// # Errors
-    /// Why not.
+    /// The reason why it is not.
     pub fn check(&self, lease: Lease) -> Result<(), LeaseRefusal> {
         self.0.wanted.borrow().book.check(lease)
     }
 
-    /// Asks to arm. It happens whether the answer is awaited or not.
+    /// Requests arming, which is executed even if the result is not awaited.
     ///
     /// # Errors
-    /// Nothing is asked under a lease that does not hold.
+    /// Nothing is requested under an invalid lease.
     pub fn arm(&self, lease: Lease, request: ArmRequest) -> Result<Arming, LeaseRefusal> {
         let (answer, answered) = oneshot::channel();
         let asked = AskedArm {
@@ -204,53 +204,53 @@ impl LinkHandle {
         Ok(Arming(answered))
     }
 
-    /// Sets targets and limits: the newest of each joint is sent, at most [`SETPOINT_HZ_MAX`] times a second.
+    /// Sets targets and limits: the newest of each joint is sent, at most [`SETPOINT_HZ_MAX`] times per second.
     ///
     /// # Errors
-    /// Nothing is sent under a lease that does not hold.
+    /// Nothing is sent under an invalid lease.
     ///
     /// [`SETPOINT_HZ_MAX`]: crate::link::session::motion::SETPOINT_HZ_MAX
     pub fn set(&self, lease: Lease, setpoints: &Setpoints) -> Result<(), LeaseRefusal> {
         self.under(lease, |wanted| wanted.set(setpoints))
     }
 
-    /// From now on the hand is stopped at this moment, unless it is put off before: while the user holds what has to be held.
-    /// The lease outlasts that, so that who holds again may arm again.
+    /// Stops the hand at this time unless it is extended before: for use while the user holds a key. The lease remains
+    /// valid, so that its owner can arm again.
     ///
     /// # Errors
-    /// Nothing is changed under a lease that does not hold.
+    /// Nothing is changed under an invalid lease.
     pub fn run_until(&self, lease: Lease, until: Moment) -> Result<(), LeaseRefusal> {
         self.under(lease, |wanted| wanted.runs_until = Some(until))
     }
 
-    /// Whether the user has to hold something while the hand moves. Let go, an armed hand is stopped and disarmed before anything
-    /// else; leases outlast that.
+    /// Sets the hold-to-run mode: the key the user has to hold while the hand moves. When it is released, an armed hand
+    /// is stopped and disarmed before anything else; leases remain valid.
     pub fn hold_to_run(&self, hold: HoldToRun) {
         self.0
             .wanted
             .send_if_modified(|wanted| std::mem::replace(&mut wanted.hold_to_run, hold) != hold);
     }
 
-    /// Stops the hand where it is, before anything else, and disarms. The lease outlasts it.
+    /// Stops the hand in place, before anything else, and disarms. The lease remains valid.
     ///
     /// # Errors
-    /// Nothing is stopped under a lease that does not hold.
+    /// Nothing is stopped under an invalid lease.
     pub fn halt(&self, lease: Lease) -> Result<(), LeaseRefusal> {
         self.under(lease, |wanted| wanted.stop(Disarmed::Released))
     }
 
-    /// Disarms a hand that has nothing to do. The lease outlasts it.
+    /// Disarms an idle hand. The lease remains valid.
     ///
     /// # Errors
-    /// Nothing is changed under a lease that does not hold.
+    /// Nothing is changed under an invalid lease.
     pub fn rest(&self, lease: Lease) -> Result<(), LeaseRefusal> {
         self.under(lease, |wanted| wanted.disarm(Disarmed::Released))
     }
 
-    /// Ends a lease for this reason: the hand is stopped and disarmed, and the user has to grant it again.
+    /// Ends a lease for this reason: the hand is stopped and disarmed, and the user has to grant a lease again.
     ///
     /// # Errors
-    /// Nothing is stopped under a lease that does not hold.
+    /// Nothing is stopped under an invalid lease.
     pub fn give_back(&self, lease: Lease, why: Disarmed) -> Result<(), LeaseRefusal> {
         self.under(lease, |wanted| {
             wanted.stop(why);
@@ -271,43 +271,43 @@ impl LinkHandle {
         done
     }
 
-    /// Reads at other rates from now on, reconnects included. Only what is asked for changes; nothing is written.
+    /// Changes the poll rates, also for later reconnects. Writes nothing.
     pub fn read_at(&self, rates: PollRates) {
         self.0
             .wanted
             .send_modify(|wanted| wanted.rates = Some(rates));
     }
 
-    /// Reads this first while something moves, reconnects included.
+    /// Sets which reads are preferred during motion, also for later reconnects.
     pub fn read_first(&self, priority: PollPriority) {
-        // Looked at before each read, so that nobody has to be woken for it.
+        // Checked before each read, so the session need not be woken.
         self.0.wanted.send_if_modified(|wanted| {
             wanted.priority = priority;
             false
         });
     }
 
-    /// Writes, and waits until the hand acknowledged. It does not say that the value is in force. What moves the hand is
-    /// refused: that needs a lease.
+    /// Writes, and waits for the hand's acknowledgement, which does not prove that the value is in effect. Commands
+    /// that move the hand are refused, because they need a lease.
     ///
     /// # Errors
-    /// [`RequestError`]: [`RequestError::NotConnected`] at once while there is no live hand, [`RequestError::Full`] if too
-    /// many wait. Nothing is tried again by itself.
+    /// [`RequestError`]: [`RequestError::NotConnected`] at once while there is no live hand, [`RequestError::Full`] if
+    /// the queue is full. Nothing is retried automatically.
     pub async fn write(&self, command: HandCommand) -> Result<(), RequestError> {
         self.request(|answer| Request::Command(command, None, answer))
             .await
     }
 
-    /// Writes under a lease, and waits as [`Self::write`] does. What moves the hand needs arming too.
+    /// Writes under a lease, and waits as [`Self::write`] does. Commands that move the hand need arming too.
     ///
     /// # Errors
-    /// As [`Self::write`], and [`RequestError::NotOwner`] if the lease does not hold when it is this command's turn.
+    /// As [`Self::write`], and [`RequestError::NotOwner`] if the lease is invalid when the command has its turn.
     pub async fn write_as(&self, lease: Lease, command: HandCommand) -> Result<(), RequestError> {
         self.request(|answer| Request::Command(command, Some(lease), answer))
             .await
     }
 
-    /// Reads some memory.
+    /// Reads a range of memory.
     ///
     /// # Errors
     /// As [`Self::write`].
@@ -315,7 +315,7 @@ impl LinkHandle {
         self.request(|answer| Request::Read(span, answer)).await
     }
 
-    /// Writes one kept group at rest, reads it back, and says what the hand holds.
+    /// Writes one persistent group at rest, reads it back, and returns the values that the hand holds.
     ///
     /// # Errors
     /// As [`Self::write`].
@@ -323,7 +323,7 @@ impl LinkHandle {
         self.request(|answer| Request::Set(setting, answer)).await
     }
 
-    /// Writes one kept group at rest, once. It is not read back: the hand may answer elsewhere then.
+    /// Writes one persistent group at rest, once. It is not read back: the hand may answer elsewhere afterwards.
     ///
     /// # Errors
     /// As [`Self::write`], and [`RequestError::NotNow`] while the hand is armed or not known to rest.
@@ -332,7 +332,7 @@ impl LinkHandle {
             .await
     }
 
-    /// Writes the hand's parameters to its flash, and says what is known of it (manual 2.6.4).
+    /// Writes the hand's parameters to its flash, and returns what is known of the result (manual 2.6.4).
     ///
     /// # Errors
     /// As [`Self::write`].
@@ -340,7 +340,7 @@ impl LinkHandle {
         self.request(Request::Save).await
     }
 
-    /// Returns to the factory's parameters. The hand may be found at another id, speed or address afterwards.
+    /// Restores the factory parameters. The hand may have another id, speed or address afterwards.
     ///
     /// # Errors
     /// As [`Self::write`].
@@ -348,7 +348,7 @@ impl LinkHandle {
         self.request(Request::Reset).await
     }
 
-    /// Calibrates the force sensors. The line is left to the hand, and nothing arms, until that is over.
+    /// Calibrates the force sensors. Until that is over the line is reserved for the hand, and arming is refused.
     ///
     /// # Errors
     /// As [`Self::write`].
@@ -356,7 +356,7 @@ impl LinkHandle {
         self.request(Request::Calibrate).await
     }
 
-    /// Asks one thing and waits for its end. What is dropped before it was sent is not sent.
+    /// Sends one request and waits for its result. A future dropped before its request was sent cancels it.
     async fn request<T>(
         &self,
         request: impl FnOnce(Answer<T>) -> Request,
@@ -376,12 +376,12 @@ impl LinkHandle {
             })?;
         match answered.await {
             Ok(end) => end,
-            // The session ended with the request in its hands.
+            // The session ended during the request.
             Err(_gone) => Err(RequestError::LinkLost),
         }
     }
 
-    /// Everything that happens from now on.
+    /// All records from now on.
     pub fn records(&self) -> Records {
         match self.0.records.upgrade() {
             Some(records) => Records::of(records.subscribe()),
@@ -389,7 +389,7 @@ impl LinkHandle {
         }
     }
 
-    /// What may be watched of the link without keeping it open.
+    /// Observes the link without keeping it open.
     pub fn observe(&self) -> LinkObserver {
         LinkObserver {
             records: self.records(),
@@ -399,12 +399,12 @@ impl LinkHandle {
         }
     }
 
-    /// What stops the hand from elsewhere without keeping the link open.
+    /// Returns a stopper for the hand that does not keep the link open.
     pub fn stopper(&self) -> LinkStopper {
         LinkStopper(Arc::downgrade(&self.0))
     }
 
-    /// The memory as it was read last.
+    /// The last read memory.
     pub(crate) fn image(&self) -> watch::Receiver<RegisterImage> {
         self.0.image.clone()
     }
@@ -414,13 +414,13 @@ impl LinkHandle {
         self.0.clock
     }
 
-    /// The recorded traffic; copies go on recording with the link.
+    /// The recorded traffic; copies continue to record with the link.
     pub fn tap(&self) -> WireTap {
         self.0.tap.clone()
     }
 }
 
-/// An arming that was asked for. Awaited, it ends with the epoch that setpoints belong to, or why the hand was not armed.
+/// A requested arming. Awaiting it yields the epoch for setpoints, or the reason why the hand was not armed.
 #[derive(Debug)]
 pub struct Arming(oneshot::Receiver<Result<ArmEpoch, ArmRefusal>>);
 
@@ -440,8 +440,8 @@ impl IntoFuture for Arming {
     }
 }
 
-/// A stop that was asked for. It acts whether it is awaited or not; awaited it says what feedback says of it. It stays pending while a
-/// link that was lost comes back within [`STOP_PENDING`](crate::link::STOP_PENDING).
+/// A requested stop. It acts even if it is not awaited; awaiting it yields the outcome according to feedback. It stays
+/// pending while a lost link comes back within [`STOP_PENDING`](crate::link::STOP_PENDING).
 #[derive(Debug)]
 pub struct StopRequest {
     link: LinkHandle,
@@ -458,13 +458,13 @@ impl IntoFuture for StopRequest {
     }
 }
 
-/// Stops a hand from elsewhere. The wire closes with the last handle, whoever still has this.
+/// Stops a hand without keeping its link open. The wire closes with the last handle, even if a stopper remains.
 #[derive(Debug, Clone)]
 pub struct LinkStopper(Weak<LinkShared>);
 
 impl LinkStopper {
-    /// Stops the hand as [`LinkHandle::stop`] does if anybody may move it over this link, or it may still go on, and writes nothing
-    /// otherwise. True if it was told to stop.
+    /// Stops the hand as [`LinkHandle::stop`] does if a lease is held on this link, or the hand may still move, and
+    /// writes nothing otherwise. True if a stop was requested.
     pub fn stop_if_moved(&self) -> bool {
         let link = self.0.upgrade().map(LinkHandle);
         let moved = link.filter(|link| link.status().goes_on());

@@ -1,5 +1,5 @@
-//! The hand's memory as it was read last, with the time of each stretch, for those who share one hand. Pure: replies, writes
-//! and failures come in, bytes with an age go out. What was not read is not there.
+//! The hand's memory as last read, with the time of each range, shared by all clients of one hand. Pure: applies
+//! replies, writes and failures, and returns bytes with an age. Ranges that were not read are absent.
 
 use crate::hand::feedback::group::TIP_BYTES;
 use crate::hand::{Moment, Reply, Span};
@@ -8,33 +8,33 @@ use crate::link::request::RequestError;
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// What was read because somebody asked serves others so long: as long as the slowest part that is read by itself.
+/// A range read on request also serves other clients for this long: the period of the slowest polled part.
 const AREA_FRESH: Duration = Duration::from_millis(500);
-/// However seldom a part is read, nothing older than this is given.
+/// However rarely a part is polled, nothing older than this is returned.
 const OLDEST: Duration = Duration::from_secs(1);
-/// What is read by itself and does not come within this is asked for.
+/// A polled part that does not arrive within this is requested.
 const JOIN_WINDOW: Duration = Duration::from_millis(250);
-/// Stretches that were asked for which are remembered; the oldest makes room. Clients of one hand ask for the same few.
+/// Requested ranges kept; the oldest is dropped. Clients of one hand request the same few.
 const AREAS_MAX: usize = 16;
-/// Stretches that are read as a whole.
+/// Number of ranges that are polled as a whole.
 const BLOCKS: usize = ReadPart::ALL.len() + GAPS.len();
 
-/// What the image says to whoever wants a stretch of memory.
+/// Result of looking up a range of memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Seen {
     /// The bytes.
     Bytes(Vec<u8>),
-    /// A part of it is to be read soon: look again when the image changes, or then.
+    /// A part of it is due soon: look it up again when the image changes, or at this time.
     Soon(Moment),
-    /// This must be asked for.
+    /// This range must be requested.
     Missing(Span),
-    /// This was asked for a moment ago, and failed.
+    /// A request for it failed just now.
     Failed(RequestError),
     /// There is no live hand.
     Offline,
 }
 
-/// The memory of one hand. While there is no live one only [`Self::newest`] knows what was read last.
+/// The memory of one hand. While there is no live hand only [`Self::newest`] returns the last values.
 #[derive(Debug, Default)]
 pub(crate) struct RegisterImage {
     is_live: bool,
@@ -42,11 +42,11 @@ pub(crate) struct RegisterImage {
     areas: ArrayVec<Area, AREAS_MAX>,
 }
 
-/// A stretch that the session reads by itself, always as a whole.
+/// A range that the session polls, always as a whole.
 #[derive(Debug)]
 struct Block {
     span: Span,
-    /// How often it is wanted.
+    /// Configured poll period.
     period: Duration,
     came: Option<Came>,
 }
@@ -54,12 +54,12 @@ struct Block {
 #[derive(Debug)]
 struct Came {
     asked: Moment,
-    /// After the one before.
+    /// Time since the previous read.
     after: Duration,
     bytes: ArrayVec<u8, { TIP_BYTES as usize }>,
 }
 
-/// A stretch that somebody asked for, and what became of that.
+/// A range read on request, and the result.
 #[derive(Debug)]
 struct Area {
     span: Span,
@@ -68,10 +68,10 @@ struct Area {
 }
 
 impl RegisterImage {
-    /// Of a hand that answers from now on, whose parts are read with these periods.
+    /// The image of a hand that is live from now on, whose parts are polled with these periods.
     pub(crate) fn live(periods: impl Iterator<Item = (ReadPart, Duration)>) -> Self {
         let parts = periods.map(|(part, period)| (part.span(), period));
-        // Gaps come along with their neighbours where the hand allows it.
+        // Gaps are read along with their neighbours if the hand allows it.
         let all = parts.chain(GAPS.map(|gap| (gap, AREA_FRESH)));
         let block = |(span, period)| Block {
             span,
@@ -85,13 +85,13 @@ impl RegisterImage {
         }
     }
 
-    /// There is no live hand any more.
+    /// Marks the hand as lost.
     pub(crate) fn lose(&mut self) {
         self.is_live = false;
         self.areas.clear();
     }
 
-    /// What was read last of a stretch that the session reads by itself, however old it is.
+    /// The last bytes of a polled range, however old.
     pub(crate) fn newest(&self, span: Span) -> Option<Vec<u8>> {
         let mut blocks = self.blocks.iter();
         let block = blocks.find(|block| block.span.covers(span))?;
@@ -99,7 +99,7 @@ impl RegisterImage {
         block.span.slice(&came.bytes, span).map(<[u8]>::to_vec)
     }
 
-    /// The parts are read at other rates from now on.
+    /// Applies new poll periods.
     pub(crate) fn change_periods(&mut self, periods: impl Iterator<Item = (ReadPart, Duration)>) {
         for (part, period) in periods {
             let mut blocks = self.blocks.iter_mut();
@@ -109,7 +109,7 @@ impl RegisterImage {
         }
     }
 
-    /// Takes every block that a reply holds whole.
+    /// Applies a reply to every block that it covers.
     pub(crate) fn take(&mut self, reply: &Reply<'_>) {
         let held = self
             .blocks
@@ -128,7 +128,7 @@ impl RegisterImage {
         }
     }
 
-    /// What became of a stretch that somebody asked for.
+    /// Stores the result of a requested range.
     pub(crate) fn take_area(
         &mut self,
         span: Span,
@@ -142,7 +142,7 @@ impl RegisterImage {
         self.areas.push(Area { span, asked, read });
     }
 
-    /// A write went out: what was read there before tells nothing any more.
+    /// Drops everything that overlaps a write: the old bytes are no longer valid.
     pub(crate) fn forget(&mut self, written: Span) {
         for block in &mut self.blocks {
             if overlap(block.span, written) {
@@ -152,7 +152,7 @@ impl RegisterImage {
         self.areas.retain(|area| !overlap(area.span, written));
     }
 
-    /// What is known of a stretch at `now`, for one who waits since `since`.
+    /// Looks up a range at `now`, for a client that has waited since `since`.
     pub(crate) fn look(&self, span: Span, since: Moment, now: Moment) -> Seen {
         if !self.is_live {
             return Seen::Offline;
@@ -174,7 +174,7 @@ impl RegisterImage {
         soon.map_or(Seen::Bytes(bytes), Seen::Soon)
     }
 
-    /// The stretch from `at` that lies in one block, or in none.
+    /// The range from `at` that lies in one block, or in none.
     fn run(&self, at: u32, end: u32) -> Span {
         let starts = self
             .blocks
@@ -192,7 +192,7 @@ impl RegisterImage {
             return Seen::Bytes(bytes);
         }
         let mut areas = self.areas.iter().rev();
-        // What was asked for while one waits is fresh for them, however long all parts of what they want take.
+        // A reply requested during the wait is fresh for that client, however long all parts of its range take.
         let is_fresh = |area: &&Area| {
             let is_new = area.asked >= since || now.since(area.asked) <= AREA_FRESH;
             area.span.covers(run) && is_new
@@ -207,7 +207,7 @@ impl RegisterImage {
             };
         }
         match block {
-            // Asked for as a whole, so that it serves all who want something of it.
+            // Requested as a whole, so that it serves all clients of any part.
             Some(block) => match block.comes_by(since) {
                 Some(until) if until > now => Seen::Soon(until),
                 _ => Seen::Missing(block.span),
@@ -218,7 +218,7 @@ impl RegisterImage {
 }
 
 impl Block {
-    /// The bytes of a run inside, unless they are older than this block's turns are apart.
+    /// The bytes of a range inside, unless they are older than the block's poll period.
     fn fresh(&self, run: Span, now: Moment) -> Option<Vec<u8>> {
         let came = self.came.as_ref()?;
         let is_fresh = now.since(came.asked) <= self.lasts(came);
@@ -230,7 +230,7 @@ impl Block {
         self.period.max(came.after).min(OLDEST)
     }
 
-    /// Until when it is worth waiting for its next turn; none if that is far off.
+    /// Time until which it is worth waiting for the next poll; `None` if that is too far off.
     fn comes_by(&self, since: Moment) -> Option<Moment> {
         match &self.came {
             Some(came) => Some(came.asked.plus(self.lasts(came) + JOIN_WINDOW)),
@@ -288,7 +288,7 @@ mod tests {
             Seen::Bytes(vec![7; 3])
         );
         assert_eq!(seen(&image, ANGLES, 21), Seen::Soon(at(270)));
-        // Who reads as fast as it can, every 30 ms, gives each reply for so long.
+        // A session that polls as fast as it can, every 30 ms, serves each reply for that long.
         take(&mut image, ANGLES, 40, 8);
         assert_eq!(seen(&image, ANGLES, 70), Seen::Bytes(vec![8; 12]));
         assert_eq!(seen(&image, ANGLES, 71), Seen::Soon(at(320)));
@@ -313,7 +313,7 @@ mod tests {
         let lost = RequestError::LinkLost;
         image.take_area(id, at(600), Err(lost.clone()));
         assert_eq!(seen(&image, id, 601), Seen::Failed(lost));
-        // Bytes of two reads are not put together.
+        // Bytes of two reads are not combined.
         image.take_area(Span::new(1002, 2), at(602), Ok(vec![3, 0]));
         assert_eq!(
             seen(&image, Span::new(1001, 2), 603),

@@ -3,13 +3,13 @@
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// Longest reply, in memory bytes, that an adapter holds back until its timer ticks; a fuller packet is passed on at once.
+/// Longest reply, in memory bytes, that an adapter holds back until its timer ticks; a fuller packet is forwarded at once.
 pub const KEPT_MAX: u16 = 48;
-/// Round trips that a judgement needs, and looks at.
+/// Round trips that a verdict needs, and considers.
 const TRIPS: usize = 16;
-/// The tick of adapters as delivered.
+/// Default tick of adapters.
 const TICK_MS: u128 = 16;
-/// How far a tick's round trips lie apart, either way.
+/// Tolerance of a round trip around a tick, either way.
 const SPREAD_MS: u128 = 2;
 
 /// The last round trips of short replies.
@@ -19,7 +19,7 @@ pub struct Ticks {
 }
 
 impl Ticks {
-    /// A reply of this many memory bytes took this long, measured at this end.
+    /// Records that a reply of this many memory bytes took this long, measured at this end.
     pub fn took(&mut self, bytes: u16, trip: Duration) {
         if bytes > KEPT_MAX {
             return;
@@ -30,7 +30,7 @@ impl Ticks {
         self.trips.push(trip);
     }
 
-    /// True if the replies come with the ticks of a timer of 16 ms: nearly all after one, or nearly all after two.
+    /// True if the replies arrive at the ticks of a timer of 16 ms: nearly all after one, or nearly all after two.
     pub fn are_seen(&self) -> bool {
         let near = |tick: u128| {
             let on_it = |trip: &&Duration| trip.as_millis().abs_diff(tick) < SPREAD_MS;

@@ -1,23 +1,23 @@
-//! Who may move a hand: one at a time, granted by the user, seen by everyone. Pure; the slot of what is wanted holds it, so that
-//! a grant, an end and what is sent under it happen in one order.
+//! Leases: the right to move a hand, held by one owner at a time, granted by the user, visible to all. Pure; the
+//! control slot contains it, so that a grant, an end and what is sent under it are strictly ordered.
 
 use crate::hand::Moment;
 use crate::record::Disarmed;
 use std::net::SocketAddr;
 
-/// Who may move a hand.
+/// Kind of owner of a lease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Owner {
-    /// The user at this program: its window, or its command line.
+    /// The user of this program: its window, or its command line.
     Person,
     /// A sequence, a series of trials or another task that the user started here.
     Task,
-    /// An exhibition: strangers, within its file.
+    /// An exhibition: visitors, within the limits of its file.
     Exhibition,
     /// A gamepad at this computer.
     Gamepad,
-    /// Lines of JSON from this sender.
+    /// JSON lines from this sender.
     Stream(SocketAddr),
     /// A program that sends over DDS.
     Dds,
@@ -28,13 +28,13 @@ pub enum Owner {
 }
 
 impl Owner {
-    /// True for one outside this program: it is told in every view, with its end in reach.
+    /// True for an owner outside this program: every view shows it, with a control to end it.
     pub const fn is_outside(self) -> bool {
         !matches!(self, Self::Person | Self::Task | Self::Exhibition)
     }
 
-    /// True if it may go on after this without the user. An exhibition clears what can be cleared, and counts it; it opens a hot hand
-    /// and lets it rest.
+    /// True if the owner may continue after this without the user. An exhibition clears faults that can be cleared, and
+    /// counts them; it opens a hot hand and lets it rest.
     const fn outlives(self, end: Disarmed) -> bool {
         matches!(
             (self, end),
@@ -46,24 +46,24 @@ impl Owner {
     }
 }
 
-/// The right to move one hand, as granted once. Worth nothing once another was granted, or it ended.
+/// The right to move one hand, from one grant. Invalid once another was granted, or it ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Lease(u64);
 
-/// Whether motion passes only while the user holds a key: whoever has the right.
+/// Hold-to-run mode: motion is possible only while the user holds a key, whoever has the lease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum HoldToRun {
-    /// Nothing has to be held.
+    /// No key has to be held.
     #[default]
     Off,
-    /// It is not held: nothing may be armed.
+    /// The key is released: arming is refused.
     Released,
-    /// It was held, which is believed until then.
+    /// The key was held; valid until this time.
     Held(Moment),
 }
 
 impl HoldToRun {
-    /// When motion passes no more, if it ever does.
+    /// Time at which motion ends; `None` if no key has to be held.
     pub(crate) const fn until(self) -> Option<Moment> {
         match self {
             Self::Off => None,
@@ -72,33 +72,33 @@ impl HoldToRun {
         }
     }
 
-    /// Whether it is held, if it has to be.
+    /// True while the key is held; `None` if no key has to be held.
     pub fn is_held(self, now: Moment) -> Option<bool> {
         self.until().map(|until| now < until)
     }
 }
 
-/// Who has the right now.
+/// The current lease and its owner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct LeaseHolder {
-    /// The right to move the hand.
+    /// The current lease.
     pub lease: Lease,
-    /// Who holds the right.
+    /// Owner of the lease.
     pub owner: Owner,
 }
 
-/// Why something was not done under a lease. Nothing was sent.
+/// Reason why an operation under a lease was refused. Nothing was sent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum LeaseRefusal {
-    /// Another has the right now.
+    /// Another owner has the lease.
     #[error("another may move the hand now: nothing was sent")]
     Taken(Owner),
-    /// It ended, and the user has to grant it again.
+    /// The lease ended, and the user has to grant it again.
     #[error("nobody may move the hand now, a person has to grant it: nothing was sent")]
     Ended(Disarmed),
 }
 
-/// Who may move one hand, and how the last right ended.
+/// The lease of one hand, and how the last one ended.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LeaseBook {
     granted: u64,
@@ -117,7 +117,7 @@ impl Default for LeaseBook {
 }
 
 impl LeaseBook {
-    /// The user grants the right; whoever had it has it no more.
+    /// Grants a new lease and revokes the previous one.
     pub(crate) const fn grant(&mut self, owner: Owner) -> Lease {
         self.granted += 1;
         let lease = Lease(self.granted);
@@ -129,7 +129,7 @@ impl LeaseBook {
         self.holder
     }
 
-    /// Whether this one holds.
+    /// Checks that a lease is valid.
     pub(crate) fn check(&self, lease: Lease) -> Result<(), LeaseRefusal> {
         match self.holder {
             Some(holder) if holder.lease == lease => Ok(()),
@@ -138,7 +138,7 @@ impl LeaseBook {
         }
     }
 
-    /// Ends the right, whoever has it, unless it outlives this.
+    /// Ends the current lease, unless its owner outlives this reason.
     pub(crate) fn end(&mut self, why: Disarmed) {
         let ended = |holder: &mut LeaseHolder| !holder.owner.outlives(why);
         if self.holder.take_if(ended).is_some() {

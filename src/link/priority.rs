@@ -1,19 +1,19 @@
-//! The priority of the thread that links run on. The system may refuse it; then nothing is said but by the doctor.
+//! The priority of the thread that links run on. The system may refuse it; only the doctor reports that.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What is asked for: ahead of compilers and browsers, behind nothing that the system needs.
+/// Requested nice value: ahead of compilers and browsers, behind everything that the system needs.
 #[cfg(target_os = "linux")]
 const NICE: i32 = -10;
 
 static IS_RAISED: AtomicBool = AtomicBool::new(false);
 
-/// Asks the system to prefer the calling thread, on which links are to run.
+/// Requests a higher priority for the calling thread, on which links will run.
 pub fn raise() {
     IS_RAISED.store(asked(), Ordering::Relaxed);
 }
 
-/// True if the system prefers the thread that links run on.
+/// True if the system granted that priority.
 pub fn is_raised() -> bool {
     IS_RAISED.load(Ordering::Relaxed)
 }

@@ -1,22 +1,22 @@
-//! How often something happens.
+//! Event rates.
 
 use crate::hand::Moment;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Rates count over this time.
+/// Time window of the rates.
 const RATE_OVER: Duration = Duration::from_secs(1);
-/// Most events a rate can hold: more a second than any wire gives.
+/// Maximum events in the window: more than any wire delivers.
 const RATE_EVENTS: usize = 16_384;
 
-/// How often something happened in the last second.
+/// Rate of events over the last second.
 #[derive(Debug, Default)]
 pub(crate) struct EventRate {
     hits: VecDeque<Moment>,
 }
 
 impl EventRate {
-    /// It happened.
+    /// Counts an event.
     pub(crate) fn hit(&mut self, now: Moment) {
         if self.hits.len() == RATE_EVENTS {
             self.hits.pop_front();
@@ -35,7 +35,7 @@ impl EventRate {
         }
     }
 
-    /// Events a second as of now, between the oldest and the newest of the last second.
+    /// Events per second at `now`, between the oldest and the newest of the last second.
     pub(crate) fn hz(&mut self, now: Moment) -> f64 {
         self.forget(now);
         let (Some(first), Some(last)) = (self.hits.front(), self.hits.back()) else {

@@ -1,5 +1,5 @@
-//! Reads that many may ask for without asking the hand more often: what the session read just now serves all, and what it
-//! does not read by itself is asked for once, seldom, for all who wait.
+//! Shared reads that add no load on the hand: a recent poll of the session serves all clients, and an unpolled range is
+//! requested once, at a limited rate, for all who wait.
 
 use crate::hand::Span;
 use crate::link::clock::Clock;
@@ -12,35 +12,34 @@ use std::time::Duration;
 use tokio::sync::{Mutex, watch};
 use tokio::time::{Instant, sleep_until, timeout};
 
-/// Whoever waits so long is told that the hand did not answer.
+/// Time after which a waiting client gets a timeout.
 pub const RECENT_WINDOW: Duration = Duration::from_secs(3);
-/// After a read that the session would not have made, so many times its length go by until the next: they take the link
-/// 4 of 100 parts of its time.
+/// Pause after an extra read, as a multiple of its duration: such reads take 4% of the link's time.
 const PAUSE_TIMES: u32 = 24;
-/// The shortest such pause after a stretch that the session never reads: however fast the wire is, clients that read here and there
-/// cost it a few requests a second.
+/// The shortest such pause after a range that is never polled: however fast the wire is, clients that read scattered
+/// ranges cost it a few requests per second.
 const PAUSE_MIN: Duration = Duration::from_millis(200);
-/// So many such reads go at once after a while without: a program that gets to know the hand asks for a few, each of which it waits
-/// for no longer than a hand takes.
+/// Number of such reads allowed in a burst after an idle time: a program that explores the hand requests a few, each of
+/// which takes no longer than the hand does.
 const AT_ONCE: u32 = 8;
-/// The longest such pause, so that one slow answer does not keep all others waiting.
+/// The longest such pause, so that one slow reply does not delay all others.
 const PAUSE_MAX: Duration = Duration::from_millis(500);
 
-/// Recent reads of one hand. Copies share what they ask for.
+/// Recent reads of one hand. Copies share their requests.
 #[derive(Debug, Clone)]
 pub struct RecentReads {
     link: LinkHandle,
     image: watch::Receiver<RegisterImage>,
     clock: Clock,
-    /// For parts that the session reads by itself, and for other stretches.
+    /// For parts that the session polls, and for other ranges.
     turns: [Arc<Turn>; 2],
 }
 
-/// Who has the turn at asking the hand, and when the next may if all came evenly.
+/// The turn to send an extra read, and the time of the next if all came evenly.
 type Turn = Mutex<Option<Instant>>;
 
 impl RecentReads {
-    /// Of the hand at this link.
+    /// Recent reads of the hand at this link.
     pub fn of(link: &LinkHandle) -> Self {
         Self {
             image: link.image(),
@@ -50,7 +49,7 @@ impl RecentReads {
         }
     }
 
-    /// Memory that is not older than the session's reads of it are apart, or that is read now.
+    /// Returns memory that is at most one poll period old, or reads it now.
     ///
     /// # Errors
     /// As [`LinkHandle::read`], and [`RequestError::Timeout`] after [`RECENT_WINDOW`].
@@ -64,7 +63,7 @@ impl RecentReads {
         })
     }
 
-    /// What was read last of a stretch that the session reads by itself, however old that is, also of a hand that is lost.
+    /// The last bytes of a polled range, however old, also of a hand that is lost.
     pub(crate) fn newest(&self, span: Span) -> Option<Vec<u8>> {
         self.image.borrow().newest(span)
     }
@@ -93,7 +92,8 @@ impl RecentReads {
         }
     }
 
-    /// Asks the hand, one at a time and seldom, unless somebody else did meanwhile. The session puts the answer into the image.
+    /// Reads from the hand, one range at a time and at a limited rate, unless another client did so meanwhile. The
+    /// session stores the reply in the image.
     async fn ask(&self, span: Span) -> Result<(), RequestError> {
         let [parts, others] = &self.turns;
         let is_part = ReadPart::ALL.into_iter().any(|part| part.span() == span);

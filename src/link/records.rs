@@ -1,4 +1,4 @@
-//! What is heard of a link: its records one after the other, and what may be watched without keeping it open.
+//! Observation of a link: its records in order, and its state, without keeping it open.
 
 use crate::link::stats::LinkStats;
 use crate::link::status::LinkStatus;
@@ -7,20 +7,20 @@ use crate::record::Record;
 use tokio::sync::broadcast::error::{RecvError, TryRecvError};
 use tokio::sync::{broadcast, watch};
 
-/// What may be watched of a link. The wire closes with the last handle, whoever still watches.
+/// Observes a link. The wire closes with the last handle, regardless of observers.
 #[derive(Debug)]
 pub struct LinkObserver {
-    /// Everything that happens from the moment on at which it was made.
+    /// All records since the observer was created.
     pub records: Records,
     /// The recorded traffic.
     pub tap: WireTap,
-    /// Where the link stands.
+    /// The link's status.
     pub status: watch::Receiver<LinkStatus>,
     /// Its statistics.
     pub stats: watch::Receiver<LinkStats>,
 }
 
-/// What happens at a hand, one record after the other. A reader that is too slow loses the oldest, and they are counted.
+/// The records of a hand, in order. A reader that is too slow loses the oldest, which are counted.
 #[derive(Debug)]
 pub struct Records {
     records: broadcast::Receiver<Record>,
@@ -32,7 +32,7 @@ impl Records {
         Self { records, lost: 0 }
     }
 
-    /// The next record, if one waits.
+    /// The next record, if one is available.
     pub fn try_next(&mut self) -> Option<Record> {
         loop {
             match self.records.try_recv() {
@@ -54,7 +54,7 @@ impl Records {
         }
     }
 
-    /// Records that this reader was too slow for.
+    /// Number of records lost because this reader was too slow.
     pub const fn lost(&self) -> u64 {
         self.lost
     }

@@ -1,36 +1,36 @@
-//! What may be asked of a link, each with the place its answer goes to, and how asking can fail.
+//! Requests to a link, each with the channel for its reply, and their errors.
 
 use crate::hand::{HandCommand, OutOfRange, Refusal, Setting, Span};
 use crate::link::lease::{Lease, LeaseRefusal};
 use crate::record::{Calibrated, NotSent, Reset, Saved, Written};
 use tokio::sync::oneshot;
 
-/// Where the answer to a request goes. Nobody may be waiting any more; then it is dropped.
+/// Channel for the reply to a request. The reply is dropped if the receiver is gone.
 pub(crate) type Answer<T> = oneshot::Sender<Result<T, RequestError>>;
 
-/// One thing asked of the hand.
+/// One request to the hand.
 #[derive(Debug)]
 pub(crate) enum Request {
     /// Write, under a lease if the hand moves by it; answered once the hand acknowledged every write.
     Command(HandCommand, Option<Lease>, Answer<()>),
-    /// Read some memory.
+    /// Read a range of memory.
     Read(Span, Answer<Vec<u8>>),
-    /// Write one kept group and read it back.
+    /// Write one persistent group and read it back.
     Set(Setting, Answer<Written>),
-    /// Write one kept group at rest; the hand may answer elsewhere then.
+    /// Write one persistent group at rest; the hand may answer elsewhere afterwards.
     SetUnread(Setting, Answer<()>),
     /// Write the parameters to flash.
     Save(Answer<Saved>),
-    /// Return to the factory's parameters.
+    /// Restore the factory parameters.
     Reset(Answer<Reset>),
     /// Calibrate the force sensors.
     Calibrate(Answer<Calibrated>),
 }
 
 impl Request {
-    /// Answers that it was not done.
+    /// Reports that the request was not done.
     pub(crate) fn fail(self, error: RequestError) {
-        // Whoever asked may be gone.
+        // The requester may have dropped its receiver.
         let _told = match self {
             Self::Command(_, _, answer) => answer.send(Err(error)).is_ok(),
             Self::Read(_, answer) => answer.send(Err(error)).is_ok(),
@@ -42,7 +42,7 @@ impl Request {
         };
     }
 
-    /// True if nobody waits for the answer any more.
+    /// True if the requester dropped its receiver.
     pub(crate) fn is_abandoned(&self) -> bool {
         match self {
             Self::Command(_, _, answer) => answer.is_closed(),
@@ -56,46 +56,46 @@ impl Request {
     }
 }
 
-/// How a request failed. Nothing is tried again by itself.
+/// Reason why a request failed. Nothing is retried automatically.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
-    /// There is no live hand. Nothing was sent and nothing waits.
+    /// There is no live hand. Nothing was sent or queued.
     #[error("not connected: nothing was sent")]
     NotConnected,
-    /// A motion that needs arming.
+    /// A motion without the arming that it needs.
     #[error("not armed: nothing was sent")]
     NotArmed,
-    /// A motion under a lease that does not hold.
+    /// A motion under an invalid lease.
     #[error(transparent)]
     NotOwner(#[from] LeaseRefusal),
-    /// What a hand keeps is not touched now.
+    /// Persistent settings cannot be changed now.
     #[error("{0}: nothing was sent")]
     NotNow(NotSent),
-    /// Too many requests wait already.
+    /// The request queue is full.
     #[error("{limit} requests wait already: nothing was sent")]
     Full {
-        /// Requests that the queue holds.
+        /// Capacity of the queue.
         limit: usize,
     },
-    /// This wire cannot carry it.
+    /// The request is too long for this wire.
     #[error("{address}+{len} cannot be asked over this wire in one request")]
     TooLong {
         /// First byte.
         address: u16,
-        /// Number of bytes asked for.
+        /// Number of bytes requested.
         len: u16,
     },
-    /// The hand did not answer in time. Whether it acted is not known.
+    /// The hand did not answer in time. It may have acted or not.
     #[error(
         "no answer from the hand for address {address} within {after_ms} ms: whether it acted is not known"
     )]
     Timeout {
         /// First byte.
         address: u16,
-        /// How long was waited.
+        /// Time waited, in milliseconds.
         after_ms: u64,
     },
-    /// The hand said no.
+    /// The hand refused.
     #[error("the hand refused address {address}: {reason}")]
     Refused {
         /// First byte.
@@ -103,7 +103,7 @@ pub enum RequestError {
         /// The hand's reason.
         reason: Refusal,
     },
-    /// The hand answered something that does not fit the request.
+    /// The length of the reply does not fit the request.
     #[error("the hand answered {got} bytes to a request for {want} at address {address}")]
     WrongLength {
         /// First byte.
@@ -113,7 +113,8 @@ pub enum RequestError {
         /// Bytes expected.
         want: usize,
     },
-    /// An earlier, unanswered request for the same address may still be answered, and the two could not be told apart.
+    /// An earlier, unanswered request for the same address may still be answered, and the two replies could not be
+    /// distinguished.
     #[error("a late answer for address {address} may still come: ask again in {wait_s} s")]
     Ambiguous {
         /// First byte.
@@ -121,10 +122,10 @@ pub enum RequestError {
         /// Seconds to wait.
         wait_s: u64,
     },
-    /// The wire broke while it was under way.
+    /// The wire broke while the request was in progress.
     #[error("the link was lost: whether the hand acted is not known")]
     LinkLost,
-    /// A value that the hand must not be given.
+    /// A value outside the range of the hand.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
 }

@@ -1,8 +1,7 @@
-//! Whether what answers is a hand of this series, judged by several groups of its memory; and the right to write, which only that
-//! verdict gives. Pure.
+//! Decides whether a device is a hand of this series, by several groups of its memory; only that verdict permits writing. Pure.
 //!
-//! The maker's other series speak the same frames and have HAND_ID at the same address, but other registers everywhere else: what
-//! clears errors here, saves there. So no single register decides.
+//! The maker's other series use the same frames and have HAND_ID at the same address, but other registers everywhere
+//! else: the register that clears errors here saves there. So no single register decides.
 
 use crate::hand::register::{DEFAULT_SPEED_SET, ERROR, POS_ACT};
 use crate::hand::{AngleReading, Dof, Group, RegisterWrite, Span};
@@ -12,19 +11,19 @@ use crate::record::WriteCause;
 /// IP_PART1 to 4 (manual 2.6).
 const IP_ADDRESS: u16 = 1700;
 
-/// What answers at an endpoint.
+/// Kind of device at an endpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Series {
-    /// Too little of it was read.
+    /// Not enough was read.
     #[default]
     Unknown,
     /// A hand of the series that the manual describes.
     Ours,
-    /// Something else, whatever its HAND_ID says.
+    /// Another device, whatever its HAND_ID.
     Other,
 }
 
-/// A write that may go out; made by [`Series::permit`] alone, and buses send no other.
+/// A permitted write; created by [`Series::permit`] alone, and buses send no other.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PermittedWrite<'a>(&'a RegisterWrite);
 
@@ -37,7 +36,7 @@ impl std::ops::Deref for PermittedWrite<'_> {
 }
 
 impl Series {
-    /// The write, if it may go to what answers. While nothing is known a stop passes, and nothing else.
+    /// Permits a write to this device. While the series is unknown only a stop passes.
     pub(crate) fn permit(
         self,
         write: &RegisterWrite,
@@ -55,19 +54,19 @@ impl Series {
 pub(crate) enum SeriesQuestion {
     /// Faults, status and temperatures.
     Drives,
-    /// Positions and angles: each says where the joint is.
+    /// Positions and angles: each determines the joint position.
     Motion,
-    /// The address in the network.
+    /// The network address.
     Ip,
     /// Speeds and forces after power-up.
     Defaults,
 }
 
 impl SeriesQuestion {
-    /// In the order in which they are asked.
+    /// All groups, in read order.
     pub(crate) const ALL: [Self; 4] = [Self::Drives, Self::Motion, Self::Ip, Self::Defaults];
 
-    /// The ways to ask, each of another length.
+    /// The possible read shapes, each of another length.
     pub(crate) const fn shapes(self) -> &'static [Span] {
         const DRIVES: [Span; 2] = [
             Span::new(ERROR.address, 18),
@@ -91,7 +90,7 @@ impl SeriesQuestion {
         }
     }
 
-    /// What bytes of one of its shapes tell.
+    /// Judges the bytes of one of its shapes.
     fn judge(self, span: Span, bytes: &[u8]) -> Sign {
         match self {
             Self::Drives => drives(span, bytes),
@@ -101,7 +100,7 @@ impl SeriesQuestion {
         }
     }
 
-    /// What a refusal tells: every hand of the series has drives and joints, not all have a network.
+    /// Judges a refusal: every hand of the series has drives and joints, not all have a network.
     const fn refused(self) -> Sign {
         match self {
             Self::Drives | Self::Motion => Sign::Against,
@@ -110,38 +109,38 @@ impl SeriesQuestion {
     }
 }
 
-/// What a group tells.
+/// Verdict on one group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Sign {
-    /// It is as in this series, and would hardly be by chance.
+    /// Matches this series, and hardly by chance.
     For,
-    /// It may be either.
+    /// Inconclusive.
     Neither,
-    /// No hand of this series has it so.
+    /// Contradicts this series.
     Against,
 }
 
-/// What was read so far.
+/// The evidence read so far.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SeriesEvidence {
     signs: [Option<Sign>; SeriesQuestion::ALL.len()],
     has_fingertips: bool,
-    /// Questions of the present round that had their turn.
+    /// Number of groups that had their turn in the present round.
     asked: usize,
 }
 
 impl SeriesEvidence {
-    /// Takes an answer to one of the questions.
+    /// Applies a reply for one of the groups.
     pub(crate) fn read(&mut self, question: SeriesQuestion, span: Span, bytes: &[u8]) {
         self.note(question, question.judge(span, bytes));
     }
 
-    /// The device itself refused the question.
+    /// Applies a refusal by the device itself.
     pub(crate) fn refused(&mut self, question: SeriesQuestion) {
         self.note(question, question.refused());
     }
 
-    /// Fingertips whose check fits speak for this series.
+    /// Applies the detected fingertips; a valid checksum is evidence for this series.
     pub(crate) fn fingertips(&mut self, touch: Option<TouchVariant>) {
         self.has_fingertips = touch == Some(TouchVariant::Capacitive);
     }
@@ -152,13 +151,13 @@ impl SeriesEvidence {
         }
     }
 
-    /// True if an answer to this question is missing for the verdict.
+    /// True if the verdict still needs a reply for this group.
     pub(crate) fn needs(&self, question: SeriesQuestion) -> bool {
         let is_open = self.unanswered().any(|open| open == question);
         is_open && self.verdict() == Series::Unknown
     }
 
-    /// The next question of this round whose answer is missing; `None` once, at the end of each round.
+    /// The next group of this round without a reply; `None` once, at the end of each round.
     pub(crate) fn next_question(&mut self) -> Option<SeriesQuestion> {
         while let Some(question) = SeriesQuestion::ALL.get(self.asked) {
             self.asked += 1;
@@ -170,14 +169,14 @@ impl SeriesEvidence {
         None
     }
 
-    /// What was all answered and gave no verdict is asked anew: a hand that moves or warms up tells more.
+    /// Reads all groups again if all were answered without a verdict: a hand that moves or warms up gives more evidence.
     pub(crate) fn begin_again(&mut self) {
         if self.unanswered().next().is_none() {
             self.signs = Default::default();
         }
     }
 
-    /// The questions that nothing was heard of yet.
+    /// The groups without any reply yet.
     fn unanswered(&self) -> impl Iterator<Item = SeriesQuestion> {
         let signs = self.signs;
         let all = SeriesQuestion::ALL.into_iter().zip(signs);
@@ -185,7 +184,8 @@ impl SeriesEvidence {
             .map(|(question, _)| question)
     }
 
-    /// Two groups that fit outweigh a third that does not: a cold hand has no degrees, one on a serial line perhaps no address.
+    /// Computes the verdict. Two groups that match outweigh a third that does not: a cold hand has no temperature
+    /// readings, and one on a serial line perhaps no address.
     pub(crate) fn verdict(&self) -> Series {
         let count = |wanted| {
             self.signs
@@ -206,7 +206,7 @@ impl SeriesEvidence {
     }
 }
 
-/// Temperatures at which a hand can be, and those of this many joints that have to be among them.
+/// Plausible temperatures, °C, and the number of joints that must be within them.
 const WARM: std::ops::RangeInclusive<u8> = 5..=100;
 const WARM_LEAST: usize = 4;
 /// A temperature or a status that the hand does not know.
@@ -237,12 +237,12 @@ fn drives(span: Span, bytes: &[u8]) -> Sign {
     }
 }
 
-/// How far a position may be from where the angle says: the linkage is not straight.
+/// Tolerance between a position and its angle: the linkage is nonlinear.
 const APART: i32 = 600;
-/// Joints that have to agree, or to contradict themselves.
+/// Number of joints that must match or contradict.
 const JOINTS_LEAST: usize = 4;
 
-/// POS_ACT is 0 where ANGLE_ACT is 1000, and 2000 where it is 0; never are all twelve alike.
+/// POS_ACT is 0 where ANGLE_ACT is 1000, and 2000 where it is 0; all twelve are never equal.
 fn motion(bytes: &[u8]) -> Sign {
     let (pairs, _) = bytes.as_chunks::<2>();
     let value = |at: usize| pairs.get(at).map(|pair| i16::from_le_bytes(*pair));
@@ -271,7 +271,7 @@ fn motion(bytes: &[u8]) -> Sign {
     }
 }
 
-/// The address of a host: neither of a network nor of a group.
+/// Expects a host address: neither a network nor a multicast address.
 fn ip(bytes: &[u8]) -> Sign {
     let Some([first, second, third, last]) = bytes.first_chunk::<4>() else {
         return Sign::Neither;
@@ -284,7 +284,7 @@ fn ip(bytes: &[u8]) -> Sign {
     }
 }
 
-/// Small numbers fit by chance, so they only speak against it.
+/// Small numbers match by chance, so they are only evidence against.
 fn defaults(bytes: &[u8]) -> Sign {
     let (pairs, _) = bytes.as_chunks::<2>();
     let values = pairs.iter().map(|pair| u16::from_le_bytes(*pair));
@@ -302,7 +302,7 @@ mod tests {
     use super::*;
     use crate::hand::HandCommand;
 
-    /// The verdict on a device that holds these bytes, asked as far as it takes.
+    /// The verdict on a device that holds these bytes, after as many reads as needed.
     fn verdict(byte: impl Fn(u16) -> Option<u8>) -> Series {
         let mut evidence = SeriesEvidence::default();
         for question in SeriesQuestion::ALL {
@@ -320,7 +320,7 @@ mod tests {
         evidence.verdict()
     }
 
-    /// A hand at rest: open, at some degrees, with an address.
+    /// A hand at rest: open, with these temperatures and this address.
     fn hand(degrees: u8, ip: [u8; 4]) -> impl Fn(u16) -> Option<u8> {
         move |at| {
             let word = |word: u16| word.to_le_bytes()[usize::from(at % 2)];
@@ -378,7 +378,7 @@ mod tests {
 
     #[test]
     fn a_hand_of_another_series_does_not_pass() {
-        // RH56F1: registers are words at addresses of their own; what is not defined reads 0.
+        // RH56F1: registers are words at addresses of their own; undefined ones read 0.
         let f1 = |at: u16| {
             let words = match at {
                 1000 => 1,
@@ -391,7 +391,7 @@ mod tests {
             Some(words.to_le_bytes()[0])
         };
         assert_eq!(verdict(f1), Series::Other);
-        // The same where it refuses what is not defined.
+        // The same, but undefined registers are refused.
         let shy = |at| f1(at).filter(|_| !(1140..3000).contains(&at));
         assert_eq!(verdict(shy), Series::Other);
     }

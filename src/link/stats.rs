@@ -1,4 +1,4 @@
-//! What the link measured of itself. Counting lives in the session; here is only the result.
+//! Measurements of the link itself. The session does the counting.
 
 use crate::hand::RateClass;
 use std::time::Duration;
@@ -7,13 +7,13 @@ use std::time::Duration;
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct LinkStats {
-    /// Whole reads of the motion state.
+    /// Complete reads of the motion state.
     pub state_reads: u64,
-    /// Whole sweeps over all five fingertips.
+    /// Complete sweeps over all five fingertips.
     pub tactile_reads: u64,
-    /// Motion states a second, over the last second.
+    /// Motion states per second, over the last second.
     pub state_hz: f64,
-    /// Fingertip sweeps a second, over the last second.
+    /// Fingertip sweeps per second, over the last second.
     pub tactile_hz: f64,
     /// Median round trip of the last requests.
     pub rtt_p50: Option<Duration>,
@@ -25,46 +25,46 @@ pub struct LinkStats {
     pub checksum_errors: u64,
     /// Times that noise was skipped.
     pub resyncs: u64,
-    /// Replies that belonged to no open request: doubled, someone else's, or late where that cannot be known.
+    /// Replies without an open request: duplicates, replies to another controller, or late ones that cannot be identified.
     pub foreign_replies: u64,
-    /// Replies that came after their request was given up, where that can be known.
+    /// Replies that came after their request timed out, where they can be identified.
     pub late_replies: u64,
     /// Requests of another controller, and setpoints that it changed.
     pub foreign_requests: u64,
     /// Requests that the hand refused.
     pub refusals: u64,
-    /// Replies that held values.
+    /// Replies with values.
     pub readings: u64,
-    /// Those of them with a value that no hand should send.
+    /// Replies with a value that no hand should send.
     pub implausible: u64,
-    /// Times the wire was opened again.
+    /// Number of times the wire was reopened.
     pub reconnects: u64,
     /// Register writes sent.
     pub writes: u64,
-    /// Times that this program could not attend to the wire for 20 ms or more: the computer was busy with something else.
+    /// Number of times this program failed to service the wire for 20 ms or more because the computer was busy.
     pub stalls: u64,
-    /// How long these lasted together.
+    /// Total time of these stalls.
     pub stalled: Duration,
-    /// The longest of them.
+    /// The longest of these stalls.
     pub longest_stall: Duration,
-    /// Samples that the window was too slow to take.
+    /// Samples that were dropped because the window was too slow.
     pub dropped_events: u64,
-    /// What the line is used for.
+    /// Usage of the line.
     pub line: LineUse,
 }
 
-/// How the time of the line is spent, over the last second.
+/// Usage of the line's time over the last second.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct LineUse {
-    /// Share of the time in which a request was open, or the silence after its reply was kept, 0 to 1. At full rate 1 is
-    /// what the line and the hand can give.
+    /// Share of the time with a request open, or with the silence after its reply, 0 to 1. At full rate, 1 is the limit
+    /// of the line and the hand.
     pub utilisation: f64,
-    /// Share of the time in which bits were on the wire, 0 to 1; `None` where the wire has no speed of its own.
+    /// Share of the time with bits on the wire, 0 to 1; `None` if the wire has no bit rate of its own.
     pub on_wire: Option<f64>,
-    /// The hand's turnaround as the link learnt it, with what adapter and system add; `None` before the first answer.
+    /// The hand's measured turnaround, including adapter and system; `None` before the first reply.
     pub turnaround: Option<Duration>,
-    /// Share of the writes, 0 to 1.
+    /// Share of the time used for writes, 0 to 1.
     pub writes: f64,
     /// The groups of reads, in the order of [`RateClass::ALL`].
     pub groups: [GroupUse; RateClass::ALL.len()],
@@ -72,14 +72,14 @@ pub struct LineUse {
     pub split: bool,
 }
 
-/// What one group of reads gets, and what the wire could give.
+/// Actual and possible rate of one group of reads.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct GroupUse {
-    /// Whole reads of the group a second.
+    /// Complete reads of the group per second.
     pub hz: f64,
-    /// Its share of the time, 0 to 1.
+    /// Share of the time used for the group, 0 to 1.
     pub share: f64,
-    /// Whole reads a second that the wire would give if it carried nothing else; 0 before the first answer.
+    /// Complete reads per second that the wire would allow if it carried nothing else; 0 before the first reply.
     pub could_hz: f64,
 }

@@ -1,4 +1,4 @@
-//! What the link is doing and why, as plain values that may cross to any thread. No task, no wire.
+//! State of the link and its reasons, as plain values for any thread. No task, no wire.
 
 use crate::hand::{ArmEpoch, DriveHeat, Force, ModbusException, Moment, PerDof, Setpoints, Speed};
 use crate::link::lease::LeaseHolder;
@@ -8,161 +8,162 @@ use crate::record::{Disarmed, Hold, LinkState, Rest, SetpointConflict};
 use crate::transport::TransportError;
 use std::time::Duration;
 
-/// Angles older than this are neither armed with, nor held to, nor gone by, on a way that is not slow.
+/// Maximum age of angles for arming, holding and control, on a link that is not slow.
 pub(crate) const ANGLE_FRESH: Duration = Duration::from_millis(250);
 
-/// Everything the window shows of the link.
+/// Everything that the window shows of the link.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct LinkStatus {
     /// Connection, arming and stop as one state.
     pub state: LinkState,
-    /// When `state` began.
+    /// Time at which `state` began.
     pub since: Moment,
-    /// What is being tried while there is no wire.
+    /// Connection attempts while there is no wire.
     pub dialling: Dialling,
-    /// Why the wire was lost or could not be opened; kept until the hand answers again.
+    /// Reason why the wire was lost or could not be opened; kept until the hand answers again.
     pub trouble: Option<LinkTrouble>,
-    /// The arming in force, if the hand is armed.
+    /// The current arming; `None` if the hand is not armed.
     pub armed: Option<ArmEpoch>,
-    /// It was armed, and was not seen to rest since, also over a link that was lost.
+    /// The hand was armed and was not seen at rest since, even if the link was lost.
     pub may_move: bool,
-    /// Who may move the hand, if anybody may.
+    /// The current lease and its owner; `None` without a lease.
     pub holder: Option<LeaseHolder>,
-    /// What the hand answers in its own way, as found when the wire was opened.
+    /// Quirks of the hand, detected when the wire was opened.
     pub quirks: Quirks,
-    /// Whether it is a hand of this series; only such a hand is written to.
+    /// Detected series; only a hand of this series is written to.
     pub series: Series,
-    /// True if the adapter gives back what is sent.
+    /// True if the adapter echoes what is sent.
     pub echoes: bool,
-    /// Another controller talks to this hand, noticed in the last seconds.
+    /// Another controller was detected in the last seconds.
     pub other_controller: bool,
-    /// What another controller was last seen to write since the hand was armed; `None` if it was only heard.
+    /// The last setpoint that another controller wrote since the hand was armed; `None` if only its requests were heard.
     pub foreign_setpoint: Option<SetpointConflict>,
-    /// A setpoint that the hand holds otherwise than it was given since it was armed, though nobody else was seen to write: it
+    /// A setpoint that differs from the one sent since the hand was armed, without any sign of another writer: the hand
     /// ignores or limits it.
     pub setpoint_not_taken: Option<SetpointConflict>,
-    /// Motion was asked for, and nothing that the hand tells changed: frames are valid, and where the joints are is only reckoned. Until
-    /// something changes.
+    /// Motion was commanded but feedback did not change: frames are valid, but the joint positions are only estimated.
+    /// Until something changes.
     pub feedback_in_doubt: bool,
-    /// The port at which the adapter is now, if that is another than was asked for.
+    /// The port of the adapter now, if it is not the requested one.
     pub moved_to: Option<String>,
-    /// How long the adapter may keep what it got, milliseconds, where the system tells.
+    /// Latency timer of the adapter, in milliseconds; `None` if the system does not report it.
     pub latency_timer_ms: Option<u16>,
-    /// Round trips stand at the ticks of such a timer, where the system does not tell.
+    /// Round trips match the ticks of such a timer; only set if the system does not report it.
     pub latency_ticks: bool,
-    /// How long replies take, milliseconds, where that is longer than a hand takes: the way to it is slow.
+    /// Reply time in milliseconds, if it is longer than the hand needs: the link is slow.
     pub slow_ms: Option<u16>,
-    /// The line is left to a hand that saves or calibrates: values grow old meanwhile. A stop still passes.
+    /// The line is reserved for a hand that saves or calibrates: values become old meanwhile. A stop is still sent.
     pub line_left: bool,
-    /// The drive with the highest temperature, if that is warm or implausible.
+    /// The drive with the highest temperature, if it is warm or implausible.
     pub heat: Option<DriveHeat>,
-    /// Whether the hand rests, by feedback and what was written.
+    /// Rest state, from feedback and what was written.
     pub rest: Rest,
-    /// How the last hold went.
+    /// State of the last hold.
     pub hold: Hold,
-    /// The last stall of this program: meanwhile nothing was read, which says nothing of the hand.
+    /// The last stall of this program: nothing was read meanwhile, which says nothing about the hand.
     pub stall: Option<Stall>,
-    /// Why the hand is not armed, if it was.
+    /// Reason of the last disarm; `None` while the hand is armed or if it never was.
     pub disarmed: Option<Disarmed>,
-    /// Why no process could be started that stops the hand if this program is killed, if so.
+    /// Reason why the holder process, which stops the hand if this program is killed, could not be started, if so.
     pub unguarded: Option<String>,
 }
 
 impl LinkStatus {
-    /// Whether the hand may go on to where it was sent, or be sent somewhere, and nothing stops it yet.
+    /// True if the hand may continue to its target or be sent a new one, and no stop is in progress.
     pub fn goes_on(&self) -> bool {
         let is_left = self.may_move && self.state != LinkState::Holding;
         self.holder.is_some() || is_left
     }
 
-    /// How much later than from a quick hand a reading may come: a slow way brings one three delays after the one before was asked for.
+    /// Additional age allowed for readings on a slow link: a reading may arrive three delays after the previous one was
+    /// requested.
     pub fn slow_allowance(&self) -> Duration {
         Duration::from_millis(self.slow_ms.unwrap_or(0).into()) * 3
     }
 
-    /// How old a reading may be by which it is judged where a motion stands.
+    /// Maximum age of a reading that determines the progress of a motion.
     pub fn fresh_for(&self) -> Duration {
         ANGLE_FRESH + self.slow_allowance()
     }
 
-    /// Whether it may go on though its right to be moved is over, and nothing showed rest: it owes a stop, unless another controller
-    /// moves it.
+    /// True if the hand may continue though its lease ended, and rest was not confirmed: it still needs a stop, unless
+    /// another controller moves it.
     pub fn owes_stop(&self) -> bool {
         let is_left = self.may_move && self.holder.is_none();
         is_left && self.disarmed != Some(Disarmed::OtherController)
     }
 
-    /// True if what the hand tells counts: it answers, and what it tells follows what it was told.
+    /// True if feedback is valid: the hand answers, and its feedback follows its commands.
     pub fn is_believed(&self) -> bool {
         self.state.is_live() && !self.feedback_in_doubt
     }
 }
 
-/// A time in which this program could not attend to the wire: the computer was busy with something else.
+/// A time in which this program did not service the wire because the computer was busy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Stall {
-    /// When it was over.
+    /// End of the stall.
     pub ended: Moment,
-    /// How long it lasted.
+    /// Length of the stall.
     pub lasted: Duration,
 }
 
-/// What happens while there is no wire.
+/// State of the connection attempts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Dialling {
-    /// Nothing: no one asked for a hand, or there is a wire.
+    /// No hand was requested, or there is a wire.
     #[default]
     Idle,
-    /// The wire is being opened, for the n-th time in a row.
+    /// The wire is being opened, for the n-th consecutive time.
     Trying {
         /// 1 for the first.
         attempt: u32,
     },
-    /// Waiting before the next try.
+    /// Waiting before the next attempt.
     Waiting {
-        /// Tries so far.
+        /// Attempts so far.
         attempt: u32,
-        /// When the next begins.
+        /// Time of the next attempt.
         until: Moment,
     },
 }
 
-/// Why there is no live hand.
+/// Reason why there is no live hand.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
 pub enum LinkTrouble {
     /// The wire could not be opened, or broke.
     #[error(transparent)]
     Transport(#[from] TransportError),
-    /// The wire is open and the hand says nothing.
+    /// The wire is open, but nothing is received.
     #[error(
         "no answer from id {id}: check power, id, baud and protocol of the hand, or let 'handscope scan' try them all"
     )]
     NoAnswer {
-        /// Id or unit that was asked.
+        /// Id or unit of the requests.
         id: u16,
     },
-    /// Something is heard on the wire, and none of it is an answer.
+    /// Data is received, but none of it is a valid reply.
     #[error(
         "something answers on {place}, but not as id {id} at this speed and in this protocol: 'handscope scan' finds out what it is"
     )]
     Garbled {
         /// Port or interface.
         place: String,
-        /// Id that was asked.
+        /// Id of the requests.
         id: u16,
     },
-    /// A host takes the connection and says nothing.
+    /// A host accepts the connection but sends nothing.
     #[error(
         "{place} takes the connection, but nothing there answers as unit {unit}: check address, port and unit, and that no other program keeps the hand busy"
     )]
     Mute {
         /// Address and port.
         place: String,
-        /// Unit that was asked.
+        /// Unit of the requests.
         unit: u16,
     },
-    /// Exceptions come in place of answers: a gateway is there, and the hand behind it is not.
+    /// Exceptions instead of replies: a gateway is present, but the hand behind it is not.
     #[error(
         "{place} answers, but the hand behind it does not: {exception} (Modbus exception {code:02X}); check the hand's power and its cable to the gateway",
         code = exception.code()
@@ -170,10 +171,10 @@ pub enum LinkTrouble {
     Gateway {
         /// Address or port of the gateway.
         place: String,
-        /// What it said last.
+        /// The last exception.
         exception: ModbusException,
     },
-    /// What answers is no hand of this series: the manual's addresses hold other things there.
+    /// The device is not a hand of this series: the manual's addresses have other contents there.
     #[error(
         "{place} answers like a hand, but not of this series: its registers hold other things, so nothing is shown and nothing is written"
     )]
@@ -181,7 +182,7 @@ pub enum LinkTrouble {
         /// Address, port or interface.
         place: String,
     },
-    /// Nothing but what was sent came back.
+    /// Nothing but our own requests came back.
     #[error(
         "{place} only gives back what is sent: the adapter echoes, and no hand answers behind it; check the hand's power and cable"
     )]
@@ -189,28 +190,28 @@ pub enum LinkTrouble {
         /// Port or address.
         place: String,
     },
-    /// The hand answered and then fell silent for several requests in a row.
+    /// The hand answered and then missed several consecutive requests.
     #[error("the hand stopped answering: {silent} requests without a reply")]
     Silent {
-        /// Requests in a row without a reply.
+        /// Consecutive requests without a reply.
         silent: u32,
     },
-    /// The hand fell silent for several requests in a row, while this program could not attend to the wire.
+    /// The hand missed several consecutive requests while this program did not service the wire.
     #[error(
         "the hand stopped answering: {silent} requests without a reply, while this computer was too busy for {stalled_ms} ms to attend to it"
     )]
     Stalled {
-        /// Requests in a row without a reply.
+        /// Consecutive requests without a reply.
         silent: u32,
         /// Milliseconds of stalls in that time.
         stalled_ms: u32,
     },
-    /// Late replies could no longer be told from fresh ones, so the line was closed.
+    /// Late replies could not be distinguished from fresh ones, so the line was closed.
     #[error(
         "the line carried late replies: it was reopened so that no old value is taken for a new one"
     )]
     Ambiguous,
-    /// This computer slept.
+    /// The computer slept.
     #[error("this computer was asleep for {slept_s} s: what was shown before is old")]
     Suspended {
         /// Seconds of sleep by the system's clock.
@@ -218,7 +219,7 @@ pub enum LinkTrouble {
     },
 }
 
-/// What the user arms with: the first write that leaves the armed hand is this, never an angle.
+/// Limits of an arming: they are the first write to an armed hand, never an angle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ArmRequest {
     /// Speeds to set before anything moves.
@@ -228,13 +229,13 @@ pub struct ArmRequest {
 }
 
 impl ArmRequest {
-    /// What a hand is armed with where nothing is named.
+    /// Default limits of an arming.
     pub const GENTLE: Self = Self {
         speed: PerDof::splat(Speed::GENTLE),
         force: PerDof::splat(Force::GENTLE),
     };
 
-    /// The same for a hand that is armed already.
+    /// The same limits as setpoints, for a hand that is armed already.
     pub fn setpoints(&self, epoch: ArmEpoch) -> Setpoints {
         Setpoints {
             speed: self.speed.map(Some),

@@ -1,4 +1,4 @@
-//! How a stop ends, as feedback shows it.
+//! Outcome of a stop according to feedback.
 
 use crate::link::status::LinkStatus;
 use crate::record::Hold;
@@ -6,33 +6,33 @@ use serde::ser::SerializeStruct as _;
 use std::time::Duration;
 use tokio::time::{Instant, sleep};
 
-/// A hand that answers again within this time after its link was lost, or after the press while it was, is stopped before anything
-/// else. Later its user may have moved or opened it: it is only watched until it rests.
+/// A hand that answers again within this time after its link was lost, or after a stop was requested while it was, is
+/// stopped before anything else. Later the user may have moved or opened it: it is only watched until it rests.
 pub const STOP_PENDING: Duration = Duration::from_secs(3);
-/// How long feedback of a live link may take to show rest; the link raises its alarm after half a second.
+/// Time within which feedback of a live link must show rest; the link raises its alarm after half a second.
 const REST_TIMEOUT: Duration = Duration::from_secs(3);
-/// From the first answer of a hand that is back to a link that is live.
+/// Time from the first reply of a reconnected hand to a live link.
 const IDENTIFY_TIMEOUT: Duration = Duration::from_millis(700);
-/// All of that, also of a link that comes and goes.
+/// Total time limit, also for a link that fails repeatedly.
 const STOP_TIMEOUT: Duration = Duration::from_secs(10);
-/// How often the status is inspected.
+/// Interval at which the status is polled.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
-/// What feedback says of a stop.
+/// Outcome of a stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stop {
-    /// The hand rests, so long after the stop.
+    /// The hand rests.
     Confirmed {
-        /// From the stop to rest.
+        /// Time from the stop to rest.
         after: Duration,
     },
-    /// It does not show rest.
+    /// The hand does not show rest.
     NotConfirmed,
-    /// The link is gone, and did not come back in time.
+    /// The link was lost, and did not come back in time.
     LinkLost,
 }
 
-/// The same in JSON everywhere: `{"confirmed": true, "after_s": 0.12}`.
+/// One JSON form everywhere: `{"confirmed": true, "after_s": 0.12}`.
 impl serde::Serialize for Stop {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let after_s = match self {
@@ -46,7 +46,7 @@ impl serde::Serialize for Stop {
     }
 }
 
-/// Waits until feedback says how a stop went that was asked for just now.
+/// Waits for the outcome of a stop that was requested just now.
 pub(crate) async fn until_rest(status: impl Fn() -> LinkStatus + Send) -> Stop {
     let begun = Instant::now();
     let (mut live_since, mut lost_since) = (begun, None);

@@ -1,5 +1,5 @@
-//! What went over a wire, as raw pieces with their times: a bounded ring that the session fills and others read.
-//! Nothing is decoded here; frames are cut in `traffic`, and only when somebody looks.
+//! Raw traffic of a wire, in pieces with their times: a bounded ring that the session fills and others read. Nothing is
+//! decoded here; `traffic` splits it into frames on demand.
 
 use crate::hand::Moment;
 use crate::link::clock::Clock;
@@ -12,23 +12,23 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::{Context, Poll};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
-/// Pieces kept: 10 000 frames, of which half come from the hand in up to three pieces each.
+/// Maximum pieces kept: 10 000 frames, of which half come from the hand in up to three pieces each.
 pub const PIECES_MAX: usize = 20_000;
-/// Bytes kept: 10 000 frames of the usual full poll, some 90 bytes each, and room for the longest.
+/// Maximum bytes kept: 10 000 frames of the usual full poll, some 90 bytes each, and room for the longest.
 pub const BYTES_MAX: usize = 1024 * 1024;
-/// Pieces handed out at once, so that the session never waits long for the lock.
+/// Maximum pieces returned per call, so that the session never waits long for the lock.
 pub const PIECES_AT_ONCE: usize = 2048;
 
-/// Pieces after a place in the stream.
+/// Pieces after a position in the stream.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Pieces {
-    /// In order, at most [`PIECES_AT_ONCE`].
+    /// The pieces in order, at most [`PIECES_AT_ONCE`].
     pub pieces: Vec<Piece>,
-    /// Place in the stream to ask for next.
+    /// Position in the stream to continue from.
     pub next: u64,
-    /// Pieces that went out of the ring before they were asked for.
+    /// Pieces that were dropped from the ring before they were read.
     pub lost: u64,
-    /// Whether more wait.
+    /// True if further pieces are available.
     pub more: bool,
 }
 
@@ -43,7 +43,7 @@ struct PieceHead {
 struct PieceRing {
     heads: VecDeque<PieceHead>,
     bytes: VecDeque<u8>,
-    /// Number of the oldest piece that is kept.
+    /// Number of the oldest piece in the ring.
     first: u64,
 }
 
@@ -89,12 +89,12 @@ impl PieceRing {
 pub struct WireTap(Arc<Mutex<PieceRing>>);
 
 impl WireTap {
-    /// What was recorded after `from`; 0 is the beginning.
+    /// Pieces recorded after `from`; 0 is the beginning.
     pub fn after(&self, from: u64) -> Pieces {
         self.ring().after(from)
     }
 
-    /// Notes bytes, or a change of the wire.
+    /// Records bytes, or a change of the wire.
     pub fn record(&self, at: Moment, kind: PieceKind, bytes: &[u8]) {
         let len = bytes.len();
         self.ring().push(PieceHead { at, kind, len }, bytes);
@@ -105,7 +105,7 @@ impl WireTap {
     }
 }
 
-/// A wire that is recorded. Bytes pass as they are, and no call waits longer for it.
+/// A recorded wire. Bytes pass unchanged, and no call is delayed by it.
 pub(crate) struct TappedWire {
     wire: BoxedWire,
     tap: WireTap,
@@ -129,7 +129,7 @@ impl TappedWire {
         self.tap.record(self.clock.now(), kind, bytes);
     }
 
-    /// Noted once: a broken wire may be asked many times.
+    /// Records a broken wire once: it may be polled many times.
     fn broke(&mut self) {
         if !self.broken {
             self.broken = true;

@@ -1,4 +1,4 @@
-//! What Linux tells of a CAN interface without opening it. Changes nothing; other systems tell nothing.
+//! Facts that Linux reports about a CAN interface without opening it. Changes nothing; other systems report nothing.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -10,27 +10,27 @@ use std::process::Command;
 const ARPHRD_CAN: u32 = 280;
 /// The flag of an interface that is up.
 const UP: u32 = 1;
-/// Frames that fit into the queue of an interface as delivered; fewer overflow as soon as nobody acknowledges.
+/// Default queue length of an interface, frames; so few overflow as soon as no node acknowledges.
 pub const QUEUE_LEN_USUAL: u32 = 10;
 
-/// A CAN interface. What the system does not tell is `None`.
+/// A CAN interface. A fact that the system does not report is `None`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct CanFacts {
-    /// Whether there is a network interface of this name.
+    /// True if there is a network interface of this name.
     pub exists: bool,
-    /// Whether it is one for CAN.
+    /// True if it is a CAN interface.
     pub is_can: Option<bool>,
-    /// Whether it is switched on.
+    /// True if it is up.
     pub is_up: Option<bool>,
-    /// Frames that may wait to be sent.
+    /// Capacity of the send queue, frames.
     pub queue_len: Option<u32>,
-    /// Bits a second; virtual interfaces have none.
+    /// Bits per second; virtual interfaces have none.
     pub bitrate: Option<u64>,
     /// The controller's error state, such as `ERROR-ACTIVE` or `BUS-OFF`.
     pub state: Option<String>,
 }
 
-/// Looks an interface up in the tree under `sys` (`/sys`), and asks `ip` for what is not there.
+/// Looks up an interface in the tree under `sys` (`/sys`), and runs `ip` for the rest.
 pub fn can_facts(interface: &str, sys: &Path) -> CanFacts {
     let folder = sys.join("class/net").join(interface);
     let text = |name: &str| fs::read_to_string(folder.join(name)).ok();
@@ -50,14 +50,14 @@ pub fn can_facts(interface: &str, sys: &Path) -> CanFacts {
     }
 }
 
-/// What `ip` prints; none where it is not installed or knows no JSON.
+/// Output of `ip`; `None` if it is not installed or lacks JSON output.
 fn asked(interface: &str) -> Option<Value> {
     let args = ["-json", "-details", "link", "show", "dev", interface];
     let printed = Command::new("ip").args(args).output().ok()?;
     serde_json::from_slice(&printed.stdout).ok()
 }
 
-/// Bit rate and error state out of what `ip` prints.
+/// Bit rate and error state from the output of `ip`.
 fn controller(printed: &Value) -> (Option<u64>, Option<String>) {
     let of = |path: &str| printed.pointer(&format!("/0/linkinfo/info_data/{path}"));
     let bitrate = of("bittiming/bitrate").and_then(Value::as_u64);

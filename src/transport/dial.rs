@@ -1,4 +1,4 @@
-//! Opens the wires that the system has. The built-in hand is not one of them.
+//! Opens the system's wires. The built-in hand is not one of them.
 
 #[cfg(target_os = "linux")]
 use crate::transport::can;
@@ -8,7 +8,7 @@ use crate::transport::wire::{BoxedWire, Dial, TransportError};
 use crate::transport::{serial, tcp};
 use futures::future::BoxFuture;
 
-/// Serial speed of CAN adapters that speak slcan: those on USB take any, those on a real line this.
+/// Baud rate of slcan adapters: those on USB accept any, those on a real line need this.
 const ADAPTER_BAUD: u32 = 115_200;
 
 /// Dials serial ports, sockets and CAN interfaces. Other kinds of link are [`TransportError::Unsupported`].

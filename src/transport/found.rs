@@ -3,14 +3,14 @@
 use serde::Serialize;
 use std::fmt;
 
-/// Vendor and product of USB adapters that bring CAN frames as text: CANable and its likes, CANtact, Lawicel's CANUSB.
+/// Vendor and product of USB adapters that carry CAN frames as text: CANable and similar, CANtact, Lawicel's CANUSB.
 const CAN_ADAPTERS: [(u16, u16); 4] = [
     (0x16D0, 0x117E),
     (0xAD50, 0x60C4),
     (0x04D8, 0x000A),
     (0x0403, 0xFFA8),
 ];
-/// What such adapters call themselves.
+/// Parts of the names of such adapters.
 const CAN_NAMES: [&str; 5] = ["slcan", "canable", "cantact", "canusb", "usbtin"];
 
 /// A USB adapter.
@@ -20,20 +20,20 @@ pub struct UsbFound {
     pub vendor_id: u16,
     /// USB product id.
     pub product_id: u16,
-    /// Serial number, by which an adapter is known again under another path.
+    /// Serial number, which identifies the adapter under another path.
     pub serial: Option<String>,
     /// Maker's name.
     pub maker: Option<String>,
     /// Product's name.
     pub product: Option<String>,
-    /// Place on the bus and interface, such as `1-2:1.0`, where the system tells (Linux).
+    /// Bus position and interface, such as `1-2:1.0`; `None` if the system does not report it (Linux does).
     pub location: Option<String>,
-    /// How long it may keep what it got, milliseconds, where its driver tells (Linux).
+    /// Latency timer in milliseconds; `None` if the driver does not report it (Linux only).
     #[serde(skip)]
     pub latency_timer_ms: Option<u16>,
 }
 
-/// Maker, product and serial number as far as they are told, and the ids.
+/// Maker, product and serial number if known, and the ids.
 impl fmt::Display for UsbFound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let named = [&self.maker, &self.product, &self.serial].into_iter();
@@ -45,7 +45,7 @@ impl fmt::Display for UsbFound {
 }
 
 impl UsbFound {
-    /// True if it looks like an adapter that brings CAN frames as text, not a serial line.
+    /// True if it looks like an adapter that carries CAN frames as text, not a serial line.
     pub fn looks_like_can(&self) -> bool {
         let named = [&self.maker, &self.product].into_iter().flatten();
         let mut named = named.map(|name| name.to_lowercase());
@@ -59,6 +59,6 @@ impl UsbFound {
 pub struct PortFound {
     /// Path or name.
     pub path: String,
-    /// What it is, if it is on USB.
+    /// The USB adapter, if it is one.
     pub usb: Option<UsbFound>,
 }

@@ -1,4 +1,4 @@
-//! Wires: endpoints, serial ports, sockets, in-memory pipes. Knows no hand.
+//! Wires: endpoints, serial ports, sockets, in-memory pipes. Independent of the hand.
 
 #[cfg(target_os = "linux")]
 pub mod can;

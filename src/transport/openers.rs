@@ -1,4 +1,4 @@
-//! Who else has a device open, as Linux tells: how many, and when the last of them closed it. Opens no device.
+//! Counts the other openers of a device, as reported by Linux, and detects when the last of them closed it. Opens no device.
 
 use nix::errno::Errno;
 use nix::sys::inotify::{AddWatchFlags, InitFlags, Inotify};
@@ -25,7 +25,7 @@ impl AsRawFd for Notes {
 }
 
 impl Openers {
-    /// Begins to watch. Whoever has it open already is not counted. Must be called within a tokio runtime.
+    /// Starts watching. Existing openers are not counted. Must be called within a tokio runtime.
     ///
     /// # Errors
     /// The system has no room for another watch.
@@ -41,17 +41,17 @@ impl Openers {
         Ok(Self { notes, open: 0 })
     }
 
-    /// True if somebody has it open, as far as was looked.
+    /// True if the device is open, as of the last [`Self::poll_left`].
     pub(crate) const fn are_there(&self) -> bool {
         self.open > 0
     }
 
-    /// Something was heard from somebody, whatever was counted: two notes alike that nobody has read yet become one.
+    /// Records received data, which proves an opener whatever the count: two equal unread events are merged.
     pub(crate) fn are_heard(&mut self) {
         self.open = self.open.max(1);
     }
 
-    /// Takes in what happened until now, and wakes the task when more happens. True if the last one closed it meanwhile.
+    /// Applies the events until now, and wakes the task on further ones. True if the last opener closed it meanwhile.
     pub(crate) fn poll_left(&mut self, cx: &mut Context<'_>) -> io::Result<bool> {
         let mut left = false;
         while let Poll::Ready(ready) = self.notes.poll_read_ready(cx) {

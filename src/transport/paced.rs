@@ -1,5 +1,5 @@
-//! A serial line's time around a wire that has none: a pseudo-terminal takes and gives all bytes at once. Knows no
-//! protocol.
+//! Adds the timing of a serial line to a wire that has none: a pseudo-terminal transfers all bytes at once. Independent
+//! of the protocol.
 
 use crate::transport::pipe::{PIPE_LEN, Pipe, pair};
 use crate::transport::serial::timer::Timer;
@@ -12,12 +12,12 @@ use tokio::time::Instant;
 /// Bits of one byte on a serial line: start, 8 data, stop.
 const BITS_PER_BYTE: u64 = 10;
 
-/// The time that a line and the device on it take.
+/// Timing of a line and the device on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LinePace {
-    /// Bits a second; 0 counts as 1.
+    /// Bits per second; 0 counts as 1.
     pub baud: u32,
-    /// From the last byte of a request to the first of its reply.
+    /// Time from the last byte of a request to the first of its reply.
     pub turnaround: Duration,
 }
 
@@ -30,11 +30,11 @@ impl LinePace {
     }
 }
 
-/// Serves a device on a wire, at the pace of a half-duplex line. The device is given a wire without any pace.
+/// Serves a device on a wire, at the pace of a half-duplex line. The device gets a wire without pacing.
 ///
 /// Each byte takes its time in both directions, and a reply begins `turnaround` after the request's last byte however
-/// quick the device is. Bytes are handed over at the end of what came together. Times are counted on from when the line
-/// was free, not from when this task woke up, so that delays do not add up.
+/// fast the device is. Bytes received together are delivered at the end of the last one. Times continue from when the
+/// line was free, not from when this task woke up, so that delays do not add up.
 pub async fn paced<T, F: Future<Output = T>>(
     wire: impl Wire,
     pace: LinePace,
@@ -56,7 +56,7 @@ pub async fn paced<T, F: Future<Output = T>>(
         _ended = line.carry() => {}
         done = &mut served => return done,
     }
-    // The line is gone, which the device notices by itself.
+    // The line is closed, which the device detects by itself.
     served.await
 }
 
@@ -65,14 +65,14 @@ struct PacedLine<W> {
     device: Pipe,
     pace: LinePace,
     timer: Timer,
-    /// When the line has carried all that was given to it.
+    /// Time at which the line has carried all bytes given to it.
     free_at: Instant,
     /// The last bytes were a request's.
     asked: bool,
 }
 
 impl<W: Wire> PacedLine<W> {
-    /// Until either end is gone.
+    /// Transfers bytes until either end closes.
     async fn carry(mut self) -> io::Result<()> {
         let (mut request, mut reply) = ([0; PIPE_LEN], [0; PIPE_LEN]);
         loop {
@@ -105,7 +105,7 @@ impl<W: Wire> PacedLine<W> {
         self.wire.flush().await
     }
 
-    /// So many bytes are on the line from then on, or from when it is free.
+    /// Waits while this many bytes are on the line, starting at `from` or when the line is free.
     async fn pass(&mut self, from: Instant, bytes: usize) {
         self.free_at = self.free_at.max(from) + self.pace.time_of(bytes);
         self.timer.until(self.free_at).await;
@@ -116,7 +116,7 @@ impl<W: Wire> PacedLine<W> {
 mod tests {
     use super::*;
 
-    /// Answers each request of 9 bytes with so many.
+    /// Answers each request of 9 bytes with a reply of this length.
     async fn device(mut wire: Pipe, reply: usize) {
         let mut request = [0; 9];
         while wire.read_exact(&mut request).await.is_ok() {
@@ -144,7 +144,7 @@ mod tests {
                 near.write_all(&[1; 9]).await.unwrap();
                 near.read_exact(&mut reply).await.unwrap();
             }
-            // The test's clock counts in milliseconds, so that each of the two waits may end one late.
+            // The test's clock has a resolution of a millisecond, so each of the two waits may end one late.
             let took = begun.elapsed().as_secs_f64() * 1e4;
             assert!(
                 (exchange_us - 1.0..exchange_us + 2000.0).contains(&took),

@@ -1,17 +1,17 @@
-//! Why a port may not be opened, and the command that changes it. Changes nothing itself.
+//! Reason why a port cannot be opened, and the command that changes it. Changes nothing itself.
 
 use std::fmt;
 
-/// What lets the user open a port.
+/// Measure that permits the user to open a port.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Remedy {
     /// Become a member of the group that owns it.
     JoinGroup(String),
-    /// The user is a member already, but not in this session.
+    /// The user is a member already, but not in this login session.
     LogInAgain(String),
-    /// Its group has no right either: the right must be given.
+    /// Its group has no access either: it must be granted.
     GiveRight(String),
-    /// Windows and others: nothing is known to help.
+    /// Windows and others: no known measure.
     Unknown,
 }
 
@@ -35,15 +35,15 @@ impl fmt::Display for Remedy {
     }
 }
 
-/// Owner and rights of a port, and who asks; gathered by [`remedy`], or by a test.
+/// Owner and permissions of a port, and the user's membership; gathered by [`remedy`], or by a test.
 #[cfg(unix)]
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Rights {
     /// The last nine bits, as `chmod` takes them.
     mode: u32,
-    /// The group that owns it; none if it has no name or is root's own.
+    /// The group that owns it; `None` if it has no name or is root's own.
     group: Option<String>,
-    /// Whether the user is named in the list of that group's members.
+    /// True if the user is a listed member of that group.
     is_member: bool,
 }
 
@@ -60,12 +60,12 @@ impl Rights {
     }
 }
 
-/// What would let this person open the port, from the owner and the rights of its device file.
+/// Measure that would permit this user to open the port, from the owner and the permissions of its device file.
 #[cfg(unix)]
 pub(crate) fn remedy(port: &str) -> Remedy {
     use nix::unistd::{Gid, Group, User, getuid};
     use std::os::unix::fs::MetadataExt as _;
-    // A link's own rights say nothing; those of a file that cannot be seen are not known.
+    // A link's own permissions are irrelevant; those of an invisible file are unknown.
     let Ok(found) = std::fs::metadata(port) else {
         return Remedy::GiveRight(port.into());
     };
@@ -84,7 +84,7 @@ pub(crate) fn remedy(port: &str) -> Remedy {
     rights.remedy(port)
 }
 
-/// Elsewhere nothing is known.
+/// Other systems: unknown.
 #[cfg(not(unix))]
 pub(crate) fn remedy(_port: &str) -> Remedy {
     Remedy::Unknown

@@ -1,4 +1,5 @@
-//! A pseudo-terminal with a link to it, so that other programs can open the simulated hand like a serial port. Knows no protocol.
+//! A pseudo-terminal with a link to it, so that other programs can open the simulated hand like a serial port.
+//! Independent of the protocol.
 
 #[cfg(target_os = "linux")]
 use crate::system::SystemError;
@@ -18,33 +19,33 @@ use std::task::{Context, Poll, ready};
 use tokio::io::unix::AsyncFd;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
-/// Bytes written since something was last heard from a client. More than this many replies without a request means
-/// that nobody listens: what lies there is thrown away before the next bytes, so that no later client gets it.
+/// Limit of bytes written since the last data from a client. More than this many replies without a request means that
+/// no client listens: unread data is discarded before the next bytes, so that no later client gets it.
 const UNHEARD_MAX: usize = 2048;
 
-/// The master of a pseudo-terminal; the slave is reached through a symbolic link. Clients may come and go.
+/// The master of a pseudo-terminal; the slave is reached through a symbolic link. Clients may open and close it repeatedly.
 #[derive(Debug)]
 pub struct PtyLink {
     master: AsyncFd<File>,
-    /// Kept open: without any slave a read of the master fails with `EIO` and never becomes good again for the reactor.
+    /// Kept open: without any slave a read of the master fails with `EIO` and never recovers in the reactor.
     slave: OwnedFd,
     slave_path: PathBuf,
     link_path: PathBuf,
     unheard: usize,
-    /// None where the system does not tell who has the slave open.
+    /// `None` if the system does not report who has the slave open.
     #[cfg(target_os = "linux")]
     openers: Option<Openers>,
-    /// The one speed that is understood; none = any.
+    /// The only baud rate understood; `None` = any.
     baud: Option<u32>,
     garbled: Vec<u8>,
 }
 
 impl PtyLink {
-    /// Opens a pseudo-terminal in raw mode and puts a link to it at `link_path`; an old link there is replaced.
-    /// Dropping it removes the link and hangs up on the client. Must be called within a tokio runtime.
+    /// Opens a pseudo-terminal in raw mode and creates a link to it at `link_path`, replacing an old link. Dropping it
+    /// removes the link and hangs up on the client. Must be called within a tokio runtime.
     ///
     /// # Errors
-    /// `NotAPort` if something that is no link stands at `link_path`; `Permission`, `Missing` (no such folder) or `Io`.
+    /// `NotAPort` if `link_path` exists and is not a link; `Permission`, `Missing` (no such folder) or `Io`.
     pub fn create(link_path: &Path) -> Result<Self, TransportError> {
         let failed = |error: io::Error| link_error(link_path, &error);
         let (master, slave) = open_raw().map_err(failed)?;
@@ -74,14 +75,14 @@ impl PtyLink {
         })
     }
 
-    /// Understands this speed only, as a real line does: a client that has set another hears nonsense.
+    /// Understands this baud rate only, as a real line does: a client that has set another receives garbage.
     #[must_use]
     pub const fn at_baud(mut self, baud: u32) -> Self {
         self.baud = Some(baud);
         self
     }
 
-    /// True if the client has set another speed than is spoken here. The slave's settings are the client's.
+    /// True if the client has set another baud rate. The slave's settings are the client's.
     fn is_misheard(&self) -> bool {
         let set = rustix::termios::tcgetattr(&self.slave).map(|settings| settings.output_speed());
         self.baud
@@ -97,8 +98,8 @@ impl PtyLink {
         &self.link_path
     }
 
-    /// As a USB port does: what the last client has not read when it closes is thrown away, and what is written while
-    /// nobody has it open goes nowhere. True if nobody has, where the system tells.
+    /// Behaves like a USB port: data that the last client has not read when it closes is discarded, and so is data
+    /// written while no client has it open. True if none has, where the system reports that.
     #[cfg(target_os = "linux")]
     fn poll_is_idle(&mut self, cx: &mut Context<'_>) -> io::Result<bool> {
         let Some(openers) = &mut self.openers else {
@@ -140,7 +141,7 @@ fn open_raw() -> io::Result<(OwnedFd, OwnedFd)> {
     Ok((pty.master, pty.slave))
 }
 
-/// Puts the link under another name first, so that a client never finds none.
+/// Creates the link under another name first, so that a client always finds one.
 fn replace_link(slave_path: &Path, link_path: &Path) -> Result<(), TransportError> {
     let failed = |error: io::Error| link_error(link_path, &error);
     match fs::symlink_metadata(link_path) {
@@ -163,7 +164,7 @@ fn replace_link(slave_path: &Path, link_path: &Path) -> Result<(), TransportErro
         .map_err(failed)
 }
 
-/// Removes the link unless someone else put another one there.
+/// Removes the link unless another program replaced it.
 fn remove_link(slave_path: &Path, link_path: &Path) {
     let ours = fs::read_link(link_path).is_ok_and(|target| target == slave_path);
     if ours {
@@ -224,7 +225,7 @@ impl AsyncWrite for PtyLink {
             return Poll::Ready(Ok(buf.len()));
         }
         self.forget_the_unheard(buf.len())?;
-        // Bits read at another speed fall into other places.
+        // Bits sampled at another rate are shifted.
         self.garbled.clear();
         if self.is_misheard() {
             let bytes = buf.iter().map(|byte| byte.rotate_left(3) ^ 0x5A);
@@ -334,7 +335,7 @@ mod tests {
         round_trip(&mut hand, &mut client).await;
     }
 
-    /// Opens the port without throwing anything away, as `cat` does.
+    /// Opens the port without discarding data, as `cat` does.
     #[cfg(target_os = "linux")]
     fn plain(path: &Path) -> File {
         use std::os::unix::fs::OpenOptionsExt as _;
@@ -358,7 +359,7 @@ mod tests {
             let answer = async |hand: &mut PtyLink| hand.write_all(b"!").await.unwrap();
             if !late {
                 answer(&mut hand).await;
-                // Another that opens and closes it meanwhile takes nothing away.
+                // Another client that opens and closes it meanwhile discards nothing.
                 let mut byte = [0];
                 drop(plain(&path));
                 assert!(

@@ -1,4 +1,4 @@
-//! TCP connections with a deadline. What is said over them is not known here.
+//! TCP connections with a deadline. Independent of the protocol above.
 
 use crate::system::SystemError;
 use crate::transport::wire::TransportError;
@@ -7,13 +7,13 @@ use std::time::Duration;
 use tokio::net::{TcpStream, lookup_host};
 use tokio::time::timeout;
 
-/// How long a host may take to answer: a hand in the same network needs milliseconds, one lost packet a second.
+/// Time limit for a connection: a hand in the same network needs milliseconds, one lost packet a second.
 pub const CONNECT_DEADLINE: Duration = Duration::from_secs(2);
 
 /// Connects, with Nagle's delay off. Names are resolved on a thread of the runtime; all of it within [`CONNECT_DEADLINE`].
 ///
 /// # Errors
-/// `Name`, `Refused`, `Silent`, or `Io` with the system's words.
+/// `Name`, `Refused`, `Silent`, or `Io` with the system's message.
 pub async fn connect(host: &str, port: u16) -> Result<TcpStream, TransportError> {
     let place = place(host, port);
     match timeout(CONNECT_DEADLINE, connect_now(host, port, &place)).await {

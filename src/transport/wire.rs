@@ -1,4 +1,4 @@
-//! What every wire is: a stream of bytes both ways, and how one is opened. No hand, no protocol.
+//! The interface of every wire: a stream of bytes both ways, and how to open one. Independent of hand and protocol.
 
 use crate::system::SystemError;
 use crate::transport::endpoint::Endpoint;
@@ -16,18 +16,18 @@ impl<T: AsyncRead + AsyncWrite + Send + Unpin + 'static> Wire for T {}
 /// A wire of any kind.
 pub type BoxedWire = Box<dyn Wire>;
 
-/// Opens wires. The link is given one, so that tests and the simulated hand can stand behind it.
+/// Opens wires. The link receives an implementation, so that tests and the simulated hand can replace the system's wires.
 pub trait Dial: Send + Sync + 'static {
     /// Opens the wire of this endpoint. Must be cancellable by dropping.
     fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>>;
 
-    /// How long to wait before this attempt, the first being 1, after a wire was lost or did not open; `None` for the usual time.
+    /// Delay before this attempt, the first being 1, after a wire was lost or did not open; `None` for the default.
     fn retry_delay(&self, _attempt: u32) -> Option<Duration> {
         None
     }
 
-    /// The serial ports that the system lists now, so that an adapter is found again under another name. None where
-    /// wires are not the system's. Must be cancellable by dropping.
+    /// The serial ports that the system lists now, used to find an adapter under another name. Empty if wires are not
+    /// the system's. Must be cancellable by dropping.
     fn ports(&self) -> BoxFuture<'static, Vec<PortFound>> {
         Box::pin(std::future::ready(Vec::new()))
     }
@@ -38,7 +38,7 @@ pub trait Dial: Send + Sync + 'static {
     }
 }
 
-/// What else is plugged in, with what to do.
+/// Advice that lists the alternative ports.
 fn instead(alike: &[String]) -> String {
     if alike.is_empty() {
         return ": plug it in again".into();
@@ -49,10 +49,10 @@ fn instead(alike: &[String]) -> String {
     )
 }
 
-/// Why a wire could not be opened, or broke. Each kind has its own words for the user.
+/// Reason why a wire could not be opened, or broke. Each kind has its own message for the user.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
 pub enum TransportError {
-    /// The port or interface is not there.
+    /// The port or interface does not exist.
     #[error("{place} is not there: plug the adapter in, or choose another port")]
     Missing {
         /// Port, interface or address.
@@ -61,26 +61,26 @@ pub enum TransportError {
     /// It is a folder or an ordinary file.
     #[error("{place} is not a serial port: choose the device of the adapter, such as /dev/ttyUSB0")]
     NotAPort {
-        /// What was named.
+        /// The given path.
         place: String,
     },
-    /// The system does not let this person open it.
+    /// The user lacks permission to open it.
     #[error("no permission to open {place}: {remedy}")]
     Permission {
         /// Port or interface.
         place: String,
-        /// What changes it.
+        /// Measure that changes it.
         remedy: Remedy,
     },
-    /// The adapter that was used is not plugged in, and what is there instead may be another.
+    /// The adapter used before is unplugged, and the present one may be another.
     #[error("the USB adapter of {place} is unplugged{}", instead(.alike))]
     Away {
-        /// Port as it was asked for.
+        /// Port as requested.
         place: String,
-        /// Ports of adapters that cannot be told from it, or that took its name.
+        /// Ports of indistinguishable adapters, or of one that took its name.
         alike: Vec<String>,
     },
-    /// Another program holds it.
+    /// Another program has it open.
     #[error(
         "{place} is in use by {}: close that program, then connect again",
         .holder.as_deref().unwrap_or("another program")
@@ -88,10 +88,10 @@ pub enum TransportError {
     Busy {
         /// Port.
         place: String,
-        /// Name and process id of that program, where the system tells.
+        /// Name and process id of that program; `None` if the system does not report it.
         holder: Option<String>,
     },
-    /// A host that answers "nobody listens here".
+    /// A host that rejects the connection: no program listens on the port.
     #[error(
         "{place} refused the connection: the host is there, but nothing listens on this port; the hand's own port is 6000"
     )]
@@ -106,7 +106,7 @@ pub enum TransportError {
     Silent {
         /// Address and port, or serial port.
         place: String,
-        /// How long was waited.
+        /// Time waited, in milliseconds.
         after_ms: u64,
     },
     /// A name without address.
@@ -123,7 +123,7 @@ pub enum TransportError {
         /// Port or address.
         place: String,
     },
-    /// This kind of link is no wire of the system's: the built-in hand, where none was put behind the dial.
+    /// This kind of link is not a system wire: the built-in hand, if the dialler does not provide one.
     #[error(
         "'{kind}:' is not reached over a wire of this system: name a port, an address or an interface"
     )]
@@ -147,7 +147,7 @@ pub enum TransportError {
         /// Interface.
         place: String,
     },
-    /// The CAN interface is switched off.
+    /// The CAN interface is down.
     #[error(
         "the CAN interface {place} is down: run 'sudo ip link set {place} up type can bitrate 1000000'"
     )]
@@ -155,7 +155,7 @@ pub enum TransportError {
         /// Interface.
         place: String,
     },
-    /// The system has no CAN sockets at all.
+    /// The system has no CAN sockets.
     #[error(
         "{place} cannot be opened: the kernel of this system has no CAN; use an adapter with slcan: instead"
     )]
@@ -163,10 +163,10 @@ pub enum TransportError {
         /// Interface.
         place: String,
     },
-    /// CAN sockets are Linux's.
+    /// CAN sockets exist only on Linux.
     #[error("'can:' links need Linux: use an adapter with slcan: here")]
     LinuxOnly,
-    /// Frames wait to be sent and nobody takes them.
+    /// Queued frames cannot be sent: no node acknowledges them.
     #[error(
         "{place} cannot send, its frames stay in the queue: nobody on the CAN bus acknowledges them; check cable, termination, bit rate and the hand's power"
     )]
@@ -174,7 +174,7 @@ pub enum TransportError {
         /// Interface or port.
         place: String,
     },
-    /// The controller gave up after too many errors.
+    /// The controller left the bus after too many errors.
     #[error(
         "{place} is bus-off, too many errors on the CAN bus: check bit rate, cable and termination, then run 'sudo ip link set {place} down' and up again"
     )]
@@ -182,7 +182,7 @@ pub enum TransportError {
         /// Interface.
         place: String,
     },
-    /// The controller met many errors, and requests stay without answer.
+    /// The controller counted many errors, and requests get no reply.
     #[error(
         "{place} is error-passive and nothing answers: most likely the bit rate is wrong, or nobody else is on the CAN bus; check bit rate, cable, termination and the hand's power"
     )]
@@ -190,45 +190,45 @@ pub enum TransportError {
         /// Interface.
         place: String,
     },
-    /// The adapter does not take the bit rate.
+    /// The adapter rejects the bit rate.
     #[error("the CAN adapter on {place} refused {bitrate} bit/s: choose another bit rate")]
     BitrateRefused {
         /// Port.
         place: String,
-        /// Bits a second.
+        /// Bits per second.
         bitrate: u32,
     },
-    /// Anything else that failed.
+    /// Any other failure.
     #[error("{place} failed: {failure}")]
     Io {
         /// Port or address.
         place: String,
-        /// What failed.
+        /// The failure.
         #[serde(rename = "message")]
         failure: WireFailure,
     },
 }
 
-/// What failed at a wire where [`TransportError`] knows no advice. In JSON and in recordings it is only its words.
+/// Failure of a wire for which [`TransportError`] has no advice. In JSON and in recordings it is only its message.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum WireFailure {
     /// The system's error.
     #[error(transparent)]
     System(#[from] SystemError),
-    /// The other side did not keep to the protocol, in the library's words.
+    /// The other side violated the protocol; the library's message.
     #[error("{0}")]
     Protocol(String),
-    /// The built-in hand has no such scenario, in its own words.
+    /// The built-in hand has no such scenario; its own message.
     #[error("{0}")]
     NoScenario(String),
-    /// The built-in hand cannot have this body, in the file's own words.
+    /// The built-in hand cannot have this body; the message about the file.
     #[error("{0}")]
     NoBody(String),
-    /// The CAN adapter says that it could not open its channel.
+    /// The CAN adapter reports that it could not open its channel.
     #[error("the CAN adapter could not go on the bus")]
     OffBus,
-    /// Read back from JSON or a recording: the words that stand there.
+    /// The message as read from JSON or a recording.
     #[error("{0}")]
     Recorded(String),
 }

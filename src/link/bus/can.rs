@@ -1,9 +1,9 @@
-//! Requests over CAN (manual 2.3): runs of memory in pieces of at most 8 bytes, each asked and answered by itself.
+//! Requests over CAN (manual 2.3): ranges of memory in pieces of at most 8 bytes, each with its own request and reply.
 //!
-//! Request and reply share one identifier and have no number. A reply is told from a late one by address and length,
-//! and a piece that a late reply could answer is asked for in two smaller ones. What remains: a one-byte piece asked by
-//! another program on the same bus at the same time looks like the hand's reply, and a late reply to a write like that
-//! to the same write sent again. Nothing is planned or retried here.
+//! Request and reply share one identifier and have no number. A reply is distinguished from a late one by address and
+//! length, and a piece that a late reply could answer is read in two smaller ones. Remaining ambiguity: a one-byte
+//! piece requested by another program on the same bus at the same time looks like the hand's reply, and a late
+//! acknowledgement looks like that of the same write sent again. Nothing is planned or retried here.
 
 use crate::codec::can::{
     CanData, CanFrame, CanFunction, CanId, ReadPieces, may_cut, read_request, split, write_requests,
@@ -26,21 +26,21 @@ use tokio::time::{Instant, timeout, timeout_at};
 
 /// The bus counts as quiet after this long without a frame for us.
 const QUIET: Duration = Duration::from_millis(8);
-/// A bus that is never quiet is not waited for longer than this.
+/// Longest wait for a bus that is never quiet.
 const SETTLE_MAX: Duration = Duration::from_millis(60);
 /// Longest wait for one piece: a hand takes up to 30 ms, a USB adapter twice 16 more.
 const PIECE_LIMIT: Duration = Duration::from_millis(80);
-/// Time reckoned for one piece: a request and a reply at 500 kbit/s and the hand's own time …
+/// Assumed time of one piece: a request and a reply at 500 kbit/s and the hand's own time …
 const PIECE_TIME: Duration = Duration::from_millis(3);
-/// … and through a USB adapter that keeps what it got for up to 16 ms.
+/// … and through a USB adapter with a latency of up to 16 ms.
 const ADAPTER_PIECE_TIME: Duration = Duration::from_millis(18);
 /// Data bytes of the reply to a write (manual 2.3.2).
 const ACK_LEN: usize = 1;
-/// Requests in a row without reply after which what the controller says of the bus is taken for the cause.
+/// Consecutive requests without a reply after which the controller's bus state counts as the cause.
 const UNANSWERED_MAX: u32 = 2;
-/// Requests remembered: more than an adapter that echoes can hold back.
+/// Requests kept: more than an adapter that echoes can hold back.
 const SENT_MAX: usize = 8;
-/// Asked first, to see whether the adapter echoes: two bytes, so that request and reply differ in length.
+/// First read, to detect an adapter that echoes: two bytes, so that request and reply differ in length.
 const PROBE: Span = Span::new(register::ANGLE_ACT.address, 2);
 
 /// The client side of one CAN bus.
@@ -48,16 +48,16 @@ pub(crate) struct Can {
     port: CanPort,
     hand: u16,
     cost: WireCost,
-    /// Time reckoned for one piece.
+    /// Assumed time of one piece.
     piece_time: Duration,
     is_open: bool,
-    /// Whether what we send comes back to us, once that is known.
+    /// True if our frames are echoed; `None` until known.
     echoes: Option<bool>,
     late: LateReplies,
     clock: Clock,
     unanswered: u32,
     foreign: u64,
-    /// Requests sent last, oldest first: a frame like one of them is no one else's.
+    /// The last requests, oldest first: an equal frame is not foreign.
     sent: ArrayVec<CanFrame, SENT_MAX>,
     foreign_requests: u64,
 }
@@ -104,7 +104,7 @@ impl Can {
         got
     }
 
-    /// Goes on the bus, and learns whether our own frames come back before anything is asked that looks like its answer.
+    /// Opens the bus, and detects echoes before the first request that resembles its reply.
     async fn open(&mut self, limit: Duration) -> Result<(), BusError> {
         if !self.is_open {
             self.port.open().await?;
@@ -121,7 +121,7 @@ impl Can {
         self.late.first_clear(&[piece], self.clock.now()).is_some()
     }
 
-    /// The pieces of a run that no late reply can answer; none if there is no such cut.
+    /// The pieces of a range that no late reply can answer; `None` if there is no such split.
     fn clear_pieces(&mut self, span: Span) -> Option<ReadPieces> {
         let mut clear = ReadPieces::new();
         for piece in split(span)? {
@@ -142,7 +142,8 @@ impl Can {
         Some(clear)
     }
 
-    /// One request and its reply of so many data bytes. Each has the whole limit: a slow hand is slow forty times.
+    /// Sends one request and waits for a reply of `want` data bytes. Each piece gets the whole limit: a slow hand is
+    /// slow for each of its forty pieces.
     async fn exchange(
         &mut self,
         request: &CanFrame,
@@ -160,7 +161,7 @@ impl Can {
             Ok(sent) => sent?,
             Err(_) => return Err(self.no_reply(limit)),
         }
-        // Only where the reply may look like the request; elsewhere the length tells.
+        // Only if the reply may look like the request; otherwise the length distinguishes them.
         let mut echo_due = self.echoes == Some(true) && request.data.len() == want;
         loop {
             while let Some(frame) = self.port.next() {
@@ -191,7 +192,7 @@ impl Can {
         }
     }
 
-    /// Takes what came while nobody asked, without waiting: none of it can answer the next request.
+    /// Consumes received frames without waiting: none of them can answer the next request.
     fn take_waiting(&mut self) -> Result<(), BusError> {
         while let Some(received) = self.port.receive().now_or_never() {
             received?;
@@ -207,8 +208,9 @@ impl Can {
         }
     }
 
-    /// Whether a frame asks. Requests and replies share an identifier: a write of two bytes or more asks, because it is
-    /// acknowledged by one; a single byte of a read asks, unless we asked for a single byte there ourselves.
+    /// Returns whether a frame is a request. Requests and replies share an identifier: a write of two bytes or more is
+    /// a request, because its acknowledgement has one; a single byte of a read is a request, unless we requested a
+    /// single byte there ourselves.
     fn is_request(&self, id: CanId, frame: &CanFrame) -> bool {
         match id.way {
             CanFunction::Write => frame.data.len() > ACK_LEN,
@@ -220,13 +222,13 @@ impl Can {
         }
     }
 
-    /// A frame that answers nothing. Those of other hands are none of our business.
+    /// Counts a frame that answers no request of ours. Frames of other hands are ignored.
     fn foreign_frame(&mut self, frame: &CanFrame) {
         let Some(id) = CanId::from_raw(frame.id).filter(|id| id.hand == self.hand) else {
             return;
         };
         if self.is_request(id, frame) {
-            // An adapter may have been taken for one that does not echo because the first echo got lost.
+            // An adapter may have been judged not to echo because the first echo was lost.
             let echo = !self.port.never_echoes() && self.sent.contains(frame);
             self.foreign_requests += u64::from(!echo);
             return;
@@ -263,7 +265,7 @@ impl Bus for Can {
         }
         let whole = split(span).ok_or(BusError::TooLong)?;
         self.open(limit).await?;
-        // The first question to a hand has no other form.
+        // The first read of a hand has no other form.
         let pieces = self.clear_pieces(span).unwrap_or(whole);
         let mut bytes = Bytes::new();
         for piece in pieces {
@@ -271,7 +273,7 @@ impl Bus for Can {
                 return Ok(None);
             }
             let got = self.read_piece(piece, limit).await?;
-            // No piece is longer than asked, and the run fits.
+            // No piece is longer than requested, and the range fits.
             bytes.extend(got);
         }
         Ok(Some(bytes))

@@ -1,4 +1,5 @@
-//! CAN frames over a wire: as text or packets through a serial adapter, or as Linux's frames. Asks nothing of a hand.
+//! CAN frames over a wire: as text or packets through a serial adapter, or as Linux's frames. Sends no requests to a
+//! hand by itself.
 
 use crate::codec::NoiseCounts;
 use crate::codec::can::{CanFrame, CanRecord, RECORD_LEN, from_record, to_record};
@@ -13,16 +14,16 @@ use std::time::Duration;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::time::{Instant, timeout, timeout_at};
 
-/// Bytes taken from the wire at once, which bounds the frames that wait: a frame has at least 11 of them.
+/// Maximum bytes per read from the wire, which bounds the queued frames: a frame has at least 11 bytes.
 const CHUNK: usize = 512;
-/// An adapter answers within this, behind a USB latency of 16 ms; some never answer, and work all the same.
+/// Wait for an adapter's reply, behind a USB latency of 16 ms; some never reply, and work all the same.
 const ANSWER_WAIT: Duration = Duration::from_millis(60);
-/// Left-overs of an earlier conversation have come when nothing came for so long …
+/// Leftovers of an earlier session have arrived after this long without data …
 const QUIET: Duration = Duration::from_millis(25);
-/// … and are not waited for longer than this: an adapter that does not close shows all that is on the bus.
+/// … with this limit: an adapter that does not close shows all bus traffic.
 const QUIET_MAX: Duration = Duration::from_millis(150);
 
-/// What stands on the wire.
+/// Encoding of frames on the wire.
 enum CanEncoding {
     /// Lawicel's text.
     Text {
@@ -41,7 +42,7 @@ pub(crate) struct CanPort {
     place: String,
     form: CanEncoding,
     inbox: VecDeque<CanFrame>,
-    /// Answers of the adapter since it was last told something.
+    /// Replies of the adapter since its last command.
     done: bool,
     failed: bool,
     passive: bool,
@@ -76,12 +77,12 @@ impl CanPort {
         }
     }
 
-    /// True if nothing that is sent here ever comes back: Linux sees to it. Adapters may echo.
+    /// True if sent frames never come back: Linux ensures it. Adapters may echo.
     pub(crate) const fn never_echoes(&self) -> bool {
         matches!(self.form, CanEncoding::Records(_))
     }
 
-    /// Goes on the bus. An adapter that never answers is taken for one that did as it was told.
+    /// Opens the bus. An adapter that never replies is assumed to have obeyed.
     pub(crate) async fn open(&mut self) -> Result<(), BusError> {
         let CanEncoding::Text { bitrate, .. } = self.form else {
             return Ok(());
@@ -93,9 +94,9 @@ impl CanPort {
         let Some(code) = bitrate_code(bitrate) else {
             return Err(refused);
         };
-        // Ends a half-sent line of whoever was here before.
+        // Ends an incomplete line of a previous program.
         self.put(b"\r").await?;
-        // An adapter that is closed already says that it failed; either is fine.
+        // An adapter that is closed already reports a failure; either is fine.
         self.tell(&SlcanCommand::Close).await?;
         self.drain().await?;
         if self.tell(&SlcanCommand::Bitrate(code)).await? {
@@ -111,17 +112,17 @@ impl CanPort {
         Ok(())
     }
 
-    /// Leaves the bus, if the wire takes it at once.
+    /// Closes the bus, if the wire accepts the command at once.
     pub(crate) fn close(&mut self) {
         if matches!(self.form, CanEncoding::Text { .. })
             && let Some(line) = encode_command(&SlcanCommand::Close)
         {
-            // A wire that does not take it is gone.
+            // A wire that does not accept it is lost.
             let _taken = self.put(&line).now_or_never();
         }
     }
 
-    /// Tells the adapter something; true if it said that it failed.
+    /// Sends a command to the adapter; true if it reported a failure.
     async fn tell(&mut self, command: &SlcanCommand) -> Result<bool, BusError> {
         let Some(line) = encode_command(command) else {
             return Ok(false);
@@ -167,12 +168,12 @@ impl CanPort {
         written.map_err(|error| lost(&self.place, &error))
     }
 
-    /// The next frame that came.
+    /// The next received frame.
     pub(crate) fn next(&mut self) -> Option<CanFrame> {
         self.inbox.pop_front()
     }
 
-    /// Waits for bytes and makes frames of them. Safe to cancel: bytes are taken only when they are there.
+    /// Waits for bytes and decodes frames. Safe to cancel: no bytes are lost.
     pub(crate) async fn receive(&mut self) -> Result<(), BusError> {
         let mut chunk = [0; CHUNK];
         let got = self.wire.read(&mut chunk).await;
@@ -227,7 +228,7 @@ impl CanPort {
         Ok(())
     }
 
-    /// What the bus itself said that explains why nothing answers.
+    /// The bus state that explains missing replies, if any.
     pub(crate) fn trouble(&self) -> Option<TransportError> {
         let place = self.place.clone();
         if self.passive {
@@ -239,12 +240,12 @@ impl CanPort {
         }
     }
 
-    /// Something was answered: what an adapter refused before does not matter any more.
+    /// Forgets earlier failures of the adapter, after a reply came.
     pub(crate) fn forget_refusals(&mut self) {
         self.failed = false;
     }
 
-    /// What was no line or packet.
+    /// Data that was not a valid line or packet.
     pub(crate) fn noise(&self) -> NoiseCounts {
         match &self.form {
             CanEncoding::Text { decoder, .. } => decoder.counts(),

@@ -1,4 +1,4 @@
-//! What a session asks of a wire, whichever protocol it speaks.
+//! Interface between a session and a wire, for every protocol.
 
 use crate::codec::rs485::SaveResult;
 use crate::hand::register::BytePacking;
@@ -10,7 +10,7 @@ use crate::link::series::PermittedWrite;
 use async_trait::async_trait;
 use std::time::Duration;
 
-/// Whether this wire has a frame with the result.
+/// Indicates whether a SAVE is followed by a result frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ResultFrame {
     /// The maker's framing on RS485.
@@ -19,10 +19,10 @@ pub(crate) enum ResultFrame {
     None,
 }
 
-/// Says whether something more urgent came up meanwhile.
+/// Returns true if something more urgent is pending.
 pub(crate) type Urgent<'a> = &'a (dyn Fn() -> bool + Send + Sync);
 
-/// The client side of one wire. What a protocol does not know has a default.
+/// The client side of one wire. Features that a protocol lacks have a default.
 #[async_trait]
 pub(crate) trait Bus: Send {
     /// Reads a span of memory.
@@ -31,25 +31,25 @@ pub(crate) trait Bus: Send {
     /// Writes, and waits for the acknowledgement.
     async fn write(&mut self, write: PermittedWrite<'_>, limit: Duration) -> Result<(), BusError>;
 
-    /// Whether a write may be sent over this wire at all.
+    /// Checks that this wire can carry a write safely.
     ///
     /// # Errors
-    /// It could change a neighbour: nothing is sent.
+    /// The write could change a neighbouring register; nothing is sent.
     fn allows(&self, _write: &RegisterWrite) -> Result<(), BusError> {
         Ok(())
     }
 
-    /// The first of these spans whose reply cannot be mistaken for a late one; none if all could.
+    /// The first of these spans whose reply cannot be mistaken for a late one; `None` if there is none.
     fn choose(&mut self, shapes: &[Span]) -> Option<Span>;
 
-    /// What reads cost on this wire.
+    /// Cost of reads on this wire.
     fn cost(&self) -> WireCost;
 
-    /// What was counted since the wire was opened.
+    /// Counts since the wire was opened.
     fn counts(&self) -> BusCounts;
 
-    /// Reads, unless something more urgent comes up between two of its pieces, or while a reply is late on a wire with
-    /// numbers. `None` if it did: what was read until then is forgotten.
+    /// Reads, unless something more urgent comes up between two pieces, or while a reply is late on a wire with
+    /// numbers. `None` if interrupted: pieces read so far are discarded.
     async fn read_unless(
         &mut self,
         span: Span,
@@ -60,7 +60,7 @@ pub(crate) trait Bus: Send {
     }
 
     /// Writes, unless something urgent comes up between two pieces, or while the acknowledgement is late on a wire with
-    /// numbers: for what a stop overrides anyway.
+    /// numbers: for writes that a stop overrides anyway.
     async fn write_unless(
         &mut self,
         write: PermittedWrite<'_>,
@@ -70,48 +70,48 @@ pub(crate) trait Bus: Send {
         self.write(write, limit).await
     }
 
-    /// Waits until the protocol lets the next request go out. To be called before wishes are looked at, so that a stop
+    /// Waits until the protocol permits the next request. Called before control requests are checked, so that a stop
     /// does not wait behind a request that is not on the wire yet.
     async fn turn(&mut self) -> Result<(), BusError> {
         Ok(())
     }
 
-    /// After a reply that did not come: listens until the line is quiet, so that nothing is talked over.
+    /// After a missing reply: listens until the line is quiet, to avoid a collision.
     async fn quiet(&mut self) -> Result<(), BusError> {
         Ok(())
     }
 
-    /// Time that the reply to a read of so many bytes takes on the wire, with its request.
+    /// Time on the wire of a read of this many bytes: request and reply.
     fn wire_time(&self, _bytes: u16) -> Duration {
         Duration::ZERO
     }
 
-    /// True if the adapter was found to give back what is sent.
+    /// True if the adapter echoes what is sent.
     fn echoes(&self) -> bool {
         false
     }
 
-    /// How often what was sent came back, whoever answered then.
+    /// Number of echoes of our own frames, with or without a reply.
     fn own_frames(&self) -> u64 {
         0
     }
 
-    /// True where replies carry the number of their request, so that a late one is known as such.
+    /// True if replies carry the number of their request, so that late ones can be identified.
     fn has_numbers(&self) -> bool {
         false
     }
 
-    /// The slowest of the late replies that came since this was asked last.
+    /// The slowest late reply since the last call.
     fn take_late(&mut self) -> Option<LateReply> {
         None
     }
 
-    /// True where single bytes travel in words.
+    /// True if single bytes are packed into words.
     fn has_words(&self) -> bool {
         false
     }
 
-    /// Six words or more as Modbus gives them; none where the protocol has no words.
+    /// Six or more raw Modbus words; `None` if the protocol has no words.
     async fn words(
         &mut self,
         _address: u16,
@@ -120,31 +120,31 @@ pub(crate) trait Bus: Send {
         Ok(None)
     }
 
-    /// From now on single bytes are read and written as this hand was found to keep them.
+    /// Sets the detected packing, for reads and writes of single bytes.
     fn set_packing(&mut self, _found: Option<BytePacking>) {}
 
-    /// Whether a SAVE is followed by a frame with its result here.
+    /// Returns whether a SAVE is followed by a result frame on this wire.
     fn save_result_frame(&self) -> ResultFrame {
         ResultFrame::None
     }
 
-    /// A frame with the result of a SAVE that came, the oldest first.
+    /// The oldest received result frame of a SAVE.
     fn take_save_result(&mut self) -> Option<SaveResult> {
         None
     }
 
-    /// True if the frame came that ends a calibration; once.
+    /// True, once, if the end frame of a calibration was received.
     fn take_calibration_end(&mut self) -> bool {
         false
     }
 
-    /// Asks nothing and takes what comes, until the result of a SAVE or the end of a calibration is there; never ends where
-    /// there is none. Safe to cancel.
+    /// Listens without sending a request, until the result of a SAVE or the end of a calibration was received; never
+    /// returns if there is none. Safe to cancel.
     async fn listen(&mut self) -> Result<(), BusError> {
         std::future::pending().await
     }
 
-    /// Closes the wire; what is still unanswered goes to the next one.
+    /// Closes the wire; returns the unanswered requests for the next one.
     fn close(self: Box<Self>) -> LateReplies {
         LateReplies::default()
     }

@@ -1,9 +1,9 @@
-//! Whether an adapter echoes what is sent. Judged by whole exchanges; which bytes are ours is decided by the protocols.
+//! Detects an adapter that echoes what is sent, from whole exchanges; the protocols identify the echoes.
 
-/// Exchanges in a row, all alike, that tell how an adapter is: one echo may be another speaker that asked the same.
+/// Consecutive exchanges, all alike, that are proof: one echo may be another controller with the same request.
 const SURE: u32 = 3;
 
-/// What the exchanges of one wire showed so far.
+/// Echo state of one wire.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Echo {
     came_back: bool,
@@ -11,17 +11,17 @@ pub(crate) struct Echo {
 }
 
 impl Echo {
-    /// A request goes out.
+    /// Records that a request is sent.
     pub(crate) const fn sent(&mut self) {
         self.came_back = false;
     }
 
-    /// What was sent came back.
+    /// Records that the request came back.
     pub(crate) const fn came_back(&mut self) {
         self.came_back = true;
     }
 
-    /// The reply to it came. An echo comes before it or not at all.
+    /// Records the reply. An echo precedes it or does not come at all.
     pub(crate) fn answered(&mut self) {
         self.in_a_row = if self.came_back {
             self.in_a_row.saturating_add(1).min(SURE)

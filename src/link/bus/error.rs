@@ -1,4 +1,4 @@
-//! Why a request has no good end, and what a bus counted. Shared by the protocols; nothing is retried here.
+//! Errors and counts of a bus. Shared by the protocols; nothing is retried here.
 
 use crate::hand::Refusal;
 use crate::system::SystemError;
@@ -7,36 +7,36 @@ use arrayvec::ArrayVec;
 use std::io;
 use std::time::Duration;
 
-/// Most bytes that one read can carry over any protocol.
+/// Maximum bytes of one read over any protocol.
 pub(crate) const READ_MAX: usize = 252;
 
 /// The memory bytes of one reply.
 pub(crate) type Bytes = ArrayVec<u8, READ_MAX>;
 
-/// Why a request has no good end. Only `Lost` ends the session.
+/// Reason why a request failed. Only `Lost` ends the session.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum BusError {
     /// No reply in time.
     Timeout { after: Duration },
-    /// The hand said no.
+    /// The hand refused.
     Refused { reason: Refusal },
-    /// A reply of another length than was asked for.
+    /// The reply has another length than requested.
     WrongLength { got: usize, want: usize },
-    /// This protocol cannot carry so much.
+    /// The request is too long for this protocol.
     TooLong,
-    /// Every way to ask could be answered by a late reply.
+    /// A late reply could answer the request in every shape.
     Ambiguous,
-    /// The wire is gone.
+    /// The wire was lost.
     Lost(TransportError),
 }
 
-/// What a bus counted since it was opened.
+/// Counts of a bus since it was opened.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct BusCounts {
     pub(crate) checksum_errors: u64,
     pub(crate) resyncs: u64,
     pub(crate) foreign_replies: u64,
-    /// Replies to requests that had been given up, where that can be known.
+    /// Replies to requests that had timed out, where they can be identified.
     pub(crate) late_replies: u64,
     pub(crate) foreign_requests: u64,
 }
@@ -53,14 +53,14 @@ impl BusCounts {
     }
 }
 
-/// The end of a wire: it hung up, or failed as it says.
+/// Error for a wire that hung up or failed.
 pub(crate) fn lost(place: &str, error: &io::Error) -> BusError {
     let place = place.to_owned();
     let told = error.get_ref().and_then(|inner| inner.downcast_ref());
     if let Some(told) = told {
         return BusError::Lost(TransportError::clone(told));
     }
-    // A pseudo-terminal says EIO and a USB adapter ENXIO or EPIPE when the other side goes.
+    // If the other side closes, a pseudo-terminal returns EIO and a USB adapter ENXIO or EPIPE.
     let hung_up = matches!(
         error.kind(),
         io::ErrorKind::BrokenPipe | io::ErrorKind::UnexpectedEof | io::ErrorKind::ConnectionReset
@@ -75,7 +75,7 @@ pub(crate) fn lost(place: &str, error: &io::Error) -> BusError {
     })
 }
 
-/// The id or unit that an endpoint asks for, for messages.
+/// The id or unit of an endpoint's requests, for messages.
 pub(crate) fn id_of(endpoint: &Endpoint) -> u16 {
     match endpoint {
         Endpoint::Sim { .. } => 1,

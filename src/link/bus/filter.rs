@@ -1,6 +1,6 @@
-//! A wire that lets only the reply to the newest request through. Modbus TCP replies carry the number of
-//! their request; late, doubled and foreign ones are counted and dropped before the client sees them. How late a late one
-//! is, is kept.
+//! A wire that forwards only the reply to the newest request. Modbus TCP replies carry the number of their request;
+//! late, duplicate and foreign ones are counted and dropped before the client sees them. The delay of late replies is
+//! recorded.
 
 use crate::codec::mbap::MbapSplitter;
 use crate::hand::ModbusException;
@@ -16,15 +16,15 @@ use std::task::{Context, Poll, ready};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::Instant;
 
-/// Bytes taken from the socket at once.
+/// Maximum bytes per read from the socket.
 const CHUNK: usize = 512;
 /// Bytes of a header: transaction, protocol, length, unit (manual 2.5).
 const HEADER: usize = 7;
 
-/// Requests that were given up and may still be answered: those of a second at the shortest wait, and some more.
+/// Maximum timed-out requests kept: those of a second at the shortest wait, and some more.
 const ABANDONED_MAX: usize = 32;
 
-/// What the filter saw; shared with the bus, because the client owns the filter.
+/// Counts of the filter; shared with the bus, because the client owns the filter.
 #[derive(Debug, Default)]
 pub(crate) struct FilterCounts {
     pub(crate) foreign: AtomicU64,
@@ -42,12 +42,12 @@ impl FilterCounts {
         }
     }
 
-    /// The slowest late reply since they were taken last.
+    /// The slowest late reply since the last [`Self::take_slowest`].
     pub(crate) fn slowest(&self) -> Option<LateReply> {
         *self.slowest.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes it.
+    /// Returns and clears it.
     pub(crate) fn take_slowest(&self) -> Option<LateReply> {
         let mut slowest = self.slowest.lock().unwrap_or_else(PoisonError::into_inner);
         slowest.take()
@@ -64,7 +64,7 @@ pub(crate) struct ReplyFilter {
     counts: Arc<FilterCounts>,
     open: Option<(ReadKey, Instant)>,
     abandoned: ArrayVec<(ReadKey, Instant), ABANDONED_MAX>,
-    /// Bytes of the request that were not written yet, when the wire took only a part.
+    /// Bytes of the request that are still to be written, if the wire accepted only a part.
     rest_of_request: usize,
     passed: VecDeque<u8>,
 }
@@ -82,7 +82,7 @@ impl ReplyFilter {
         }
     }
 
-    /// Takes new bytes from the wire, and passes the reply to the open request if it is whole.
+    /// Applies new bytes from the wire, and forwards the reply to the open request once complete.
     fn sort(&mut self, mut bytes: &[u8]) -> io::Result<()> {
         while !bytes.is_empty() {
             let taken = self.splitter.push(bytes);
@@ -106,13 +106,13 @@ impl ReplyFilter {
         Ok(())
     }
 
-    /// When the request of this number was sent, if it was given up and not answered since.
+    /// Send time of the request with this number, if it timed out and was not answered since.
     fn given_up(&mut self, key: ReadKey) -> Option<Instant> {
         let at = self.abandoned.iter().position(|(asked, _)| *asked == key)?;
         Some(self.abandoned.remove(at).1)
     }
 
-    /// Notes the number of the request whose first bytes are being written.
+    /// Records the number of the request whose first bytes are being written.
     fn note(&mut self, request: &[u8], written: usize) {
         if self.rest_of_request > 0 {
             self.rest_of_request = self.rest_of_request.saturating_sub(written);
@@ -234,7 +234,7 @@ mod tests {
         ] {
             far.write_all(&wrong).await.unwrap();
         }
-        // Split in the middle of the header, and doubled.
+        // Split in the middle of the header, and duplicated.
         far.write_all(&right[..3]).await.unwrap();
         far.write_all(&right[3..]).await.unwrap();
         far.write_all(&right).await.unwrap();

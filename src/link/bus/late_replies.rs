@@ -1,33 +1,33 @@
-//! Questions that may still be answered: given up, or answered once and perhaps once more. On lines without
-//! sequence numbers such an answer cannot be told from a fresh one, so the question is not asked again for a while.
+//! Requests that may still be answered: timed out, or answered once and possibly duplicated. On lines without sequence
+//! numbers such a reply cannot be distinguished from a fresh one, so the request is not repeated for a while.
 
 use crate::hand::{ModbusException, Moment, Span};
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// How long a hand may answer late: the slowest known is half a second in flash writing; doubled twice.
+/// Time within which a late reply may arrive: the slowest known is half a second, during flash writing; doubled twice.
 pub(crate) const LATE_HORIZON: Duration = Duration::from_secs(2);
-/// More open questions than there are shapes to ask; the oldest is forgotten then, and the link is reopened before.
+/// Maximum open requests: more than there are read shapes; the oldest is dropped then, and the link is reopened before that.
 const QUESTIONS_MAX: usize = 32;
 
-/// Answers that a doubled run of replies may hold: more than fit into what an adapter passes on at once.
+/// Replies that a duplicated run may contain: more than an adapter forwards at once.
 const ANSWERED_MAX: usize = 6;
 
 /// Shortest wait for a reply: a hand takes up to 15 ms, a USB adapter up to 16 more.
 pub(crate) const REPLY_LIMIT_MIN: Duration = Duration::from_millis(50);
-/// Longest wait for a reply that is known to come late: two of them show silence within a second.
+/// Longest wait for a reply that is known to be late: two of them show silence within a second.
 const SLOW_LIMIT_MAX: Duration = Duration::from_millis(450);
 
-/// A reply that came after its request was given up. Only where replies carry numbers is it known as that.
+/// A reply that came after its request timed out. Only identifiable where replies carry numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct LateReply {
-    /// From the request to the reply.
+    /// Time from the request to the reply.
     pub(crate) took: Duration,
-    /// What it says, if it is an exception.
+    /// The exception, if the reply is one.
     pub(crate) exception: Option<ModbusException>,
 }
 
-/// How long to wait where a reply took so long before.
+/// Wait for the next reply after one that took this long.
 pub(crate) fn slow_limit(took: Duration) -> Duration {
     (took + took / 4 + REPLY_LIMIT_MIN).min(SLOW_LIMIT_MAX)
 }
@@ -36,14 +36,14 @@ pub(crate) fn slow_limit(took: Duration) -> Duration {
 #[derive(Debug, Default)]
 pub(crate) struct LateReplies {
     asked: ArrayVec<(Span, Moment), QUESTIONS_MAX>,
-    /// What was answered last, oldest first. A doubled reply comes before the reply to anything asked later …
+    /// The last answered reads, oldest first. A duplicate precedes the reply to any later request …
     answered: ArrayVec<Span, ANSWERED_MAX>,
-    /// … unless a whole run of replies was doubled: then a reply that nobody asked for came here first.
+    /// … unless a whole run of replies was duplicated: then an unrequested reply was received first, at this time.
     unasked: Option<Moment>,
 }
 
 impl LateReplies {
-    /// A read of this span was given up at `now`.
+    /// Records that a read of this span timed out at `now`.
     pub(crate) fn gave_up(&mut self, span: Span, now: Moment) {
         self.forget(now);
         if self.asked.is_full() {
@@ -52,7 +52,7 @@ impl LateReplies {
         self.asked.push((span, now));
     }
 
-    /// A request was answered; the span if it was a read.
+    /// Records that a request was answered; `span` if it was a read.
     pub(crate) fn answered(&mut self, span: Option<Span>) {
         let Some(span) = span else {
             // The reply to a write ends the run.
@@ -65,7 +65,7 @@ impl LateReplies {
         self.answered.push(span);
     }
 
-    /// An unexpected reply has come: one open request less, and doubles must be expected.
+    /// Records an unexpected reply to a known request: that request is closed, and duplicates must be expected.
     pub(crate) fn arrived(&mut self, span: Span, now: Moment) {
         self.unasked = Some(now);
         if let Some(at) = self.asked.iter().position(|(asked, _)| *asked == span) {
@@ -73,12 +73,12 @@ impl LateReplies {
         }
     }
 
-    /// An unexpected reply has come that does not identify its request: all stay open, and doubles must be expected.
+    /// Records an unexpected reply that does not identify its request: all stay open, and duplicates must be expected.
     pub(crate) fn strayed(&mut self, now: Moment) {
         self.unasked = Some(now);
     }
 
-    /// The first of these spans that no late or doubled reply can answer.
+    /// The first of these spans that no late or duplicate reply can answer.
     pub(crate) fn first_clear(&mut self, shapes: &[Span], now: Moment) -> Option<Span> {
         self.forget(now);
         let wary = self.unasked.is_some_and(|at| now.since(at) < LATE_HORIZON);

@@ -1,4 +1,4 @@
-//! One request and its reply, over whichever protocol the endpoint speaks. No plan, no retry.
+//! One request and its reply, over the endpoint's protocol. No polling, no retries.
 pub(crate) mod can;
 pub(crate) mod can_port;
 pub(crate) mod client;
@@ -24,7 +24,7 @@ use crate::link::bus::rs485::Rs485;
 use crate::link::clock::Clock;
 use crate::transport::{BoxedWire, Endpoint};
 
-/// Puts the endpoint's protocol on an open wire. `late` is what earlier wires to this hand left unanswered.
+/// Creates the endpoint's protocol client on an open wire. `late`: requests that earlier wires to this hand left unanswered.
 pub(crate) fn on_wire(
     endpoint: &Endpoint,
     wire: BoxedWire,

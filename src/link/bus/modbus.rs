@@ -1,5 +1,5 @@
-//! What Modbus over a socket and over a serial line have in common (manual 2.4, 2.5): requests out of spans and
-//! writes, memory out of responses, errors out of the library's. Sends nothing.
+//! Common code for Modbus over a socket and over a serial line (manual 2.4, 2.5): converts spans and writes to
+//! requests, responses to memory, and the library's errors to ours. Sends nothing.
 
 use crate::codec::modbus::{
     ModbusWrite, READ_WORDS_MAX, bytes_from_words, words_for, words_from_write,
@@ -13,7 +13,7 @@ use crate::transport::{TransportError, WireFailure};
 use std::borrow::Cow;
 use tokio_modbus::{Error, ExceptionCode, Request, Response};
 
-/// The read of a span, function 03.
+/// The request to read a span, function 03.
 ///
 /// # Errors
 /// `TooLong` for none or more than 125 words.
@@ -25,7 +25,7 @@ pub(crate) fn read_request(span: Span) -> Result<Request<'static>, BusError> {
     Ok(Request::ReadHoldingRegisters(words.address, words.count))
 }
 
-/// The memory bytes that a response to [`read_request`] holds.
+/// The memory bytes of a response to [`read_request`].
 pub(crate) fn read_response(
     span: Span,
     response: &Response,
@@ -49,12 +49,12 @@ pub(crate) fn read_response(
     Ok(bytes.collect())
 }
 
-/// The read of a group of single bytes in words of its own, or of the words that tell how they are packed.
+/// The request to read words: a group of single bytes with one byte per word, or words that reveal the packing.
 pub(crate) const fn words_request(address: u16, count: u16) -> Request<'static> {
     Request::ReadHoldingRegisters(address, count)
 }
 
-/// The words that a response to [`words_request`] holds.
+/// The words of a response to [`words_request`].
 pub(crate) fn words_response(count: u16, response: Response) -> Result<Vec<u16>, BusError> {
     let want = usize::from(count) * 2;
     match response {
@@ -67,7 +67,7 @@ pub(crate) fn words_response(count: u16, response: Response) -> Result<Vec<u16>,
     }
 }
 
-/// The wanted bytes of a group of six in words of its own, appended.
+/// Appends the requested bytes of a group of six that is stored with one byte per word.
 pub(crate) fn take_group(
     bytes: &mut Bytes,
     words: &[u16],
@@ -83,7 +83,7 @@ pub(crate) fn take_group(
     Ok(())
 }
 
-/// A write, by function 06 or 16.
+/// The request for a write, function 06 or 16.
 pub(crate) fn write_request(write: &RegisterWrite) -> Request<'static> {
     match words_from_write(write) {
         ModbusWrite::Single { address, value } => Request::WriteSingleRegister(address, value),
@@ -109,7 +109,7 @@ pub(crate) fn write_response(write: &RegisterWrite, response: &Response) -> Resu
     }
 }
 
-/// What a call of the library came to. `closed`: the other side was seen to close the wire.
+/// Converts the result of a library call. `closed`: the other side closed the wire.
 pub(crate) fn outcome(
     called: Result<Result<Response, ExceptionCode>, Error>,
     place: &str,
@@ -125,7 +125,7 @@ pub(crate) fn outcome(
             place: place(),
             failure: WireFailure::Protocol(error.to_string()),
         })),
-        // Where the other side closes, the library passes on whatever error the system had last.
+        // If the other side closes, the library returns the system's last error, whatever it was.
         Err(Error::Transport(_)) if closed => {
             Err(BusError::Lost(TransportError::HungUp { place: place() }))
         }

@@ -1,5 +1,5 @@
 //! Requests over Modbus RTU (manual 2.4), through tokio-modbus. Replies have neither number nor address, only a length:
-//! no length is asked for again while a reply of that length may still come.
+//! a length is not requested again while a reply of that length may still come.
 
 use crate::codec::modbus::words_for;
 use crate::codec::modbus::words_per_group;
@@ -28,11 +28,11 @@ use tokio_modbus::{Request, Response, Slave};
 
 /// After a lost reply the line counts as quiet after this long without a byte: longer than any gap inside a frame.
 const QUIET: Duration = Duration::from_millis(8);
-/// A line that is never quiet is not waited for longer than this.
+/// Longest wait for a line that is never quiet.
 const SETTLE_MAX: Duration = Duration::from_millis(60);
-/// Bytes of a read request, and of a reply's frame around its data.
+/// Bytes of a read request, and of a reply frame around its data.
 const FRAMING: u32 = 8 + 5;
-/// Lengths in which a group of single bytes is asked for: three groups in a row, and some that are still open.
+/// Read lengths for a group of single bytes: three consecutive groups, and some that are still open.
 const GROUP_SHAPES: usize = 10;
 
 /// The client side of one RTU line.
@@ -44,7 +44,7 @@ pub(crate) struct ModbusRtu {
     late: LateReplies,
     clock: Clock,
     timer: Timer,
-    /// Foreign replies that `late` knows of.
+    /// Foreign replies already recorded in `late`.
     strays: u64,
     pub(crate) word_use: WordUse,
 }
@@ -72,7 +72,7 @@ impl ModbusRtu {
         }
     }
 
-    /// Six words as they come, or more: so many that no late reply can be taken for this one.
+    /// Reads six or more raw words: as many as it takes that no late reply can be mistaken for this one.
     async fn group_words(&mut self, address: u16, limit: Duration) -> Result<Vec<u16>, BusError> {
         let least = words_per_group(BytePacking::OnePerWord);
         let shapes: ArrayVec<Span, GROUP_SHAPES> = (least..)
@@ -87,7 +87,7 @@ impl ModbusRtu {
         modbus::words_response(count, self.ask(request, shape, limit).await?)
     }
 
-    /// One read, and what it leaves open.
+    /// Sends one read, and records its unanswered state.
     async fn ask(
         &mut self,
         request: Request<'_>,
@@ -98,7 +98,7 @@ impl ModbusRtu {
         let now = self.clock.now();
         match &called {
             Ok(_) => self.late.answered(Some(seen(span))),
-            // A refusal may have been late itself, with the reply still to come.
+            // The refusal may be a late one, with the reply still to come.
             Err(_) => self.late.gave_up(seen(span), now),
         }
         self.note_strays();
@@ -115,7 +115,7 @@ impl ModbusRtu {
             match timeout(limit, &mut call).await {
                 Ok(called) => Some(called),
                 Err(_) => {
-                    // Noise that looks like the head of a long reply may hide the right one.
+                    // Noise that resembles the head of a long reply may hide the right one.
                     self.line.flush_pending();
                     call.now_or_never()
                 }
@@ -128,7 +128,7 @@ impl ModbusRtu {
         modbus::outcome(called, &self.place, self.line.closed())
     }
 
-    /// Takes what came while nobody asked, without waiting: none of it can answer the next request.
+    /// Consumes received data without waiting: none of it can answer the next request.
     fn take_waiting(&mut self) -> Result<(), BusError> {
         while let Some(heard) = self.line.hear().now_or_never() {
             heard.map_err(|error| self.lost(&error))?;
@@ -136,7 +136,7 @@ impl ModbusRtu {
         Ok(())
     }
 
-    /// A stray reply may belong to any question of its length, or be a double: none is closed by it.
+    /// Records stray replies. A stray may belong to any request of its length, or be a duplicate, so it closes none.
     fn note_strays(&mut self) {
         let foreign = self.line.foreign();
         if foreign > self.strays {
@@ -207,7 +207,7 @@ impl Bus for ModbusRtu {
             if quiet_at <= now || now >= end {
                 break;
             }
-            // Of the silence, 1.75 ms, the runtime's own timers would make up to 4.
+            // The runtime's own timers would extend the silence of 1.75 ms to up to 4.
             self.timer.until(quiet_at).await;
         }
         Ok(())
@@ -234,7 +234,7 @@ impl Bus for ModbusRtu {
 
     fn choose(&mut self, shapes: &[Span]) -> Option<Span> {
         let word_use = self.word_use;
-        // Groups in words of their own choose their length when they are asked for.
+        // Groups with one byte per word choose their length when they are read.
         let fixed = |shape: &Span| {
             let first = word_use.pieces(*shape).into_iter().next();
             match first {
@@ -286,7 +286,7 @@ impl Bus for ModbusRtu {
     }
 }
 
-/// All that a reply tells about the span it answers: how many words it has.
+/// The key by which a reply can be matched: its number of words.
 const fn seen(span: Span) -> Span {
     Span::new(0, words_for(span).count.saturating_mul(2))
 }
@@ -319,7 +319,7 @@ mod tests {
             .collect()
     }
 
-    /// A reply to a read of so many bytes, all alike.
+    /// A reply to a read of this many bytes, all equal.
     fn reply(len: u8, fill: u8) -> Vec<u8> {
         let mut reply = vec![1, 3, len];
         reply.resize(3 + usize::from(len), fill);
@@ -404,7 +404,7 @@ mod tests {
         assert_eq!(bus.choose(&shapes), Some(STATE));
         assert!(bus.read(STATE, LIMIT).await.is_err());
         bus.quiet().await.unwrap();
-        // Another span of the same length would be taken for it too.
+        // Another span of the same length would match it too.
         assert_eq!(bus.choose(&[Span::new(1474, STATE.len)]), None);
         let next = bus.choose(&shapes).unwrap();
         assert_eq!(next.len, 72);

@@ -21,7 +21,7 @@ use tokio::time::{Instant, timeout_at};
 use tokio_modbus::client::{Client as _, Context, tcp};
 use tokio_modbus::{Request, Response, Slave};
 
-/// How often a stop is looked for while a reply is late.
+/// Interval at which a stop is checked for while a reply is late.
 const URGENT_INTERVAL: Duration = Duration::from_millis(5);
 
 /// The client side of one Modbus TCP connection.
@@ -44,7 +44,7 @@ impl ModbusTcp {
         }
     }
 
-    /// Words as they come, for judging how bytes stand in them.
+    /// Reads raw words, to detect the byte packing.
     async fn group_words(
         &mut self,
         address: u16,
@@ -55,8 +55,8 @@ impl ModbusTcp {
         modbus::words_response(count, self.call(request, limit, &|| false).await?)
     }
 
-    /// One request. While it waits, a late reply to an earlier one lengthens the wait. Once the reply is late itself,
-    /// something urgent ends it: its number keeps what still comes apart.
+    /// Sends one request. A late reply to an earlier one extends the wait. Once the reply is late itself, an urgent
+    /// event ends the wait: the request number identifies a reply that still comes.
     async fn call(
         &mut self,
         request: Request<'_>,
@@ -126,7 +126,7 @@ impl Bus for ModbusTcp {
         self.group_words(address, least, limit).await.map(Some)
     }
 
-    // Transaction ids tell replies apart, so the first serves always.
+    // Transaction ids distinguish replies, so the first shape always works.
     fn allows(&self, write: &RegisterWrite) -> Result<(), BusError> {
         self.word_use.allows(write)
     }

@@ -1,5 +1,5 @@
-//! Single bytes over Modbus, where the manual leaves their packing open: which pieces a read falls into, and which writes
-//! are safe. Asks nothing itself.
+//! Single bytes over Modbus, whose packing the manual leaves undefined: splits reads into pieces, and decides which
+//! writes are safe. Sends nothing itself.
 
 use crate::hand::register::BytePacking;
 use crate::hand::register::{ERROR, Element, STATUS, TEMP, by_address};
@@ -8,17 +8,17 @@ use crate::link::bus::error::BusError;
 use crate::transport::Endpoint;
 use arrayvec::ArrayVec;
 
-/// The groups of single bytes: ERROR, STATUS, TEMP, one behind the other.
+/// The groups of single bytes: ERROR, STATUS, TEMP, at consecutive addresses.
 const BYTE_GROUPS: [Span; 3] = [ERROR.span(), STATUS.span(), TEMP.span()];
-/// Pieces of a read: each group, and what stands before, between and behind.
+/// Maximum pieces of a read: each group, and the parts before, between and after.
 const PIECES_MAX: usize = 5;
 
 /// A part of a read that is one request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ReadPiece {
-    /// Two bytes a word.
+    /// Two bytes per word.
     Memory(Span),
-    /// A group of six in words of its own, of which these bytes are wanted.
+    /// The requested bytes of a group of six with one byte per word.
     Group {
         group: Span,
         skip: usize,
@@ -26,7 +26,7 @@ pub(crate) enum ReadPiece {
     },
 }
 
-/// How one bus takes bytes for words: what the user said, and what the hand was found to do.
+/// Byte packing of one bus: chosen by the user, and detected from the hand.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WordUse {
     chosen: Option<BytePacking>,
@@ -41,12 +41,12 @@ impl WordUse {
         }
     }
 
-    /// How words are read. Where nobody knows, as most hands are.
+    /// Packing used for reads; if unknown, that of most hands.
     pub(crate) fn reading(&self) -> BytePacking {
         self.chosen.or(self.found).unwrap_or_default()
     }
 
-    /// The requests that a read takes.
+    /// The requests that a read needs.
     pub(crate) fn pieces(&self, span: Span) -> ArrayVec<ReadPiece, PIECES_MAX> {
         let mut pieces = ArrayVec::new();
         if self.reading() != BytePacking::OnePerWord {
@@ -79,8 +79,8 @@ impl WordUse {
         pieces
     }
 
-    /// Refuses writes of single bytes where they could change a neighbour: SAVE stands beside RESET_PARA. They pass
-    /// only where the hand was found to put the low byte first, or could not be judged and the user says so.
+    /// Refuses writes of single bytes where they could change a neighbour: SAVE is next to RESET_PARA. They are
+    /// permitted only if the hand was detected to put the low byte first, or could not be judged and the user says so.
     pub(crate) fn allows(&self, write: &RegisterWrite) -> Result<(), BusError> {
         if !is_bytes(write) {
             return Ok(());
@@ -97,7 +97,7 @@ impl WordUse {
     }
 }
 
-/// What the user said in the endpoint.
+/// The packing that the user chose in the endpoint.
 pub(crate) fn chosen(endpoint: &Endpoint) -> Option<BytePacking> {
     match endpoint {
         Endpoint::Tcp { packing, .. } => *packing,
@@ -106,7 +106,7 @@ pub(crate) fn chosen(endpoint: &Endpoint) -> Option<BytePacking> {
     }
 }
 
-/// One past the last byte, which lies below 65536 for every span that Modbus can name.
+/// One past the last byte, which is below 65536 for every span that Modbus can address.
 fn end(span: Span) -> u16 {
     u16::try_from(span.end()).unwrap_or(u16::MAX)
 }

@@ -24,15 +24,15 @@ use tokio::time::{Instant, timeout, timeout_at};
 
 /// The line counts as quiet after this long without a byte: longer than any gap inside a frame.
 const QUIET: Duration = Duration::from_millis(8);
-/// A line that is never quiet is not waited for longer than this.
+/// Longest wait for a line that is never quiet.
 const SETTLE_MAX: Duration = Duration::from_millis(60);
-/// Bytes taken from the wire at once: the longest reply and some noise.
+/// Maximum bytes per read from the wire: the longest reply and some noise.
 const CHUNK: usize = 512;
 /// Bits of a byte on the line: start, eight, stop.
 const BITS: u64 = 10;
-/// Bytes of a read request and of a reply's frame around its data.
+/// Bytes of a read request and of a reply frame around its data.
 const FRAMING: u64 = 9 + 8;
-/// Results of a SAVE that are kept until they are asked for: one, its double, and one more.
+/// Maximum SAVE results kept until they are read: one, its duplicate, and one more.
 const RESULTS_MAX: usize = 3;
 
 /// The client side of one RS485 line.
@@ -45,7 +45,7 @@ pub(crate) struct Rs485 {
     late: LateReplies,
     clock: Clock,
     foreign: u64,
-    /// The request that went out last: what comes back like it is an echo.
+    /// The last request: an equal frame is its echo.
     sent: Rs485Frame,
     echo: Echo,
     own_frames: u64,
@@ -54,18 +54,18 @@ pub(crate) struct Rs485 {
     is_calibrated: bool,
 }
 
-/// What an open request waits for.
+/// Reply that an open request expects.
 enum ExpectedReply {
     Bytes(Span),
-    /// Of a write to this address. Manual: silent on who acknowledges a change of HAND_ID; the older manual shows the new
-    /// id (protocol choice 9).
+    /// Acknowledgement of a write to this address. Manual: silent on who acknowledges a change of HAND_ID; the older
+    /// manual shows the new id (protocol choice 9).
     Ack {
         address: u16,
         new_id: Option<u8>,
     },
 }
 
-/// How a reply fits the open request.
+/// Match of a reply with the open request.
 #[expect(
     clippy::large_enum_variant,
     reason = "it lives on the stack, for one exchange"
@@ -129,12 +129,12 @@ impl Rs485 {
                 Err(_) => break,
             }
         }
-        // Noise that looks like the head of a long frame may hide the reply.
+        // Noise that resembles the head of a long frame may hide the reply.
         self.decoder.flush_pending();
         self.fitting(expected).ok_or(timed_out)
     }
 
-    /// Takes what came while nobody asked, without waiting: none of it can answer the next request.
+    /// Consumes received data without waiting: none of it can answer the next request.
     fn take_waiting(&mut self) -> Result<(), BusError> {
         while let Some(received) = self.receive().now_or_never() {
             received?;
@@ -152,7 +152,7 @@ impl Rs485 {
         self.sort_overheard();
     }
 
-    /// Requests on the line: our own, given back by the adapter, or another controller's.
+    /// Sorts overheard requests: echoes of our own, or another controller's.
     fn sort_overheard(&mut self) {
         while let Some(request) = self.decoder.overheard() {
             if request == self.sent {
@@ -164,7 +164,7 @@ impl Rs485 {
         }
     }
 
-    /// The reply to the open request, if it is there; others are counted and dropped.
+    /// The reply to the open request, if received; others are counted and dropped.
     fn fitting(&mut self, expected: &ExpectedReply) -> Option<Fit> {
         while let Some(reply) = self.decoder.next() {
             self.sort_overheard();
@@ -204,10 +204,10 @@ impl Rs485 {
         }
     }
 
-    /// A reply that is no answer to the open request.
+    /// Counts a reply that does not answer the open request.
     fn unfit_reply(&mut self, reply: &Rs485Reply, expected: &ExpectedReply) {
-        // Manual: 1 acknowledges. What comes in place of it with another value says nothing of flash, though a result looks
-        // the same: that comes after the acknowledgement.
+        // Manual: 1 acknowledges. Another value in its place is no flash result, though a result looks the same,
+        // because a result follows the acknowledgement.
         match (reply, expected) {
             (Rs485Reply::WriteAck { address, .. }, ExpectedReply::Ack { address: own, .. })
                 if address == own =>
@@ -222,7 +222,7 @@ impl Rs485 {
         if reply.id() == self.id.get()
             && let Some(result) = reply.save_result()
         {
-            // Of more than these the oldest tell all there is to tell.
+            // The oldest results suffice.
             let _more = self.save_results.try_push(result);
         }
         self.is_calibrated |= reply.id() == self.id.get() && reply.is_calibration_end();
@@ -235,7 +235,7 @@ impl Rs485 {
         }
     }
 
-    /// Waits for bytes and gives them to the decoder. Safe to cancel: bytes are taken only when they are there.
+    /// Waits for bytes and passes them to the decoder. Safe to cancel: no bytes are lost.
     async fn receive(&mut self) -> Result<(), BusError> {
         let mut chunk = [0; CHUNK];
         let room = CHUNK.saturating_sub(self.decoder.buffered()).max(1);

@@ -1,5 +1,5 @@
-//! A serial line that lets only the reply to the open request through to the Modbus client, and that its bus can
-//! listen to between requests. Which request is made, and when, is not decided here.
+//! A serial line that forwards only the reply to the open request to the Modbus client, and that its bus can listen to
+//! between requests. Does not decide which requests are sent.
 
 use crate::codec::NoiseCounts;
 use crate::codec::modbus_rtu::{FRAME_LEN_MAX, RtuReply, RtuSplitter};
@@ -13,13 +13,13 @@ use std::task::{Context, Poll, ready};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::Instant;
 
-/// Bytes taken from the wire at once.
+/// Maximum bytes per read from the wire.
 const CHUNK: usize = FRAME_LEN_MAX;
 
-/// What the reply to a request looks like. Replies have no number: this is all there is to know them by.
+/// Expected form of a reply. Replies have no number, so this is the only way to match them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RtuReplyShape {
-    /// Function 03: so many bytes.
+    /// Function 03 with this many bytes.
     Bytes(u16),
     /// Function 06 at this address.
     Single([u8; 2]),
@@ -55,7 +55,7 @@ impl RtuReplyShape {
     }
 }
 
-/// The line; the client and the bus hold one each. Locked for one poll, never across a wait.
+/// The line, shared by the client and the bus. Locked for one poll, never across a wait.
 #[derive(Clone)]
 pub(crate) struct RtuLine(Arc<Mutex<RtuRelay>>);
 
@@ -63,10 +63,10 @@ struct RtuRelay {
     wire: BoxedWire,
     splitter: RtuSplitter,
     open: Option<RtuReplyShape>,
-    /// The request on its way, and how much of it the wire took.
+    /// The request being sent, and the number of its bytes already written.
     request: ArrayVec<u8, FRAME_LEN_MAX>,
     written: usize,
-    /// The reply on its way to the client.
+    /// The reply being forwarded to the client.
     passed: ArrayVec<u8, FRAME_LEN_MAX>,
     foreign: u64,
     echo: Echo,
@@ -92,12 +92,12 @@ impl RtuLine {
         })))
     }
 
-    /// Waits for bytes and sorts them. Safe to cancel. An end of the wire is an error.
+    /// Waits for bytes and sorts them. Safe to cancel. The end of the wire is an error.
     pub(crate) async fn hear(&self) -> io::Result<()> {
         std::future::poll_fn(|cx| self.line().poll_hear(cx)).await
     }
 
-    /// Forgets the open request, and what the wire did not take of it: a reply to it is foreign from now on.
+    /// Drops the open request, and its unsent rest: a reply to it is foreign from now on.
     pub(crate) fn abandon(&self) {
         let mut line = self.line();
         line.open = None;
@@ -106,39 +106,39 @@ impl RtuLine {
         line.passed.clear();
     }
 
-    /// The line is silent: what is unfinished stays so, and a whole reply behind it is passed.
+    /// Called when the line is silent: drops an incomplete frame, and forwards a complete reply behind it.
     pub(crate) fn flush_pending(&self) {
         let mut line = self.line();
         line.splitter.flush_pending();
         line.sort();
     }
 
-    /// Replies that nobody asked for, since the line was opened.
+    /// Unrequested replies since the line was opened.
     pub(crate) fn foreign(&self) -> u64 {
         self.line().foreign
     }
 
-    /// Requests of others, since the line was opened.
+    /// Requests of other controllers since the line was opened.
     pub(crate) fn foreign_requests(&self) -> u64 {
         self.line().splitter.requests().foreign
     }
 
-    /// True if the adapter gives back what is sent.
+    /// True if the adapter echoes what is sent.
     pub(crate) fn echoes(&self) -> bool {
         self.line().echo.is_sure()
     }
 
-    /// How often what was sent came back since the line was opened.
+    /// Number of echoes since the line was opened.
     pub(crate) fn own_frames(&self) -> u64 {
         self.line().splitter.requests().echoes
     }
 
-    /// What was skipped since the line was opened.
+    /// Skipped noise since the line was opened.
     pub(crate) fn noise(&self) -> NoiseCounts {
         self.line().splitter.noise()
     }
 
-    /// When the last byte came.
+    /// Time of the last byte.
     pub(crate) fn heard(&self) -> Option<Instant> {
         self.line().heard
     }
@@ -172,7 +172,7 @@ impl RtuRelay {
         Poll::Ready(Ok(()))
     }
 
-    /// Passes the reply to the open request; counts and drops all others.
+    /// Forwards the reply to the open request; counts and drops all others.
     fn sort(&mut self) {
         while let Some(reply) = self.splitter.next() {
             self.note_echo();
@@ -194,8 +194,8 @@ impl RtuRelay {
         }
     }
 
-    /// Reckons with the echo of a request that goes out now. The reply to function 06 is like its request: there an
-    /// echo is looked for only where the exchange before had one, and each conversation begins with reads.
+    /// Expects the echo of a request that is sent now. The reply to function 06 resembles its request: there an echo is
+    /// expected only if the previous exchange had one, and each session begins with reads.
     fn expect_echo(&mut self, request: &[u8]) {
         self.note_echo();
         self.echo.sent();
@@ -239,7 +239,7 @@ impl AsyncRead for RtuLine {
 }
 
 impl AsyncWrite for RtuLine {
-    /// Takes the request whole, so that none of it stays in the client if the wire is slow.
+    /// Accepts the whole request, so that none of it remains in the client if the wire is slow.
     fn poll_write(
         self: Pin<&mut Self>,
         cx: &mut Context<'_>,

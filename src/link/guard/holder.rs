@@ -1,5 +1,6 @@
-//! The process that holds a hand if this one dies: the same program, tied to this one by a pipe. It is told when the hand may
-//! move and when it rests; a pipe that breaks in between is a death. Holds nothing itself.
+//! The process that holds a hand if this one dies: the same program, connected by a pipe, which reports when the hand
+//! may move and when it rests; a pipe that breaks in between means that this process died. This module itself holds
+//! nothing.
 
 use crate::transport::Endpoint;
 use std::io::Write as _;
@@ -9,58 +10,59 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// The command of the program that becomes the holder, before `--hand` and the endpoint.
+/// The subcommand that starts the holder, before `--hand` and the endpoint.
 pub const COMMAND: &str = "hold";
-/// Told through the pipe: from now on the hand may move.
+/// Sent through the pipe: the hand may move from now on.
 pub const MOVES: u8 = b'm';
-/// Told through the pipe: it rests, and nothing is armed.
+/// Sent through the pipe: the hand rests, and nothing is armed.
 pub const RESTS: u8 = b'r';
 
-/// So often in a row the process may fail to start, or end by itself soon, before that is reported.
+/// Consecutive failures of the process, to start or by an early exit, before they are reported.
 const FAILURES_MAX: u32 = 3;
-/// Time between the end of a process and the start of the next, and the most of it where it ends soon again and again: the hand is
-/// unguarded for no longer than that takes.
+/// Delay between the end of a process and the start of the next, and its maximum if processes repeatedly end early: the
+/// hand is unguarded for no longer than that.
 const RESTART_DELAY: Duration = Duration::from_millis(20);
 const RESTART_DELAY_MAX: Duration = Duration::from_millis(200);
-/// A process that ran for this long did not fail to start.
+/// A process that ran for this long counts as started.
 const LASTING: Duration = Duration::from_secs(1);
 
-/// A new process of Windows has no console then.
+/// Creation flag of Windows: the new process has no console.
 #[cfg(windows)]
 const DETACHED_PROCESS: u32 = 8;
 
-/// The program that is started; none in a process that is not this program, such as a test.
+/// The program to start; unset in a process that is not this program, such as a test.
 static PROGRAM: OnceLock<(PathBuf, Complain)> = OnceLock::new();
 
-/// Tells the user something.
+/// Reports a message to the user.
 type Complain = fn(&str);
 
-/// From now on this process has a holder started for each hand that it arms: itself once more. Where that fails, it is told.
+/// Makes this process start a holder, a copy of its own program, for each hand that it arms. `complain` reports failures.
 pub fn use_this_program(complain: Complain) {
     let own = std::env::current_exe().ok().filter(|path| path.exists());
-    // A program that was replaced while it runs has no path any more, but Linux still knows it.
+    // A program that was replaced while it runs has no path, but Linux still knows it.
     let _set_before = PROGRAM.set((own.unwrap_or_else(|| "/proc/self/exe".into()), complain));
 }
 
-/// What the user is told where no holder could be started.
+/// Message to the user if no holder could be started.
 pub fn unguarded(why: &str) -> String {
     format!(
         "no process could be started that stops the hand if this program is killed ({why}): then only the 24 V switch does"
     )
 }
 
-/// How it is about the process that holds the hand if this one dies.
+/// State of the process that holds the hand if this one dies.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum HolderState {
-    /// It is being started.
+    /// The process is being started.
     Starting,
-    /// It runs, or is not needed.
+    /// The process runs, or is not needed.
     Ready,
-    /// There is none, and why.
+    /// There is no process; carries the reason.
     Missing(String),
 }
 
-/// The end of the pipe that is here. Dropping it lets the holder go; it holds if it was last told that the hand may move.
+/// This process's end of the pipe. Dropping it releases the holder; it holds the hand if the last message was that the
+/// hand may move.
 #[derive(Debug)]
 pub(crate) struct HolderTie {
     endpoint: Endpoint,
@@ -70,16 +72,16 @@ pub(crate) struct HolderTie {
 
 #[derive(Debug)]
 struct HolderPipe {
-    /// What the holder was told last, or is told once it runs.
+    /// The last message to the holder, or the first once it runs.
     word: u8,
     /// `None` while there is no process.
     to: Option<ChildStdin>,
-    /// None is needed any more, or none can be had.
+    /// No holder is needed now, or none can be started.
     is_closed: bool,
 }
 
 impl HolderTie {
-    /// Starts a holder on a thread of its own: the thread of the links waits for no process. None is started for a built-in
+    /// Starts a holder on its own thread: the thread of the links waits for no process. None is started for a built-in
     /// hand, which dies with this process.
     pub(crate) fn start(endpoint: &Endpoint) -> Option<Self> {
         let (program, complain) = PROGRAM.get()?;
@@ -90,7 +92,7 @@ impl HolderTie {
         let hand = endpoint.to_string();
         command.args([COMMAND, "--hand", &hand]);
         command.stdin(Stdio::piped()).stdout(Stdio::null());
-        // What a terminal tells this program's group is not meant for it.
+        // Signals of a terminal to this program's group must not reach it.
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         // Without a console it ends neither by Ctrl-C nor with the console.
@@ -127,17 +129,17 @@ impl HolderTie {
         }
     }
 
-    /// Says that the hand at this endpoint may move; false if this holder is for another, or runs no more.
+    /// Reports that the hand at this endpoint may move; false if this holder is for another, or has ended.
     pub(crate) fn moves(&self, endpoint: &Endpoint) -> bool {
         self.endpoint == *endpoint && self.tell(MOVES)
     }
 
-    /// Says that the hand rests.
+    /// Reports that the hand rests.
     pub(crate) fn rests(&self) {
         self.tell(RESTS);
     }
 
-    /// How it is about the process now, and when that changes.
+    /// Receiver of the process's state.
     pub(crate) fn state(&self) -> watch::Receiver<HolderState> {
         self.state.clone()
     }
@@ -145,8 +147,8 @@ impl HolderTie {
     fn tell(&self, word: u8) -> bool {
         let mut pipe = lock(&self.pipe);
         pipe.word = word;
-        // A pipe takes thousands of words before it could make anybody wait. If it is broken, its process has ended, and the next one
-        // is told this.
+        // A pipe buffers thousands of messages before a write could block. If it is broken, its process has ended, and
+        // the next one receives this message.
         if let Some(to) = &mut pipe.to {
             let _ended = to.write_all(&[word]);
         }
@@ -162,7 +164,7 @@ impl Drop for HolderTie {
     }
 }
 
-/// What the thread has that starts the process, waits for its end, and starts another while the hand may move.
+/// The thread that starts the process, waits for its end, and starts another while the hand may move.
 struct Watcher {
     command: Command,
     pipe: Arc<Mutex<HolderPipe>>,
@@ -170,10 +172,10 @@ struct Watcher {
     complain: Complain,
 }
 
-/// Why there is no holder now.
+/// Reason why a holder ended.
 enum Gone {
     NotNeeded,
-    /// By somebody, and not for a reason of its own: another may live.
+    /// By a signal, not by its own failure: the next one may live.
     Killed,
     Failed(String),
 }
@@ -205,7 +207,7 @@ impl Watcher {
         }
     }
 
-    /// Starts one and waits for its end, so that nothing of it stays.
+    /// Starts one process and waits for its end, so that no zombie remains.
     fn one(&mut self) -> Gone {
         let mut child = match self.command.spawn() {
             Ok(child) => child,
@@ -254,11 +256,11 @@ mod tests {
     use nix::unistd::Pid;
     use std::path::Path;
 
-    /// A holder that notes its process and what it is told, as lines of two files.
+    /// A holder that records its process and its messages, as lines of two files.
     fn noting(folder: &Path) -> Command {
         let mut command = Command::new("/bin/sh");
         let note = "echo $$ >> pids; while read -r word; do echo $word >> words; done";
-        // Words have no line ends.
+        // Messages have no line ends.
         command.args(["-c", &format!("head -c 1 >> words; {note}")]);
         command.current_dir(folder).stdin(Stdio::piped());
         command
@@ -299,7 +301,7 @@ mod tests {
         let second = pids(folder.path(), 2)[1];
         waits_for(|| (std::fs::read(folder.path().join("words")).ok()? == b"mm").then_some(()));
         assert_eq!(*tie.state().borrow(), HolderState::Ready);
-        // One that is not needed is not replaced.
+        // A holder that is not needed is not replaced.
         tie.rests();
         kill(Pid::from_raw(second), Signal::SIGKILL).unwrap();
         waits_for(|| lock(&tie.pipe).is_closed.then_some(()));

@@ -1,5 +1,5 @@
-//! What stops the hands when this program ends, however it ends: one call tells every open link to hold, and a process of its
-//! own holds a hand whose program died. Lists the links of this process, as it ends as a whole.
+//! Stops the hands when this program ends, in any way: one call requests a hold on every open link, and a separate
+//! process holds a hand whose program died. Lists the links of this process, because it ends as a whole.
 
 pub mod holder;
 
@@ -12,24 +12,24 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// How often it is looked whether all hands rest.
+/// Interval at which the rest of all hands is checked.
 const POLL_INTERVAL: Duration = Duration::from_millis(5);
 
 /// The open links of this process.
 static OPEN: Mutex<Vec<Weak<MotionGuard>>> = Mutex::new(Vec::new());
 
-/// Whether the hand of one link may move because of this program, and what holds it if that ends.
+/// Records whether the hand of one link may move because of this program, and owns the holder process.
 #[derive(Debug)]
 pub(crate) struct MotionGuard {
     wanted: Arc<watch::Sender<PendingControl>>,
-    /// Since it was armed it was not seen to rest.
+    /// True since it was armed, until it was seen at rest.
     moves: AtomicBool,
     reaches: AtomicBool,
     tie: Mutex<Option<HolderTie>>,
 }
 
 impl MotionGuard {
-    /// For a link that opens.
+    /// Registers a link that opens.
     pub(crate) fn enter(wanted: Arc<watch::Sender<PendingControl>>) -> Arc<Self> {
         let guard = Arc::new(Self {
             wanted,
@@ -43,7 +43,7 @@ impl MotionGuard {
         guard
     }
 
-    /// The hand is about to be armed at this endpoint. Starts the process that holds it if this one dies, if none runs.
+    /// Called before the hand is armed at this endpoint. Starts the process that holds it if this one dies, if none runs.
     pub(crate) fn moves(&self, endpoint: &Endpoint) {
         self.moves.store(true, Ordering::Relaxed);
         let mut tie = lock(&self.tie);
@@ -52,12 +52,12 @@ impl MotionGuard {
         }
     }
 
-    /// How it is about that process; `None` where none is needed.
+    /// State of that process; `None` if none is needed.
     pub(crate) fn holder(&self) -> Option<watch::Receiver<HolderState>> {
         lock(&self.tie).as_ref().map(HolderTie::state)
     }
 
-    /// Why there is no such process, if there should be one.
+    /// Reason why there is no such process, if there should be one.
     pub(crate) fn unguarded(&self) -> Option<String> {
         match &*self.holder()?.borrow() {
             HolderState::Missing(why) => Some(why.clone()),
@@ -65,7 +65,8 @@ impl MotionGuard {
         }
     }
 
-    /// The hand rests by feedback, or is left in good order: also where its feedback froze and it was told all that can be told.
+    /// Records that the hand rests by feedback, or was left in good order: also if its feedback froze and every
+    /// possible hold was sent.
     pub(crate) fn rests(&self) {
         if self.moves.swap(false, Ordering::Relaxed)
             && let Some(tie) = lock(&self.tie).as_ref()
@@ -74,7 +75,7 @@ impl MotionGuard {
         }
     }
 
-    /// Whether this process can reach the hand now.
+    /// Sets whether this process can reach the hand now.
     pub(crate) fn reaches(&self, reaches: bool) {
         self.reaches.store(reaches, Ordering::Relaxed);
     }
@@ -92,12 +93,13 @@ impl MotionGuard {
     }
 }
 
-/// Tells every hand to hold that may move because of this program, before anything else. Waits for nothing.
+/// Requests a hold of every hand that may move because of this program, before anything else. Does not wait.
 pub fn hold_all() {
     moving().iter().for_each(|link| link.stop());
 }
 
-/// The same, and waits until feedback shows that they rest, or for so long. Not for a thread that links run on.
+/// The same, and waits until feedback shows that they rest, at most for `time`. Must not be called on a thread that
+/// links run on.
 pub fn hold_all_within(time: Duration) {
     let until = Instant::now() + time;
     hold_all();

@@ -1,4 +1,4 @@
-//! What a read costs on a wire, and how long a reply may be so that a stop gets through in time. Pure: learns from
+//! Cost of a read on a wire, and the maximum length of a reply so that a stop gets through in time. Pure: learns from
 //! given round trips, sends and times nothing.
 
 use crate::codec::usbcan::PACKET_MIN;
@@ -6,65 +6,64 @@ use crate::transport::endpoint::DEFAULT_BITRATE;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Above this baud the silence between frames does not shrink any more (Modbus over serial line 1.02, 2.5.1.1).
+/// Above this baud rate the silence between frames is constant (Modbus over serial line 1.02, 2.5.1.1).
 const FIXED_GAP_ABOVE: u32 = 19_200;
 pub(crate) const FIXED_GAP: Duration = Duration::from_micros(1750);
 /// Bits of a byte on a serial line: start, eight, stop.
 const BITS: u64 = 10;
-/// Longest reply frame of a serial line while a stop waits to be confirmed: one fingertip in the private framing.
+/// Longest reply frame of a serial line while a stop is being confirmed: one fingertip in the private framing.
 const MOVING_FRAME: u16 = 66;
-/// Most data bytes of a read while something may move: three fingertips, between which the motion state comes often.
+/// Maximum data bytes of a read while the hand may move: three fingertips, between which the motion state comes often.
 const MOVING_DATA: u16 = 3 * 58;
-/// Slowest turnaround seen in a hand: assumed until one is known, and the most that is ever assumed. What an adapter adds
-/// to it cannot be won back by shorter replies.
+/// Slowest turnaround seen in a hand: assumed until measured, and the maximum ever assumed. Shorter replies cannot
+/// compensate for an adapter's delay.
 const TURNAROUND_MAX: Duration = Duration::from_millis(15);
-/// What a stop may cost besides the hand's turnaround: this computer's part …
+/// Time budget of a stop besides the hand's turnaround: this computer's part …
 const STOP_SLACK: Duration = Duration::from_millis(2);
-/// … and this many bytes on the line. With 15 ms of turnaround that is 19 ms from the press to the last byte of the hold
-/// at 921600 baud, 29 at 115200, 41 at 57600 and 89 at 19200.
+/// … and this many bytes on the line. With 15 ms of turnaround that is 19 ms from the stop request to the last byte of
+/// the hold frame at 921600 baud, 29 at 115200, 41 at 57600 and 89 at 19200.
 const STOP_BYTES: u64 = 138;
-/// Bytes of the longer form of a hold frame, Modbus RTU.
+/// Bytes of the longest hold frame, that of Modbus RTU.
 const HOLD_FRAME: u64 = 21;
-/// The longest turnaround is judged from this many answers: some seconds.
+/// The longest turnaround is taken from this many replies: some seconds.
 const RECENT: usize = 256;
-/// Of a hundred answers, this many count: the few slowest are mostly delays of this computer, against which shorter
-/// replies would not help.
+/// Percentile used: the few slowest replies are mostly delays of this computer, which shorter replies would not reduce.
 const COUNTED_OF_100: usize = 95;
-/// It is judged again after this many answers.
+/// It is recomputed after this many replies.
 const JUDGED_ANSWERS: u32 = 16;
-/// Answers after which the longest turnaround counts as known.
+/// Replies after which the longest turnaround counts as known.
 const ANSWERS_MIN: u32 = 64;
-/// A learnt turnaround follows new ones by one part in this many.
+/// The typical turnaround moves towards new values by one part in this many.
 const FOLLOW: u32 = 8;
 /// Data bytes of a CAN frame.
 const CAN_PIECE: u16 = 8;
-/// Bits of a CAN request and its reply of 8 bytes, stuffed.
+/// Bits of a CAN request and its reply of 8 bytes, with stuffing.
 const CAN_PIECE_BITS: u64 = 80 + 160;
 
 /// The cost model of one wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct WireCost {
-    /// Time of one byte; none where the wire has no speed of its own or it is unknown.
+    /// Time of one byte; zero if the wire has no bit rate or it is unknown.
     byte: Duration,
     /// Bytes of a read request.
     request: u16,
     /// Bytes of a reply around its data.
     around: u16,
-    /// Silence that the protocol wants between frames.
+    /// Silence that the protocol requires between frames.
     gap: Duration,
-    /// Most data bytes that one read may ask for.
+    /// Maximum data bytes of one read.
     window_max: u16,
-    /// Most of them that are always in time.
+    /// Maximum data bytes that are always in time for a stop.
     moving_max: u16,
-    /// A window is read in pieces of this many bytes, each of which takes this long on the wire.
+    /// Set if a window is read in pieces: bytes per piece, and its time on the wire.
     piece: Option<(u16, Duration)>,
-    /// A read begins with a group of registers. What a hand makes of a Modbus address inside one is open (manual 2.5): it
-    /// may count on in words.
+    /// Reads must start at a group of registers. The meaning of a Modbus address inside a group is undefined (manual
+    /// 2.5): the hand may count in words there.
     pub(crate) begins_groups: bool,
 }
 
 impl WireCost {
-    /// The private framing. Without a baud the line takes no time that is known.
+    /// The private framing. Without a baud rate the line time is assumed to be zero.
     pub(crate) fn rs485(baud: Option<u32>) -> Self {
         Self {
             byte: baud.map_or(Duration::ZERO, byte_time),
@@ -93,7 +92,7 @@ impl WireCost {
         }
     }
 
-    /// Modbus TCP: a reply takes no time by its length, so that long ones delay no stop.
+    /// Modbus TCP: the time of a reply does not depend on its length, so that long ones do not delay a stop.
     pub(crate) const fn tcp() -> Self {
         Self {
             byte: Duration::ZERO,
@@ -107,7 +106,7 @@ impl WireCost {
         }
     }
 
-    /// CAN: each piece is a transaction of its own, after which a stop may go out.
+    /// CAN: each piece is a transaction of its own, after which a stop may be sent.
     pub(crate) fn can(bitrate: u32) -> Self {
         let bits = CAN_PIECE_BITS * 1_000_000_000 / u64::from(bitrate.max(1));
         Self {
@@ -122,7 +121,7 @@ impl WireCost {
         }
     }
 
-    /// CAN at the rate of delivery behind the maker's adapter, whose serial side is the slower one by far.
+    /// CAN at the default bit rate behind the maker's adapter, whose serial side is much slower.
     pub(crate) fn usb_can(baud: u32) -> Self {
         let mut cost = Self::can(DEFAULT_BITRATE);
         if let Some((_, time)) = &mut cost.piece {
@@ -131,12 +130,12 @@ impl WireCost {
         cost
     }
 
-    /// Time that a read of so many bytes keeps the line, given the hand's turnaround.
+    /// Time for which a read of this many bytes occupies the line, given the hand's turnaround.
     pub(crate) fn read(&self, len: u16, turnaround: Duration) -> Duration {
         self.on_wire(len) + turnaround * self.turns(len) + self.gap
     }
 
-    /// The part of it in which bits are on the line.
+    /// The part of it with bits on the line.
     pub(crate) fn on_wire(&self, len: u16) -> Duration {
         match self.piece {
             Some((_, time)) => time * self.turns(len),
@@ -144,7 +143,7 @@ impl WireCost {
         }
     }
 
-    /// Time in which bits are on the line for a write of this many bytes and its acknowledgement.
+    /// Time with bits on the line for a write of this many bytes and its acknowledgement.
     pub(crate) fn write_on_wire(&self, len: u16) -> Duration {
         match self.piece {
             Some((_, time)) => time * self.turns(len),
@@ -162,14 +161,15 @@ impl WireCost {
         self.gap
     }
 
-    /// Requests that a read of this many bytes takes.
+    /// Number of requests for a read of this many bytes.
     pub(crate) fn turns(&self, len: u16) -> u32 {
         self.piece
             .map_or(1, |(piece, _)| u32::from(len.div_ceil(piece)).max(1))
     }
 
-    /// Most data bytes of a read while nothing seems to move. A reply is part of what a stop waits for, and a hand may
-    /// begin to move at any time, by another master too: so even then no reply is longer than the stop's time allows.
+    /// Maximum data bytes of a read while the hand seems to rest. A stop waits for the reply in progress, and a hand
+    /// may start to move at any time, also by another controller: so even then no reply is longer than the stop's time
+    /// budget allows.
     pub(crate) fn window(&self, longest_turnaround: Duration) -> u16 {
         let byte = u64::try_from(self.byte.as_nanos()).unwrap_or(u64::MAX);
         if byte == 0 {
@@ -184,8 +184,8 @@ impl WireCost {
         most.clamp(self.moving_max, self.window_max)
     }
 
-    /// Most data bytes of a read while something may move: some fingertips at once, if a stop is in time behind them.
-    /// Pieces of a CAN bus let a stop pass, but come one by one.
+    /// Maximum data bytes of a read while the hand may move: some fingertips at once, if a stop is in time after them.
+    /// Pieces on a CAN bus let a stop through in between, but are sent one by one.
     pub(crate) fn window_moving(&self, longest_turnaround: Duration) -> u16 {
         if self.byte.is_zero() {
             return self.moving_max;
@@ -194,7 +194,7 @@ impl WireCost {
         most.max(self.moving_max)
     }
 
-    /// Most data bytes of a read while a stop waits to be confirmed.
+    /// Maximum data bytes of a read while a stop is being confirmed.
     pub(crate) const fn window_stopping(&self) -> u16 {
         self.moving_max
     }
@@ -211,23 +211,23 @@ pub(crate) fn byte_time(baud: u32) -> Duration {
     Duration::from_nanos(BITS * 1_000_000_000 / u64::from(baud.max(1)))
 }
 
-/// Time of the packets that ask for one piece and bring it, on the serial side of the maker's adapter.
+/// Time of the request and reply packets of one piece, on the serial side of the maker's adapter.
 pub(crate) fn packets_time(baud: u32) -> Duration {
     byte_time(baud) * u32::try_from(2 * PACKET_MIN).unwrap_or_default()
 }
 
-/// The hand's turnaround, as round trips show it.
+/// The hand's turnaround, measured from round trips.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Turnaround {
     typical: Option<Duration>,
     answers: u32,
-    /// The last ones, oldest first.
+    /// The last values, oldest first.
     recent: VecDeque<Duration>,
     longest: Duration,
 }
 
 impl Turnaround {
-    /// A read of this many bytes was answered after `took`.
+    /// Records that a read of this many bytes was answered after `took`.
     pub(crate) fn learn(&mut self, cost: &WireCost, len: u16, took: Duration) {
         let each = took.saturating_sub(cost.on_wire(len)) / cost.turns(len);
         self.typical = Some(match self.typical {
@@ -247,12 +247,12 @@ impl Turnaround {
         }
     }
 
-    /// The turnaround to assume; `None` before the first answer.
+    /// The typical turnaround; `None` before the first reply.
     pub(crate) const fn typical(&self) -> Option<Duration> {
         self.typical
     }
 
-    /// The longest of late, without the few slowest; that of the slowest hands as long as not enough is known.
+    /// The longest recent turnaround, without the few slowest; the assumed maximum until enough is known.
     pub(crate) fn longest(&self) -> Duration {
         if self.answers < ANSWERS_MIN {
             return TURNAROUND_MAX;
@@ -276,7 +276,7 @@ mod tests {
 
     const MS: Duration = Duration::from_millis(1);
 
-    /// From the press to the last byte of the hold, at worst: the read under way, the gap, the hold frame.
+    /// Worst case from the stop request to the last byte of the hold frame: the read in progress, the gap, the hold frame.
     fn stop(cost: &WireCost, window: u16, turnaround: Duration) -> Duration {
         cost.read(window, turnaround) + cost.byte * u32::try_from(HOLD_FRAME).unwrap_or(0)
     }
@@ -313,7 +313,7 @@ mod tests {
     #[test]
     fn the_cost_of_a_read_is_that_of_the_manuals_frames() {
         let cost = WireCost::rs485(Some(115_200));
-        // Manual 2.2.1: 9 bytes asked, 8 around 12.
+        // Manual 2.2.1: 9 bytes of request, 8 around 12.
         let took = cost.read(12, MS * 3);
         let bits = Duration::from_micros(290 * 1_000_000 / 115_200);
         assert!(
@@ -329,7 +329,7 @@ mod tests {
         let cost = WireCost::rs485(Some(115_200));
         let mut turnaround = Turnaround::default();
         assert_eq!(turnaround.longest(), TURNAROUND_MAX);
-        // A slow answer in twenty counts, one in a hundred does not.
+        // A slow reply in twenty counts, one in a hundred does not.
         for (one_in, longest) in [(100, MS * 3), (10, MS * 9), (100, MS * 3)] {
             for n in 0..400 {
                 let hand = if n % one_in == 0 { MS * 9 } else { MS * 3 };

@@ -1,11 +1,11 @@
-//! What one read costs on the line alone, if hand and adapter took no time. Needs no open wire.
+//! Time of one read on the line alone, without hand and adapter. Needs no open wire.
 
 use crate::link::poll::cost::{WireCost, rtu_gap};
 use crate::transport::Endpoint;
 use crate::transport::endpoint::DEFAULT_BITRATE;
 use std::time::Duration;
 
-/// Time for request and reply of a read of this many bytes; `None` where the speed of the line is not known.
+/// Time for request and reply of a read of this many bytes; `None` if the speed of the line is unknown.
 pub fn line_time(endpoint: &Endpoint, bytes: u16) -> Option<Duration> {
     let cost = match endpoint {
         Endpoint::Sim { .. } | Endpoint::Tcp { .. } => return None,
@@ -13,7 +13,7 @@ pub fn line_time(endpoint: &Endpoint, bytes: u16) -> Option<Duration> {
         Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => {
             WireCost::rtu(line.baud, rtu_gap(line.baud))
         }
-        // Manual: 2.3 gives the rate as delivered; that of an interface is set outside of this program.
+        // Manual: 2.3 gives the default rate; that of an interface is set outside of this program.
         Endpoint::Can { .. } => WireCost::can(DEFAULT_BITRATE),
         Endpoint::Slcan { bitrate, .. } => WireCost::can(*bitrate),
         Endpoint::UsbCan { baud, .. } => WireCost::usb_can(*baud),
@@ -35,7 +35,7 @@ mod tests {
             ("rtu:x?baud=9600", 12, Some(26_041 + 3_645)),
             ("can:can0", 8, Some(240)),
             ("slcan:x?bitrate=500000", 12, Some(960)),
-            // Two packets of 21 bytes beside each piece.
+            // Two packets of 21 bytes per piece.
             ("usbcan:x", 12, Some(2 * (240 + 3_645))),
             ("tcp:127.0.0.1", 12, None),
         ] {

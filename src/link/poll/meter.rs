@@ -1,4 +1,4 @@
-//! What the time of the line is spent on, as a budget over the last second. Counts only.
+//! Usage of the line's time over the last second. Counts only.
 
 use crate::hand::{Moment, RateClass, Span};
 use crate::link::poll::cost::WireCost;
@@ -7,11 +7,11 @@ use crate::link::poll::window::ReadPart;
 use crate::link::stats::{GroupUse, LineUse};
 use std::time::Duration;
 
-/// Figures are worked out over this time, and before the first of them over what there is after the shorter one.
+/// Averaging time of the figures, and the shorter one before the first of them.
 const OVER: Duration = Duration::from_secs(1);
 const FIRST_OVER: Duration = Duration::from_millis(200);
 
-/// Adds up what happened on one line.
+/// Accumulates the usage of one line.
 #[derive(Debug, Default)]
 pub(crate) struct LineMeter {
     since: Option<Moment>,
@@ -29,7 +29,7 @@ struct TimeSum {
 }
 
 impl LineMeter {
-    /// A window was answered after `took`: its time belongs to its groups by their bytes.
+    /// Records a window that was answered after `took`: its time is divided among its groups by their bytes.
     pub(crate) fn read(&mut self, cost: &WireCost, window: Span, took: Duration) {
         let took = took + cost.gap();
         self.busy += took;
@@ -48,7 +48,7 @@ impl LineMeter {
         }
     }
 
-    /// A write went out.
+    /// Records a write.
     pub(crate) fn wrote(&mut self, cost: &WireCost, written: Span, took: Duration) {
         let took = took + cost.gap();
         self.busy += took;
@@ -56,12 +56,12 @@ impl LineMeter {
         self.on_wire += cost.write_on_wire(written.len);
     }
 
-    /// A read failed.
+    /// Records a failed read.
     pub(crate) fn failed(&mut self, took: Duration) {
         self.busy += took;
     }
 
-    /// The figures, whenever a second is over.
+    /// The figures, once per second.
     pub(crate) fn figures(&mut self, plan: &PollPlan, now: Moment) -> Option<LineUse> {
         let since = *self.since.get_or_insert(now);
         let over = now.since(since);

@@ -1,4 +1,4 @@
-//! What is read when: the plan, what reading costs on a line, and what the line gave.
+//! Polling: the plan, the cost of reads on a line, and the measured line usage.
 
 pub(crate) mod cost;
 pub mod line_time;

@@ -1,10 +1,10 @@
-//! What to read next, and when. Pure: time, answers and failures come in, spans go out; nothing is sent here.
+//! Decides what to read next, and when. Pure: applies time, replies and failures, and returns spans; sends nothing.
 //!
-//! Each part of memory has its own rate. The part that waited longest, measured in its own periods, opens a window,
-//! and others that are wanted too join it where that is cheaper (`link::poll::window`). How long a window may be
-//! follows from the stop (`link::poll::cost`): so long that a stop is still in time behind it. While something moves
-//! and nobody asks for more states than usual, some fingertips come at once. The motion state then has every second turn
-//! at least, or every third where fingertips come first, and brings what the drives say along where there is room.
+//! Each part of memory has its own rate. The part that is latest, measured in its own periods, opens a window, and
+//! other due parts join it if that is cheaper (`link::poll::window`). The maximum length of a window follows from the
+//! stop (`link::poll::cost`): a stop must still be in time after it. While the hand moves and the usual state rate is
+//! configured, several fingertips are read at once. The motion state then has at least every second turn, or every
+//! third if fingertips are preferred, and includes the drive states if there is room.
 
 use crate::hand::feedback::group::TIP_BYTES;
 use crate::hand::{Moment, RateClass, Span};
@@ -15,40 +15,41 @@ use arrayvec::ArrayVec;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Parts that are wanted without limit count as this fast when they are weighed against slow ones …
+/// Shortest period used to compare the lateness of parts with unlimited rate with slow ones …
 const SHORTEST_PERIOD: Duration = Duration::from_millis(10);
-/// … and slow ones as this fast, so that on a line that is too slow for all they do not wait for many of their periods.
+/// … and the longest, so that slow parts do not wait for many of their periods on a line that is too slow for all.
 const LONGEST_PERIOD: Duration = Duration::from_millis(30);
-/// What waits so long is as urgent as the fastest: a sweep over all fingertips takes a slow hand on CAN most of a second.
+/// A part that waits this long is as urgent as the fastest: a sweep over all fingertips takes a slow hand on CAN most
+/// of a second.
 const STARVATION_TIMEOUT: Duration = Duration::from_secs(1);
 /// Temperatures change slowly and are read just often enough not to be shown as old.
 const TEMPERATURE_HZ: f64 = 5.0;
-/// While a hand is armed on a wire where nobody hears others' requests, the setpoints that it holds are read this often: so that
-/// three of them show another controller within a second.
+/// Rate at which the hand's setpoints are read while it is armed on a wire where requests of others cannot be heard:
+/// three of these reads show another controller within a second.
 const WATCHED_HZ: f64 = 25.0;
-/// On a way that is too slow for that, they are read before anything but the pose after this.
+/// If the link is too slow for that, setpoints are read before anything but the pose after this time.
 const WATCH_INTERVAL: Duration = Duration::from_millis(250);
-/// A round this long after the one before is none of a stream.
+/// A round this long after the previous one does not belong to a stream.
 const ALONE: Duration = Duration::from_millis(100);
-/// Once one of them is doubtful, they are read before each write for so long.
+/// Setpoints are read before each write for this long after a doubtful one.
 const DOUBT_DURATION: Duration = Duration::from_secs(1);
-/// Windows asked for last, none of which is asked for again in the same form: a whole run of replies may be doubled.
+/// Number of last windows, none of which is requested again in the same shape: a whole run of replies may be duplicated.
 const RECENT: usize = 3;
-/// Reckoned with before the first answer: that of a quick hand.
+/// Turnaround assumed before the first reply: that of a fast hand.
 const TURNAROUND: Duration = Duration::from_millis(3);
 
-/// How often each group is wanted.
+/// Poll rates of the groups.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PollRates {
-    /// Motion states a second; infinite = as fast as the wire goes.
+    /// Motion states per second; infinite = as fast as the wire allows.
     pub state_hz: f64,
-    /// Sweeps over all fingertips a second; infinite = as fast as the wire goes.
+    /// Sweeps over all fingertips per second; infinite = as fast as the wire allows.
     pub tactile_hz: f64,
-    /// Reads of the setpoints that the hand holds, a second.
+    /// Reads of the hand's setpoints per second.
     pub settings_hz: f64,
 }
 
-/// What comes first while something moves on a line that is too slow for all.
+/// Preferred reads while the hand moves on a line that is too slow for all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PollPriority {
@@ -70,7 +71,7 @@ impl Default for PollRates {
 }
 
 impl PollRates {
-    /// As fast as the wire goes, states and fingertips in turn.
+    /// As fast as the wire allows, states and fingertips in turn.
     pub const FULL: Self = Self {
         state_hz: f64::INFINITY,
         tactile_hz: f64::INFINITY,
@@ -87,23 +88,23 @@ impl PollRates {
     }
 }
 
-/// What the hand is about, as far as reading it is concerned.
+/// The state of the hand, as far as polling is concerned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Tempo {
-    /// Nothing seems to move.
+    /// The hand seems to rest.
     Rest,
-    /// Setpoints flow, or something moves.
+    /// Setpoints are sent, or the hand moves.
     Motion,
-    /// A stop waits to be confirmed: only what tells of motion and faults counts.
+    /// A stop is being confirmed: only motion and faults are read.
     Stopping,
 }
 
-/// What is read next: the forms of one window, in the order of preference.
+/// The next read: the shapes of one window, in the order of preference.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct NextRead {
-    /// The caller takes the first that no late reply can be mistaken for.
+    /// The caller uses the first whose reply cannot be mistaken for a late one.
     pub(crate) shapes: ArrayVec<Span, SHAPES_MAX>,
-    /// True if it asks where the hand is.
+    /// True if it reads the pose.
     pub(crate) is_motion: bool,
 }
 
@@ -113,7 +114,7 @@ struct Due {
     part: ReadPart,
     period: Duration,
     next: Moment,
-    /// Not asked for before this, however late it is by then.
+    /// Not requested before this, however late it is by then.
     held_until: Moment,
     asked: Moment,
 }
@@ -122,15 +123,15 @@ struct Due {
 #[derive(Debug)]
 pub(crate) struct PollPlan {
     rates: PollRates,
-    /// Whether setpoints are read often enough to see another controller's.
+    /// True if setpoints are read often enough to detect another controller.
     watched: bool,
-    /// When a setpoint was written last.
+    /// Time of the last setpoint write.
     wrote: Option<Moment>,
-    /// When a round of setpoints began last, and whether it is one of a stream.
+    /// Start of the last round of setpoints, and whether it belongs to a stream.
     round: Option<(Moment, bool)>,
-    /// Setpoints are read before each write until then.
+    /// Setpoints are read before each write until this time.
     doubtful_until: Moment,
-    /// Setpoints are read before anything but the pose from then on.
+    /// Setpoints are read before anything but the pose from this time.
     look_at: Option<Moment>,
     parts: [Due; ReadPart::ALL.len()],
     cost: WireCost,
@@ -138,7 +139,7 @@ pub(crate) struct PollPlan {
     gaps: Gaps,
     recent: ArrayVec<Span, RECENT>,
     priority: PollPriority,
-    /// Questions since the last motion state.
+    /// Reads since the last motion state.
     since_motion: u8,
 }
 
@@ -167,13 +168,13 @@ impl PollPlan {
         }
     }
 
-    /// Reads at other rates: what is wanted more often than before waits one of its new periods at most.
+    /// Changes the rates: a part whose rate rises waits one of its new periods at most.
     pub(crate) fn change_rates(&mut self, rates: PollRates, now: Moment) {
         self.rates = rates;
         self.keep_rates(now);
     }
 
-    /// Reads setpoints often, or as usual again.
+    /// Switches frequent setpoint reads on or off.
     pub(crate) fn watch_setpoints(&mut self, watched: bool, now: Moment) {
         if std::mem::replace(&mut self.watched, watched) != watched {
             self.keep_rates(now);
@@ -193,12 +194,12 @@ impl PollPlan {
         }
     }
 
-    /// How far apart the reads of each part are meant to be.
+    /// Configured period of each part.
     pub(crate) fn periods(&self) -> impl Iterator<Item = (ReadPart, Duration)> {
         self.parts.iter().map(|due| (due.part, due.period))
     }
 
-    /// What comes first from now on while something moves.
+    /// Sets the preferred reads during motion.
     pub(crate) const fn prefer(&mut self, priority: PollPriority) {
         self.priority = priority;
     }
@@ -208,12 +209,12 @@ impl PollPlan {
         &self.cost
     }
 
-    /// The hand's turnaround as learnt.
+    /// The measured turnaround of the hand.
     pub(crate) const fn turnaround(&self) -> &Turnaround {
         &self.turnaround
     }
 
-    /// How this hand takes reads through the gap between angles and forces.
+    /// Sets whether this hand permits reads through the gap between angles and forces.
     pub(crate) fn know_gap(&mut self, gap: GapRead) {
         self.gaps = Gaps::known(gap);
     }
@@ -223,7 +224,7 @@ impl PollPlan {
         self.gaps.are_split()
     }
 
-    /// Whole reads of a class a second, if the wire carried nothing else; 0 before the first answer.
+    /// Complete reads of a class per second if the wire carried nothing else; 0 before the first reply.
     pub(crate) fn could_hz(&self, class: RateClass) -> f64 {
         let Some(turnaround) = self.turnaround.typical() else {
             return 0.0;
@@ -254,7 +255,8 @@ impl PollPlan {
         }
     }
 
-    /// Most data bytes of a read. Who asks for more states than usual, as trials do, wants no long reads between them.
+    /// Maximum data bytes of a read. A client that requests more states than usual, as trials do, must not get long
+    /// reads between them.
     fn longest(&self, tempo: Tempo) -> u16 {
         let usual = period(PollRates::default().state_hz);
         let mut parts = self.parts.iter();
@@ -267,7 +269,7 @@ impl PollPlan {
         }
     }
 
-    /// What is to be read now, if anything is due.
+    /// The read that is due now, if any.
     pub(crate) fn next(&self, now: Moment, tempo: Tempo) -> Option<NextRead> {
         let is_due = |due: &&Due| due.at() <= now && !self.waits_for_write(due.part, now);
         let due = || self.wanted(tempo).filter(is_due);
@@ -299,14 +301,14 @@ impl PollPlan {
         first.map(|first| self.question(first, now, tempo))
     }
 
-    /// True for what is read with the motion state: while something moves what the drives say too, if there is room.
+    /// True for parts that are read with the motion state; while the hand moves also the drive states, if there is room.
     fn goes_with_motion(&self, part: ReadPart, tempo: Tempo) -> bool {
         let whole = ReadPart::Drives.span().end() - u32::from(ReadPart::Angle.span().address);
         let has_room = || u32::from(self.longest(tempo)) >= whole;
         part.is_motion() || part == ReadPart::Drives && tempo == Tempo::Motion && has_room()
     }
 
-    /// The motion state, due or not.
+    /// The read of the motion state, due or not.
     pub(crate) fn motion(&self, now: Moment, tempo: Tempo) -> NextRead {
         let angle = self.parts.iter().find(|due| due.part == ReadPart::Angle);
         let angle = angle.copied().unwrap_or(Due {
@@ -319,7 +321,7 @@ impl PollPlan {
         self.question(&angle, now, tempo)
     }
 
-    /// What is read between two rounds of setpoints, so that a drag starves nothing; due or not it is no motion state.
+    /// The due read of anything but the motion state, between two rounds of setpoints, so that a drag starves nothing.
     pub(crate) fn others(&self, now: Moment) -> Option<NextRead> {
         let due = self.parts.iter().filter(|due| due.at() <= now);
         let due = due.filter(|due| !self.waits_for_write(due.part, now));
@@ -328,41 +330,41 @@ impl PollPlan {
             .map(|first| self.question(first, now, Tempo::Motion))
     }
 
-    /// True for setpoints that were just written, are doubtful, or were not read for long though they are watched.
+    /// True for setpoints that were just written, are doubtful, or are watched and were not read for long.
     fn is_looked_at(&self, due: &Due, now: Moment) -> bool {
         let is_wanted = self.look_at.is_some_and(|at| at <= now);
         let is_old = self.watched && now.since(due.asked) >= WATCH_INTERVAL;
         due.part == ReadPart::Targets && (is_wanted || is_old)
     }
 
-    /// When something is due next.
+    /// Time of the next due read.
     pub(crate) fn next_due(&self, now: Moment, tempo: Tempo) -> Moment {
         let waits = |due: &&Due| !self.waits_for_write(due.part, now);
         let next = self.wanted(tempo).filter(waits).map(Due::at).min();
         next.unwrap_or(Moment::ZERO)
     }
 
-    /// A window was answered. Its parts are due one period on, without catching up; counted from the asking, so that
-    /// rates are kept whatever the reply takes.
+    /// Records an answered window. Its parts are due one period later, without catching up; counted from the request,
+    /// so that rates do not depend on the reply time.
     pub(crate) fn answered(&mut self, window: Span, asked: Moment, took: Duration) {
         self.turnaround.learn(&self.cost, window.len, took);
         self.gaps.answered(window);
         self.asked(window, asked);
     }
 
-    /// A window was not answered as it should be.
+    /// Records a window without a valid reply.
     pub(crate) fn failed(&mut self, window: Span, now: Moment) {
         self.gaps.failed(window);
         self.asked(window, now);
     }
 
-    /// A round of setpoints begins.
+    /// Records the start of a round of setpoints.
     pub(crate) fn begin_round(&mut self, now: Moment) {
         let in_stream = self.round.is_some_and(|(at, _)| now.since(at) < ALONE);
         self.round = Some((now, in_stream));
     }
 
-    /// A setpoint was written: a round that stands alone is read back at once, so that nobody else's comes between.
+    /// Records a setpoint write: a single round is read back at once, before another controller can overwrite it.
     pub(crate) fn wrote_setpoint(&mut self, now: Moment) {
         self.wrote = Some(now);
         if self.watched && !self.watched_in_stream(now) {
@@ -370,8 +372,8 @@ impl PollPlan {
         }
     }
 
-    /// The setpoints that the hand holds, if they are to be read before the next write of a stream: what another wrote since the
-    /// last one is there until then.
+    /// The read of the hand's setpoints, if it is due before the next write of a stream: a value that another
+    /// controller wrote is visible until then.
     pub(crate) fn before_write(&self, now: Moment) -> Option<NextRead> {
         let wrote = self.wrote.filter(|_| self.watched_in_stream(now))?;
         let targets = self
@@ -387,19 +389,19 @@ impl PollPlan {
         matches!(part, ReadPart::Targets | ReadPart::Speeds) && self.watched_in_stream(now)
     }
 
-    /// True while setpoints are read before writes, and only there.
+    /// True while setpoints are read before writes, and only then.
     fn watched_in_stream(&self, now: Moment) -> bool {
         let is_recent = self.wrote.is_some_and(|at| now.since(at) < ALONE);
         let in_stream = self.round.is_some_and(|(_, in_stream)| in_stream);
         self.watched && is_recent && in_stream
     }
 
-    /// A setpoint that the hand holds may be another controller's.
+    /// Records that a setpoint of the hand may be another controller's.
     pub(crate) fn doubt_setpoints(&mut self, now: Moment) {
         self.doubtful_until = now.plus(DOUBT_DURATION);
     }
 
-    /// Reads the setpoints at this time at the latest: they were just written, or are doubtful.
+    /// Schedules a read of the setpoints at this time at the latest: they were just written, or are doubtful.
     pub(crate) fn look_at_settings(&mut self, at: Moment) {
         if self.watched {
             self.look_at = Some(self.look_at.map_or(at, |before| before.min(at)));
@@ -411,7 +413,7 @@ impl PollPlan {
         }
     }
 
-    /// No form of this window could be asked for: its parts wait until `until`, and are as late as they were.
+    /// Records that no shape of this window could be requested: its parts wait until `until`, and remain as late as they were.
     pub(crate) fn failed_to_ask(&mut self, window: Span, until: Moment) {
         self.since_motion = u8::MAX;
         for due in &mut self.parts {
@@ -429,7 +431,7 @@ impl PollPlan {
         self.since_motion = self.since_motion.saturating_add(1);
         for due in &mut self.parts {
             if window.covers(due.part.span()) {
-                // A part that came along in company before its time is not put off for all the times it did.
+                // A part that was read early along with others is not postponed for each such read.
                 due.next = due.next.plus(due.period).clamp(at, at.plus(due.period));
                 due.asked = at;
                 if due.part == ReadPart::Targets {
@@ -448,7 +450,7 @@ impl PollPlan {
         })
     }
 
-    /// The question about a part and what goes well with it.
+    /// The read of a part and those that join it.
     fn question(&self, first: &Due, now: Moment, tempo: Tempo) -> NextRead {
         let joining = self.joining(tempo);
         let with_motion = |due: &Due| self.goes_with_motion(due.part, tempo);
@@ -456,14 +458,14 @@ impl PollPlan {
             .wanted(tempo)
             .filter(|due| tempo == Tempo::Rest || with_motion(due) == with_motion(first))
             .filter(|due| due.joins(first, now, joining.longest));
-        // What belongs together goes first, so that chance neighbours do not take its place.
+        // Parts of the same period join first, so that chance neighbours do not take their place.
         let alike = joins.clone().filter(|due| due.period == first.period);
         let narrow = joining.window(first.part.span(), alike.map(|due| due.part));
         let wide = joining.window(narrow, joins.map(|due| due.part));
         let is_motion = wide.covers(ReadPart::Angle.span());
         let mut forms = joining.shapes(wide);
         if is_motion {
-            // Shorter ones, for a line on which each longer one may still be answered late.
+            // Shorter shapes, for a line on which each longer one may still be answered late.
             let shorter = [narrow, ReadPart::Angle.span()].into_iter();
             for window in shorter.filter(|window| *window != wide) {
                 forms.extend(
@@ -485,12 +487,12 @@ impl PollPlan {
 }
 
 impl Due {
-    /// When it may be asked for.
+    /// Time from which it may be requested.
     fn at(&self) -> Moment {
         self.next.max(self.held_until)
     }
 
-    /// How long it waits, in its own periods.
+    /// Lateness in its own periods, scaled.
     fn lateness(&self, now: Moment) -> u128 {
         let late = now.since(self.next);
         let period = if late >= STARVATION_TIMEOUT {
@@ -501,7 +503,7 @@ impl Due {
         (late.as_micros() + 1) * 1_000_000 / period.as_micros()
     }
 
-    /// Whichever waits longer; the earlier in the table if both do.
+    /// The later of both; the earlier in the table if equal.
     fn later<'a>(&'a self, other: &'a Self, now: Moment) -> &'a Self {
         if other.lateness(now) > self.lateness(now) {
             other
@@ -510,15 +512,15 @@ impl Due {
         }
     }
 
-    /// True if it may be read with `first`, being wanted now or so soon that this read serves as well.
+    /// True if it may be read with `first`, being due now or shortly.
     fn joins(&self, first: &Self, now: Moment, longest: u16) -> bool {
         match (self.part, first.part) {
-            // Always the same ones together: else the first and the last may be left alone, which nothing then ends.
+            // Always the same tips together: otherwise the first and the last could permanently be read alone.
             (ReadPart::Tip(one), ReadPart::Tip(other)) => {
                 let together = (longest / TIP_BYTES).max(1);
                 one as u16 / together == other as u16 / together
             }
-            // What belongs together stays together, and what is wanted seldom is not read much more often for company.
+            // Parts of one period stay together, and rare parts are not read much more often just to join.
             _ if self.period == first.period => self.next <= now.plus(self.period / 2),
             _ => self.next <= now.plus(self.period / 8),
         }

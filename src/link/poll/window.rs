@@ -1,5 +1,5 @@
-//! Which stretch of memory one read takes: the parts that are wanted now, joined where one longer read is cheaper than
-//! two, through a gap between registers where the hand allows it. Pure; when a part is wanted is not decided here.
+//! Chooses the range of memory of one read: the due parts, joined if one longer read is cheaper than two, through a gap
+//! between registers if the hand permits it. Pure; does not decide when a part is due.
 
 use crate::hand::register::{POS_SET, TOUCH, by_address};
 use crate::hand::{Finger, Group, RateClass, Span};
@@ -8,21 +8,22 @@ use crate::link::quirks::GapRead;
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// Most forms in which one window is asked for.
+/// Maximum shapes of one window.
 pub(crate) const SHAPES_MAX: usize = 32;
-/// Forms that differ from the window by bytes before or behind it.
+/// Maximum shapes that differ from the window by bytes before or after it.
 const VARIED_MAX: usize = 14;
-/// Bytes that a form has more than its window at most. A fingertip more would cost more than it tells apart.
+/// Maximum bytes that a shape adds to its window. A further fingertip would cost more than the distinction is worth.
 const VARIED_BYTES_MAX: u16 = 24;
-/// Runs without registers, which a hand may refuse to be read through (manual 2.6 lists none there).
+/// Ranges without registers, through which a hand may refuse to be read (manual 2.6 lists none there).
 pub(crate) const GAPS: [Span; 2] = [Span::new(1510, 12), Span::new(1558, 24)];
-/// Memory that holds registers, gaps included.
+/// Memory with registers, gaps included.
 const REGIONS: [Span; 2] = [Span::new(POS_SET.address, 1624 - POS_SET.address), TOUCH];
-/// Times that a window failed which led through a gap, before the gap is blamed: once may be chance.
+/// Failures of a window through a gap before the gap is blamed: one may be chance.
 const STRIKES: u8 = 2;
 
-/// What is read as a whole: groups that belong together, as one. On Modbus RTU a reply is known by its length alone, and of short
-/// ones that are alike a hand that doubles its replies is lost ([`LinkTrouble::Ambiguous`](crate::link::LinkTrouble::Ambiguous)).
+/// Memory that is read as a whole: groups that belong together. On Modbus RTU a reply is identified by its length
+/// alone, and with short reads of equal length a hand that duplicates its replies would be lost
+/// ([`LinkTrouble::Ambiguous`](crate::link::LinkTrouble::Ambiguous)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ReadPart {
     /// ANGLE_ACT.
@@ -59,7 +60,7 @@ impl ReadPart {
         Self::Tip(Finger::Thumb),
     ];
 
-    /// The first and the last of its groups, between which no register is left out.
+    /// The first and the last of its groups, which are contiguous.
     const fn groups(self) -> (Group, Group) {
         match self {
             Self::Angle => (Group::Angle, Group::Angle),
@@ -73,24 +74,24 @@ impl ReadPart {
         }
     }
 
-    /// Where it lies.
+    /// Its memory range.
     pub(crate) fn span(self) -> Span {
         let (first, last) = self.groups();
         hull(first.span(), last.span())
     }
 
-    /// How often it is wanted.
+    /// Its rate class.
     pub(crate) const fn rate(self) -> RateClass {
         self.groups().0.rate()
     }
 
-    /// True for what tells where the hand is and what it feels.
+    /// True for angles and forces: the motion state.
     pub(crate) const fn is_motion(self) -> bool {
         matches!(self, Self::Angle | Self::Force)
     }
 }
 
-/// What is known of the gaps on this connection.
+/// State of the gaps on this connection.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Gaps([Gap; GAPS.len()]);
 
@@ -98,15 +99,15 @@ pub(crate) struct Gaps([Gap; GAPS.len()]);
 struct Gap {
     /// A window through it was answered.
     open: bool,
-    /// Windows through it that failed while none was answered.
+    /// Failed windows through it, while none was answered.
     strikes: u8,
-    /// The last one failed, and nothing was answered since.
+    /// The last window through it failed, and nothing was answered since.
     suspect: bool,
     refused: bool,
 }
 
 impl Gaps {
-    /// How the hand takes reads through the gap between angles and forces; of the other nothing is known.
+    /// State for a known gap between angles and forces; the other is unknown.
     pub(crate) fn known(read: GapRead) -> Self {
         let gap = Gap {
             open: read == GapRead::Through,
@@ -116,13 +117,13 @@ impl Gaps {
         Self([Gap::default(), gap])
     }
 
-    /// True if a window may lead over this memory.
+    /// True if a window may cover this memory.
     fn allow(&self, span: Span) -> bool {
         let mut gaps = self.0.iter().zip(GAPS);
         gaps.all(|(gap, place)| !overlap(span, place) || !(gap.refused || gap.suspect))
     }
 
-    /// A window was answered. What failed only in a gap's company is that gap's fault.
+    /// Records an answered window. If only windows through a gap fail, the gap is the cause.
     pub(crate) fn answered(&mut self, span: Span) {
         for (gap, place) in self.0.iter_mut().zip(GAPS) {
             if overlap(span, place) {
@@ -135,7 +136,7 @@ impl Gaps {
         }
     }
 
-    /// A window got no answer, or not the one it should.
+    /// Records a window without a valid reply.
     pub(crate) fn failed(&mut self, span: Span) {
         for (gap, place) in self.0.iter_mut().zip(GAPS) {
             if overlap(span, place) && !gap.open && !gap.refused {
@@ -151,18 +152,18 @@ impl Gaps {
     }
 }
 
-/// What decides how windows are joined.
+/// Parameters for joining windows.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Joining {
     pub(crate) cost: WireCost,
     pub(crate) turnaround: Duration,
-    /// Most data bytes.
+    /// Maximum data bytes.
     pub(crate) longest: u16,
     pub(crate) gaps: Gaps,
 }
 
 impl Joining {
-    /// The window around what is asked for: it takes in whichever of the others costs less in it than by itself.
+    /// The window around `first`: other parts join if they cost less in it than by themselves.
     pub(crate) fn window(
         &self,
         first: Span,
@@ -187,8 +188,8 @@ impl Joining {
         hull.len <= self.longest && self.gaps.allow(hull) && read(hull) <= read(window) + read(part)
     }
 
-    /// The window, and forms of it with more bytes at its ends, shortest first. No two replies in a row may look alike,
-    /// and no late one may look like the next.
+    /// The window, and shapes of it with more bytes at its ends, shortest first. No two consecutive replies may look
+    /// alike, and no late one may look like the next.
     pub(crate) fn shapes(&self, window: Span) -> ArrayVec<Span, SHAPES_MAX> {
         let room = room(window);
         let most = self.longest.saturating_sub(window.len);
@@ -281,7 +282,7 @@ mod tests {
     fn a_gap_is_read_through_where_that_is_cheaper_than_asking_twice() {
         let fast = joining(WireCost::rs485(Some(115_200)), MS * 3, 252);
         assert_eq!(window(&fast, ReadPart::Angle, &STATE_PARTS), (1546, 78));
-        // 24 bytes take 12.5 ms at 19200 baud, another request and reply 8.9 and the hand's turnaround.
+        // 24 bytes take 12.5 ms at 19200 baud; another request and reply take 8.9 and the hand's turnaround.
         let slow = WireCost::rs485(Some(19_200));
         let quick_hand = joining(slow, MS, 252);
         assert_eq!(
@@ -297,7 +298,7 @@ mod tests {
             window(&slow_hand, ReadPart::Angle, &STATE_PARTS),
             (1546, 78)
         );
-        // Pieces of 8 bytes: the gap is three more of them, and apart costs none more.
+        // Pieces of 8 bytes: the gap is three more of them, and separate reads cost none more.
         let can = joining(WireCost::can(1_000_000), MS, 250);
         assert_eq!(window(&can, ReadPart::Angle, &STATE_PARTS), (1546, 12));
     }

@@ -1,5 +1,5 @@
-//! What was found about each hand, kept from one start to the next and compared with what it answers now. Nothing kept here
-//! is ever sent to a hand.
+//! Quirks of each hand, stored across program starts and compared with its present replies. Nothing stored here is ever
+//! sent to a hand.
 
 use crate::hand::register::BytePacking;
 use crate::link::quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
@@ -10,14 +10,14 @@ use serde::{Deserialize, Serialize};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// What this version writes. Books of a later version are read as far as they are understood, and never written.
+/// File version written by this program. Books of a later version are read as far as they are understood, and never written.
 pub const VERSION: u32 = 1;
-/// Hands that a book holds; the one that was not seen for longest goes first.
+/// Maximum hands in a book; the one not seen for longest is dropped first.
 const SHEETS_MAX: usize = 200;
-/// A book is some pages of text; anything longer is not ours.
+/// Maximum file length: a book is some pages of text.
 const FILE_LEN_MAX: u64 = 1024 * 1024;
 
-/// What was found at an endpoint on a day.
+/// Sheet of the quirks found at an endpoint on a day.
 pub fn sheet(endpoint: &Endpoint, quirks: &Quirks, day: &str) -> QuirkSheet {
     let (place, id) = endpoint.place_and_id();
     QuirkSheet {
@@ -38,12 +38,12 @@ pub fn sheet(endpoint: &Endpoint, quirks: &Quirks, day: &str) -> QuirkSheet {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct QuirkBook {
-    /// Of the file's form.
+    /// Version of the file format.
     pub version: u32,
-    /// One for each place and id.
+    /// The sheets, one per place and id.
     #[serde(rename = "hand")]
     pub hands: Vec<QuirkSheet>,
-    /// Keys of a later version, kept as they are.
+    /// Keys of a later version, preserved unchanged.
     #[serde(flatten)]
     pub others: toml::Table,
 }
@@ -59,15 +59,15 @@ impl Default for QuirkBook {
 }
 
 impl QuirkBook {
-    /// Where the book lies, beside the settings.
+    /// Path of the book, next to the settings.
     pub fn path(settings: &Path) -> PathBuf {
         settings.with_file_name("quirks.toml")
     }
 
-    /// Reads a book; one that is missing is empty.
+    /// Reads a book; a missing one is empty.
     ///
     /// # Errors
-    /// Why it cannot be read. It is then left alone.
+    /// The reason why it cannot be read. It is then left unchanged.
     pub fn load(path: &Path) -> std::io::Result<Self> {
         match read_text(path, FILE_LEN_MAX)? {
             None => Ok(Self::default()),
@@ -76,7 +76,7 @@ impl QuirkBook {
         }
     }
 
-    /// Notes what a hand answered, and gives back its sheet from before, if there was one.
+    /// Records the sheet of a hand, and returns its previous sheet, if there was one.
     pub fn note(&mut self, now: QuirkSheet) -> Option<QuirkSheet> {
         let same = |sheet: &&mut QuirkSheet| sheet.place == now.place && sheet.id == now.id;
         if let Some(sheet) = self.hands.iter_mut().find(same) {
@@ -93,11 +93,11 @@ impl QuirkBook {
         None
     }
 
-    /// Reads the book, notes a sheet and writes the book back, so that at any moment the old or the new one is there,
-    /// whole. Gives back the sheet from before.
+    /// Reads the book, records a sheet and writes the book back atomically: at any moment the old or the new one exists
+    /// complete. Returns the previous sheet.
     ///
     /// # Errors
-    /// What the system says; a book that cannot be read or is of a later version is left alone.
+    /// The system's error; a book that cannot be read or is of a later version is left unchanged.
     pub fn keep(path: &Path, now: QuirkSheet) -> std::io::Result<Option<QuirkSheet>> {
         let mut book = Self::load(path)?;
         let before = book.note(now);
@@ -111,7 +111,7 @@ impl QuirkBook {
         Ok(before)
     }
 
-    /// A book of this sheet alone.
+    /// A book with only this sheet.
     pub fn of(sheet: QuirkSheet) -> Self {
         Self {
             hands: vec![sheet],
@@ -125,7 +125,7 @@ impl QuirkBook {
     }
 }
 
-/// The word for a byte packing in quirk sheets and on the command line.
+/// Name of a byte packing in quirk sheets and on the command line.
 pub const fn packing_name(packing: BytePacking) -> &'static str {
     match packing {
         BytePacking::LowFirst => "low-first",
@@ -134,7 +134,7 @@ pub const fn packing_name(packing: BytePacking) -> &'static str {
     }
 }
 
-/// As it is written in sheets and in JSON.
+/// Name in sheets and in JSON.
 pub const fn gap_name(gap: GapRead) -> &'static str {
     match gap {
         GapRead::Through => "through",
@@ -142,7 +142,7 @@ pub const fn gap_name(gap: GapRead) -> &'static str {
     }
 }
 
-/// As it is written in sheets and in JSON.
+/// Name in sheets and in JSON.
 pub const fn touch_name(touch: TouchVariant) -> &'static str {
     match touch {
         TouchVariant::Capacitive => "capacitive",
@@ -183,7 +183,7 @@ mod tests {
         let other = sheet("rtu:/dev/x?id=2", &quirks(), "2026-11-20");
         assert_eq!(QuirkBook::keep(&path, other).unwrap(), None);
         let unlearnt = Quirks::default();
-        // The user's reading of words is part of the address, but not of the place.
+        // The user's choice of packing is part of the address, but not of the place.
         let again = sheet("rtu:/dev/x?id=1&packing=low", &unlearnt, "2026-11-21");
         assert_eq!(QuirkBook::keep(&path, again).unwrap(), Some(first));
         let book = QuirkBook::load(&path).unwrap();

@@ -1,4 +1,4 @@
-//! What one hand answers in its own way, where the manual leaves room. Plain values; asks nothing.
+//! Quirks of one hand, where the manual leaves room. Plain values; sends nothing.
 
 pub mod book;
 
@@ -6,62 +6,61 @@ use crate::hand::TactileBlock;
 use crate::hand::feedback::tactile::BLOCK_LEN;
 use crate::hand::register::BytePacking;
 
-/// What was found about a hand when the link got to know it. `None` is what the wire does not ask, or the hand did not
-/// answer.
+/// Quirks detected when the link identified a hand. `None` if the wire does not need it, or the hand did not answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct Quirks {
-    /// HAND_ID as the hand gives it (manual 2.6.1).
+    /// HAND_ID as read from the hand (manual 2.6.1).
     pub hand_id: Option<u8>,
-    /// REDU_RATIO as the hand gives it (manual 2.6.2). What a code means depends on the manual's edition.
+    /// REDU_RATIO as read from the hand (manual 2.6.2). The meaning of a code depends on the manual's edition.
     pub baud_code: Option<u8>,
-    /// How the hand puts single bytes into Modbus words.
+    /// Packing of single bytes in Modbus words.
     pub packing: Option<BytePacking>,
-    /// Whether the unused addresses between ANGLE_ACT and FORCE_ACT can be read through.
+    /// Behaviour of reads across the unused addresses between ANGLE_ACT and FORCE_ACT.
     pub gap: Option<GapRead>,
-    /// What kind of fingertips the tactile block looks like.
+    /// Kind of fingertips, judged by the tactile block.
     pub touch: Option<TouchVariant>,
 }
 
-/// How a hand takes a read across the unused addresses 1558 to 1581.
+/// Behaviour of a hand on a read across the unused addresses 1558 to 1581.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
 )]
 pub enum GapRead {
-    /// It answers: one window holds the whole motion state.
+    /// It answers: one window covers the whole motion state.
     #[default]
     Through,
-    /// It refuses: windows end before the gap and begin behind it.
+    /// It refuses: windows end before the gap and begin after it.
     Split,
 }
 
-/// What the addresses from 3000 on hold, judged by their values: no register tells.
+/// Layout of the addresses from 3000 on, judged by their values: no register indicates it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum TouchVariant {
     /// Five blocks of 58 bytes (manual 2.6.21).
     Capacitive,
     /// Zones of 16-bit words up to 4095, as the maker's other fingertips have.
     Resistive,
-    /// Neither fits, and the reason.
+    /// Neither layout matches; carries the reason.
     Unknown(TouchDoubt),
 }
 
-/// Why a tactile block tells no kind.
+/// Reason why a tactile block is inconclusive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum TouchDoubt {
-    /// All bytes are zero: no sensor, or none that speaks.
+    /// All bytes are zero: no sensor, or an inactive one.
     Empty,
-    /// A force is no finite number within the sensor's range.
+    /// A force is not a finite number within the sensor's range.
     Force,
-    /// A direction is neither an angle nor the word for none.
+    /// A direction is neither an angle nor the code for none.
     Direction,
-    /// Check sums differ from the bytes before them.
+    /// Checksums do not match the bytes before them.
     Check,
-    /// The hand does not let the block be read.
+    /// The hand refuses to read the block.
     Refused,
 }
 
-/// What a code of REDU_RATIO means by this manual (2.6.2), bits a second; `None` for codes it does not explain.
+/// Bit rate for a code of REDU_RATIO by this manual (2.6.2), in bits per second; `None` for codes it does not explain.
 ///
 /// Manual: other editions number differently. That of August 2024 gives 921600 the code 4 and swaps the two of CAN.
 pub const fn baud_of_code(code: u8, is_can: bool) -> Option<u32> {
@@ -76,17 +75,17 @@ pub const fn baud_of_code(code: u8, is_can: bool) -> Option<u32> {
     }
 }
 
-/// Largest force that a fingertip is believed, newtons: five times what the sensor is rated for (manual 1.1).
+/// Largest plausible force of a fingertip, newtons: five times the sensor's rating (manual 1.1).
 const FORCE_MAX_N: f32 = 100.0;
-/// Smallest force other than zero: what two small words of another layout look like as a number is far below.
+/// Smallest plausible force other than zero: two small words of another layout, read as a float, are far below.
 const FORCE_MIN_N: f32 = 1e-6;
 /// Largest word of the other layout.
 const ZONE_MAX: u16 = 4095;
-/// The word for "no direction".
+/// The code for "no direction".
 const NO_DIRECTION: u16 = 65535;
 
 impl TouchVariant {
-    /// Judges by the bytes that begin where a fingertip's block begins, at least 58 of them.
+    /// Judges the bytes from the start of a fingertip's block, at least 58 of them.
     pub fn judge(bytes: &[u8]) -> Self {
         let block = bytes.get(..BLOCK_LEN).and_then(TactileBlock::decode);
         let Some(block) = block else {

@@ -1,21 +1,21 @@
-//! How far a scan is. Counts; asks nobody.
+//! Progress of a scan. Counts only; sends no requests.
 
 use crate::link::scan::event::ScanSummary;
 use crate::link::scan::plan::{Lane, LaneKind, ScanPlan, Try, estimate};
 use std::time::Duration;
 
-/// How far a scan is.
+/// Progress of a scan.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ScanProgress {
-    /// Questions that are done with, asked or not needed any more.
+    /// Probes that are done, sent or skipped.
     pub tried: usize,
-    /// Questions that were planned.
+    /// Planned probes.
     pub total: usize,
-    /// Time until the end if nobody answers any more.
+    /// Remaining time if no further probe is answered.
     pub left: Duration,
 }
 
-/// What is left of each lane, and the results of the others.
+/// Remaining probes of each lane, and the results so far.
 #[derive(Debug, Default)]
 pub(crate) struct Board {
     total: usize,
@@ -44,7 +44,7 @@ impl Board {
         }
     }
 
-    /// Notes what is left of a lane.
+    /// Sets the remaining probes of a lane.
     pub(crate) fn left<'a>(&mut self, nth: usize, tries: impl Iterator<Item = &'a Try>) {
         let Some(lane) = self.lanes.get_mut(nth) else {
             return;

@@ -1,4 +1,4 @@
-//! What a scan tells while it runs. Plain values; decides nothing.
+//! Events of a running scan. Plain values; no logic.
 
 use crate::hand::Refusal;
 use crate::transport::{Endpoint, TransportError, UsbFound};
@@ -10,56 +10,56 @@ use std::time::Duration;
 pub struct FoundHand {
     /// Endpoint that connects to it.
     pub endpoint: Endpoint,
-    /// What it says its HAND_ID is (manual 2.6.1).
+    /// HAND_ID that it reports (manual 2.6.1).
     pub hand_id: u8,
-    /// From the question to the answer.
+    /// Time from the request to the reply.
     pub round_trip: Duration,
-    /// The adapter that it is behind, if that is on USB.
+    /// The adapter in front of it, if that is on USB.
     pub usb: Option<UsbFound>,
 }
 
-/// Why there may be a hand although none answered. At most one a place, and only where no hand was found.
+/// Sign of a device although no hand answered. At most one per place, and only if no hand was found there.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ScanHint {
-    /// Something answers, and is not the hand that was asked.
+    /// A device answers with another id than requested.
     OtherId {
         /// Endpoint that was tried.
         endpoint: Endpoint,
-        /// What its HAND_ID reads.
+        /// Value of its HAND_ID.
         hand_id: u8,
     },
-    /// Something answers with the id that was asked, but its other registers are not those of this series.
+    /// A device answers with the requested id, but its other registers are not those of this series.
     OtherSeries {
         /// Endpoint that was tried.
         endpoint: Endpoint,
-        /// What its HAND_ID reads.
+        /// Value of its HAND_ID.
         hand_id: u8,
     },
-    /// Something answers, and will not tell its HAND_ID.
+    /// A device answers, but refuses to return its HAND_ID.
     Refuses {
         /// Endpoint that was tried.
         endpoint: Endpoint,
-        /// Why it refuses to give HAND_ID.
+        /// Reason of the refusal.
         reason: Refusal,
     },
-    /// Replies that nobody here asked for.
+    /// Replies to requests that this program did not send.
     OtherTalk {
-        /// Where, and in which way they could be read.
+        /// Place and protocol in which they could be read.
         endpoint: Endpoint,
     },
-    /// Bytes that are no reply.
+    /// Bytes that are not a reply.
     Garbled {
         /// Serial port or adapter.
         place: String,
-        /// Speeds at which they came.
+        /// Baud rates at which they were received.
         bauds: Vec<u32>,
-        /// Bytes received at all these speeds.
+        /// Bytes received at all these rates.
         bytes: usize,
     },
 }
 
 impl ScanHint {
-    /// Where it was noticed.
+    /// Place of the hint.
     pub fn place(&self) -> String {
         match self {
             Self::OtherId { endpoint, .. }
@@ -107,49 +107,49 @@ impl fmt::Display for ScanHint {
     }
 }
 
-/// How a scan ended.
+/// Summary of a finished scan.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ScanSummary {
     /// Hands that answered.
     pub found: usize,
-    /// Questions asked.
+    /// Probes sent.
     pub asked: usize,
-    /// Places looked at, also if nobody was there.
+    /// Places scanned, with or without a reply.
     pub places: usize,
-    /// Places that could not be looked at.
+    /// Places that could not be scanned.
     pub failed: usize,
-    /// How long it took.
+    /// Total time.
     pub took: Duration,
 }
 
 /// One step of a scan, in order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ScanEvent {
-    /// What is going to be done.
+    /// The plan.
     Begun {
-        /// Places to look at.
+        /// Places to scan.
         places: usize,
-        /// Questions at most.
+        /// Maximum probes.
         tries: usize,
-        /// Time that it takes if nobody answers.
+        /// Time that it takes if no probe is answered.
         estimate: Duration,
     },
     /// A hand answered.
     Found(FoundHand),
-    /// A place could not be looked at, or not any more; or nobody is at an address that was named.
+    /// A place could not be scanned, or not to its end; or a named address has no device.
     Trouble {
         /// Port, interface or address.
         place: String,
-        /// Why it could not be opened.
+        /// Reason of the failure.
         error: TransportError,
     },
-    /// Something worth a word at a place without a hand.
+    /// A notable finding at a place without a hand.
     Hint(ScanHint),
-    /// A place was left alone: this program's own link holds it.
+    /// A place was skipped: this program's own link holds it.
     Held {
         /// Port or address.
         place: String,
     },
-    /// All was looked at.
+    /// The scan is complete.
     Done(ScanSummary),
 }

@@ -1,4 +1,4 @@
-//! The asking end of a scan: begins it, hears what it finds, ends it. Never waits for a wire.
+//! The caller's handle to a scan: starts it, receives its events, ends it. Never waits for a wire.
 
 use crate::hand::HandId;
 use crate::link::clock::Clock;
@@ -18,13 +18,13 @@ use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 use tokio_util::task::AbortOnDropHandle;
 
-/// Events that may wait; a scan that is not listened to waits for its listener.
+/// Capacity of the event queue; a scan waits for its reader when it is full.
 const EVENTS_MAX: usize = 256;
 
-/// Which ports and interfaces of this computer are looked at.
+/// The local ports and interfaces to scan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Local {
-    /// All that the system lists. What looks like a CAN adapter is asked as one, all others as a serial line.
+    /// All that the system lists. A port that looks like a CAN adapter is probed as one, all others as a serial line.
     Listed,
     /// Only the ones named here.
     Named {
@@ -35,26 +35,26 @@ pub enum Local {
     },
 }
 
-/// What a scan is begun with.
+/// Configuration of a scan.
 #[derive(Clone)]
 pub struct ScanConfig {
     /// Ports and interfaces.
     pub local: Local,
-    /// Addresses in the network. None is ever added to them.
+    /// Network addresses. None is ever added to them.
     pub hosts: Vec<Hosts>,
     /// Ids to try on every serial line and CAN bus.
     pub ids: Vec<HandId>,
-    /// The hands that are connected now: the port of each is left alone.
+    /// The connected hands: the port of each is skipped.
     pub held: Vec<Endpoint>,
     /// The program's clock.
     pub clock: Clock,
-    /// How wires are opened, and which there are.
+    /// Opens wires, and lists ports and interfaces.
     pub dial: Arc<dyn Dial>,
-    /// Called when something new is there.
+    /// Called when an event is available.
     pub wake: Wake,
 }
 
-/// One scan that runs. Dropping it ends the scan and closes every port.
+/// One running scan. Dropping it ends the scan and closes every port.
 #[derive(Debug)]
 pub struct ScanHandle {
     events: mpsc::Receiver<ScanEvent>,
@@ -62,7 +62,7 @@ pub struct ScanHandle {
     _task: AbortOnDropHandle<()>,
 }
 
-/// Begins a scan. It reads HAND_ID and nothing else, and writes nothing.
+/// Starts a scan. It reads HAND_ID and the registers that identify the series, and writes nothing.
 pub fn start(config: ScanConfig, runtime: &Handle) -> ScanHandle {
     let (tell, events) = mpsc::channel(EVENTS_MAX);
     let board = Arc::new(Mutex::new(Board::default()));
@@ -88,12 +88,12 @@ impl ScanHandle {
         self.events.recv().await
     }
 
-    /// The next event, if one waits.
+    /// The next event, if one is available.
     pub fn try_event(&mut self) -> Option<ScanEvent> {
         self.events.try_recv().ok()
     }
 
-    /// How far it is.
+    /// Present progress.
     pub fn progress(&self) -> ScanProgress {
         let board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
         board.progress()
@@ -158,7 +158,7 @@ fn as_it_looks(found: PortFound) -> ScanPort {
     }
 }
 
-/// With what the system knows of the port.
+/// Adds what the system reports about the port.
 fn known(mut wish: ScanPort, listed: &[PortFound]) -> ScanPort {
     let same = listed.iter().find(|port| port.path == wish.port);
     wish.usb = wish.usb.or_else(|| same.and_then(|port| port.usb.clone()));

@@ -1,4 +1,4 @@
-//! A wire that is lent to one protocol after another, and remembers whether anything at all was heard on it. Asks nothing.
+//! A wire that is used by one protocol after another, and records whether any data was received. Sends nothing by itself.
 
 use crate::transport::BoxedWire;
 use std::io;
@@ -7,10 +7,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::task::{Context, Poll};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
-/// Bytes kept of each direction, to know an echo by: longer than any question of a scan.
+/// Bytes kept of each direction, to detect an echo: longer than any request of a scan.
 const KEPT_MAX: usize = 64;
 
-/// One open wire with several users, one at a time. It closes when the last of them is dropped.
+/// One open wire with several users in turn. It closes when the last of them is dropped.
 #[derive(Clone)]
 pub(crate) struct LentWire(Arc<Mutex<ObservedWire>>);
 
@@ -31,7 +31,7 @@ impl LentWire {
         })))
     }
 
-    /// Bytes heard since the last call; none if they are only what was sent, come back.
+    /// Bytes received since the last call; 0 if they are only an echo of what was sent.
     pub(crate) fn take_heard(&self) -> usize {
         let mut line = self.line();
         let echo = line.sent == line.heard && line.heard_bytes == line.heard.len();
@@ -43,7 +43,7 @@ impl LentWire {
     }
 
     fn line(&self) -> MutexGuard<'_, ObservedWire> {
-        // A line whose user panicked is a whole line: nothing is left half done in it.
+        // A panic of its user leaves the line consistent: no operation on it can be half done.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -88,7 +88,7 @@ impl AsyncWrite for LentWire {
     }
 
     fn poll_shutdown(self: Pin<&mut Self>, _cx: &mut Context<'_>) -> Poll<io::Result<()>> {
-        // The next user goes on with it.
+        // The next user continues with it.
         Poll::Ready(Ok(()))
     }
 }

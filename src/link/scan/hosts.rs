@@ -1,10 +1,10 @@
-//! Addresses to look at as the user writes them: one host, or a range of them. Resolves no name, connects to nothing.
+//! Addresses to scan, as typed by the user: one host, or a range. Resolves no name, connects to nothing.
 
 use crate::transport::endpoint::{DEFAULT_TCP_PORT, Endpoint, EndpointError};
 use std::net::Ipv4Addr;
 use std::str::FromStr;
 
-/// Most hosts of one range: a /22. More would take minutes, and is hardly one robot's network.
+/// Maximum hosts of one range: a /22. More would take minutes, and would hardly be one robot's network.
 pub const HOSTS_MAX: usize = 1024;
 /// The widest range, in leading bits.
 const PREFIX_MIN: u32 = 22;
@@ -17,10 +17,10 @@ pub struct Hosts {
     is_range: bool,
 }
 
-/// Why a text names no hosts.
+/// Reason why a text is not a valid host or range.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum HostsError {
-    /// No host at all, or something that is none.
+    /// Not a host.
     #[error(
         "'{text}' is not a host: write an address such as 192.168.11.210, with :PORT if it is not 6000"
     )]
@@ -28,13 +28,13 @@ pub enum HostsError {
         /// Text that was typed.
         text: String,
     },
-    /// A port that is none.
+    /// Not a port.
     #[error("'{port}' is not a port: write a number from 1 to 65535")]
     Port {
         /// Text that was typed.
         port: String,
     },
-    /// A range that is none.
+    /// Not a range.
     #[error("'{text}' is not an address range: write one such as 192.168.11.0/24")]
     Range {
         /// Text that was typed.
@@ -48,7 +48,7 @@ pub enum HostsError {
         /// Length of the network prefix in bits.
         prefix: u32,
     },
-    /// Addresses that no hand can have.
+    /// An address that no hand can have.
     #[error("no hand can have the address {address}: name the address of the hand")]
     Impossible {
         /// The address.
@@ -62,7 +62,7 @@ impl Hosts {
         self.names.iter().map(String::as_str)
     }
 
-    /// How many there are.
+    /// Number of hosts.
     pub const fn count(&self) -> usize {
         self.names.len()
     }
@@ -72,7 +72,7 @@ impl Hosts {
         self.port
     }
 
-    /// True if a range was written: then most of the addresses are expected to be nobody's.
+    /// True if a range was typed: most of its addresses are expected to be unused.
     pub const fn is_range(&self) -> bool {
         self.is_range
     }

@@ -1,5 +1,5 @@
-//! Looks at one place: opens it, asks one id after another for its HAND_ID, and closes it. Reads that one register and
-//! writes nothing.
+//! Scans one place: opens it, reads HAND_ID of one id after another, and closes it. A hand that answers is also read to
+//! identify its series; nothing is written.
 
 use crate::hand::Refusal;
 use crate::hand::register::HAND_ID;
@@ -19,20 +19,20 @@ use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::Instant;
 
-/// What all lanes of a scan share.
+/// State shared by all lanes of a scan.
 pub(crate) struct ScanContext {
     pub(crate) dial: Arc<dyn Dial>,
     pub(crate) clock: Clock,
     pub(crate) events: mpsc::Sender<ScanEvent>,
     pub(crate) wake: Arc<dyn Fn() + Send + Sync>,
     pub(crate) board: Arc<Mutex<Board>>,
-    /// One address of a range was told of: that all others fail alike is not worth a thousand lines.
+    /// One failure of a range was reported; the same failure of all others is not.
     pub(crate) range_told: AtomicBool,
 }
 
 impl ScanContext {
     pub(crate) async fn tell(&self, event: ScanEvent) {
-        // Nobody listens any more when the scan is being ended.
+        // An error means that the scan is being ended.
         let _unheard = self.events.send(event).await;
         (self.wake)();
     }
@@ -42,7 +42,7 @@ impl ScanContext {
     }
 }
 
-/// What came back.
+/// Result of a probe.
 enum ProbeAnswer {
     Hand {
         hand_id: u8,
@@ -58,7 +58,7 @@ enum ProbeAnswer {
     Broke(TransportError),
 }
 
-/// What was noticed at a place where no hand answered.
+/// Findings at a place where no hand answered.
 #[derive(Default)]
 struct Noticed {
     series: Option<(Endpoint, u8)>,
@@ -70,7 +70,7 @@ struct Noticed {
 }
 
 impl Noticed {
-    /// The most telling of it.
+    /// The most informative finding.
     fn hint(self, place: &str) -> Option<ScanHint> {
         let series = self
             .series
@@ -93,7 +93,7 @@ impl Noticed {
     }
 }
 
-/// One place being looked at.
+/// The scan of one place.
 struct LaneScan {
     room: Arc<ScanContext>,
     nth: usize,
@@ -103,11 +103,11 @@ struct LaneScan {
     found: usize,
     asked: usize,
     failed: bool,
-    /// The newest trouble, which is told once.
+    /// The last trouble, which is reported once.
     told: Option<TransportError>,
 }
 
-/// Goes through all tries of a lane, or until what it learned makes the rest needless.
+/// Runs all probes of a lane, except those that earlier results make unnecessary.
 pub(crate) async fn look(room: Arc<ScanContext>, nth: usize, lane: Lane) {
     let mut look = LaneScan {
         room,
@@ -169,13 +169,13 @@ impl LaneScan {
         self.room.tell(ScanEvent::Found(found)).await;
     }
 
-    /// Leaves out what fails in the same way.
+    /// Drops the probes that would fail in the same way.
     fn after(&mut self, error: &TransportError, at: &Endpoint, rest: &mut VecDeque<Try>) {
         match error {
             TransportError::BitrateRefused { .. } => {
                 rest.retain(|other| !same_line(at, &other.endpoint));
             }
-            // A port may not have one of the speeds, and the others all the same.
+            // A port may not support one of the speeds, but still the others.
             TransportError::Io { .. } if self.lane.kind == LaneKind::Port => {
                 rest.retain(|other| !same_wire(at, &other.endpoint));
             }
@@ -188,7 +188,7 @@ impl LaneScan {
             return;
         }
         self.told = Some(error.clone());
-        // A host that does not take the call was looked at: nobody is there.
+        // A host that does not accept the connection was scanned: no hand is there.
         let nobody = matches!(
             error,
             TransportError::Refused { .. } | TransportError::Silent { .. }
@@ -242,7 +242,8 @@ impl LaneScan {
         let heard = wire.take_heard();
         let foreign = bus.counts().foreign_replies > 0;
         if heard > 0 && !matches!(read, Err(BusError::Lost(_))) {
-            // The next question must not be talked over what still comes. A wire that breaks now breaks then too.
+            // The next request must not collide with data that still arrives. A wire that breaks now fails the next
+            // request too.
             let _broken = bus.quiet().await;
         }
         bus.close();
@@ -268,21 +269,21 @@ impl LaneScan {
         }
     }
 
-    /// The wire for an endpoint: the open one if that serves.
+    /// The wire for an endpoint: the open one if it fits.
     async fn wire(&mut self, endpoint: &Endpoint) -> Result<LentWire, TransportError> {
         if let Some((at, wire)) = &self.open
             && same_wire(at, endpoint)
         {
             return Ok(wire.clone());
         }
-        // The old one goes first: a serial port has room for one.
+        // The old one is closed first: a serial port can be opened once.
         self.open = None;
         let wire = LentWire::new(self.room.dial.dial(endpoint).await?);
         self.open = Some((endpoint.clone(), wire.clone()));
         Ok(wire)
     }
 
-    /// Bytes came, and none of them answered.
+    /// Records bytes that were not a reply.
     fn notice(&mut self, endpoint: &Endpoint, heard: usize, foreign: bool) {
         let (Endpoint::Rs485(line) | Endpoint::Rtu(line)) = endpoint else {
             return;
@@ -299,7 +300,7 @@ impl LaneScan {
     }
 }
 
-/// What answers, asked until that is clear or nothing more is to be asked.
+/// Identifies the series, with as many reads as needed.
 async fn series(bus: &mut dyn Bus, limit: Duration) -> Series {
     let mut evidence = SeriesEvidence::default();
     for question in SeriesQuestion::ALL {
@@ -314,7 +315,7 @@ async fn series(bus: &mut dyn Bus, limit: Duration) -> Series {
             Err(BusError::Refused { reason }) if reason.is_by_the_hand() => {
                 evidence.refused(question);
             }
-            // The serial framing has no word for no.
+            // The serial framing cannot refuse.
             Err(_) => {
                 let _broken = bus.quiet().await;
             }
@@ -327,8 +328,8 @@ fn is_expected_of(endpoint: &Endpoint, id: &[u8]) -> bool {
     id.first().is_some_and(|id| is_expected(endpoint, *id))
 }
 
-/// True if both are reached over one opening of a wire. A CAN interface listens for one id only, and over TCP a late
-/// answer to one unit could be taken for another's: there each has its own.
+/// True if one open wire serves both. A CAN interface filters for one id only, and over TCP a late reply of one unit
+/// could be mistaken for another's: there each has its own.
 fn same_wire(one: &Endpoint, other: &Endpoint) -> bool {
     match (one, other) {
         (Endpoint::Rs485(a) | Endpoint::Rtu(a), Endpoint::Rs485(b) | Endpoint::Rtu(b)) => {
@@ -340,7 +341,7 @@ fn same_wire(one: &Endpoint, other: &Endpoint) -> bool {
     }
 }
 
-/// A hand on a bus says the id by which it was asked; at a network address any id that a hand can have will do.
+/// A hand on a bus returns the id by which it was addressed; at a network address any valid id is accepted.
 fn is_expected(endpoint: &Endpoint, hand_id: u8) -> bool {
     match endpoint {
         Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => line.id == hand_id,

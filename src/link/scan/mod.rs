@@ -1,5 +1,6 @@
-//! Finding hands: what to try and in which order ([`plan`]), looking at one place (`look`), and the end that asks
-//! (`handle`). Reads HAND_ID alone; never writes, and goes nowhere that was not named or listed.
+//! Finds hands: plans the probes ([`plan`]), scans one place (`look`), and provides the caller's handle (`handle`).
+//! Reads HAND_ID first and, where it matches, registers that identify the series; never writes, and accesses only
+//! places that were named or listed.
 
 mod board;
 mod event;

@@ -1,5 +1,5 @@
-//! What a scan tries and in which order, and how long that takes: likely and cheap things first. Asks nobody, and
-//! knows no clock.
+//! Plan of a scan: its probes, their order, and the time they take; likely and cheap ones first. Sends nothing, and has
+//! no clock.
 
 use crate::hand::{HandId, SerialSpeed};
 use crate::link::scan::hosts::Hosts;
@@ -10,26 +10,26 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::time::Duration;
 
-/// CAN bit rates that a hand can have (manual 2.6.2), as delivered first.
+/// CAN bit rates that a hand can have (manual 2.6.2), the default first.
 pub const BITRATES: [u32; 2] = [DEFAULT_BITRATE, 500_000];
-/// Units asked at a TCP address: the manual's, and the one that other servers begin with.
+/// Units probed at a TCP address: the manual's, and the default of other servers.
 pub const UNITS: [u8; 2] = [DEFAULT_UNIT, 1];
-/// A hand answers within 15 ms, behind a USB adapter twice 16 ms later; this leaves room.
+/// Wait for a reply: a hand answers within 15 ms, behind a USB adapter twice 16 ms later; this leaves room.
 pub const REPLY_WAIT: Duration = Duration::from_millis(60);
-/// A reply through a network that the user named, which may be a slow one.
+/// Wait for a reply from a network host, whose network may be slow.
 const TCP_REPLY_WAIT: Duration = Duration::from_millis(500);
-/// Time in which a serial CAN adapter is put on the bus.
+/// Time to open a serial CAN adapter.
 const ADAPTER_TIME: Duration = Duration::from_millis(30);
 /// Bytes of the read of one register byte and of its reply, in the longer of the two framings (manual 2.2, 2.4).
 const EXCHANGE_BYTES: u64 = 18;
 /// Bits of a byte on the line: start, eight, stop.
 const BITS: u64 = 10;
-/// Ports looked through at one time. Each is a wire of its own; more would only load the USB bus.
+/// Ports scanned concurrently. Each is a wire of its own; more would only load the USB bus.
 pub const PORTS_AT_ONCE: usize = 8;
-/// Addresses asked at one time: well below the sockets that a process may have.
+/// Addresses probed concurrently: well below the sockets that a process may have.
 pub const HOSTS_AT_ONCE: usize = 64;
 
-/// What is asked behind a serial port.
+/// Protocol to probe behind a serial port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Speaks {
     /// A hand, in the private framing and in Modbus RTU.
@@ -38,22 +38,22 @@ pub enum Speaks {
     CanAdapter,
     /// The maker's own CAN adapter.
     MakersAdapter,
-    /// Either: the adapter is tried first.
+    /// Both: the adapter is tried first.
     Either,
 }
 
-/// One serial port to look at.
+/// One serial port to scan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScanPort {
     /// Path of the port, or its name on Windows.
     pub port: String,
-    /// What is plugged in there, if it is on USB.
+    /// The USB device there, if it is one.
     pub usb: Option<UsbFound>,
     /// Protocols to try there.
     pub speaks: Speaks,
 }
 
-/// Where to look.
+/// Places to scan.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ScanTargets {
     /// Serial ports.
@@ -64,7 +64,7 @@ pub struct ScanTargets {
     pub hosts: Vec<Hosts>,
 }
 
-/// The kind of a place, which says how many are looked at together.
+/// The kind of a place, which limits how many are scanned concurrently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum LaneKind {
     Port,
@@ -72,28 +72,28 @@ pub(crate) enum LaneKind {
     Host,
 }
 
-/// One question, and how long its answer is waited for.
+/// One probe, and the wait for its reply.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Try {
     pub(crate) endpoint: Endpoint,
     pub(crate) limit: Duration,
-    /// Time that it takes if nobody answers.
+    /// Time that it takes without a reply.
     pub(crate) cost: Duration,
 }
 
-/// All that is tried at one place, one after the other.
+/// All probes at one place, in sequence.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Lane {
     pub(crate) kind: LaneKind,
-    /// As the user knows it.
+    /// Name for the user.
     pub(crate) place: String,
     pub(crate) usb: Option<UsbFound>,
-    /// One of a range: that nobody is there is not worth a word.
+    /// One address of a range: a missing device there is not reported.
     pub(crate) is_one_of_many: bool,
     pub(crate) tries: Vec<Try>,
 }
 
-/// Everything that a scan does if nobody answers.
+/// All probes of a scan that gets no reply.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ScanPlan {
     pub(crate) lanes: Vec<Lane>,
@@ -102,8 +102,8 @@ pub struct ScanPlan {
 }
 
 impl ScanPlan {
-    /// Plans for these places and ids. `held` are the hands that are connected now: the port of each is left alone, its CAN interface
-    /// too, where its link would take our questions for those of another controller.
+    /// Plans a scan of these places and ids. `held` are the connected hands: the port of each is skipped, and so is its
+    /// CAN interface, because its link would mistake our requests for those of another controller.
     pub fn new(places: &ScanTargets, ids: &[HandId], held: &[Endpoint]) -> Self {
         let mut plan = Self::default();
         for wish in &places.ports {
@@ -124,7 +124,7 @@ impl ScanPlan {
         if self.held.contains(&lane.place) {
             return;
         }
-        // A place that is named twice is looked at once, for all that is asked of it.
+        // A place that is named twice is scanned once, with all its probes.
         if let Some(known) = self
             .lanes
             .iter_mut()
@@ -145,30 +145,30 @@ impl ScanPlan {
         }
     }
 
-    /// How many questions there are at most.
+    /// Maximum number of probes.
     pub fn tries(&self) -> usize {
         self.lanes.iter().map(|lane| lane.tries.len()).sum()
     }
 
-    /// How many places are looked at.
+    /// Number of places to scan.
     pub const fn places(&self) -> usize {
         self.lanes.len()
     }
 
-    /// Time that it takes if nobody answers.
+    /// Time that the scan takes without a reply.
     pub fn estimate(&self) -> Duration {
         estimate(self.lanes.iter().map(|lane| (lane.kind, lane.cost())))
     }
 }
 
 impl Lane {
-    /// Time that it takes if nobody answers.
+    /// Time that the lane takes without a reply.
     pub(crate) fn cost(&self) -> Duration {
         self.tries.iter().map(|one| one.cost).sum()
     }
 }
 
-/// How long lanes of such lengths take, those of one kind beside each other as far as that is allowed.
+/// Total time of lanes with these costs, those of one kind in parallel up to their limit.
 pub(crate) fn estimate(lanes: impl Iterator<Item = (LaneKind, Duration)>) -> Duration {
     let (mut ports, mut hosts) = (Vec::new(), Vec::new());
     for (kind, cost) in lanes {
@@ -180,7 +180,7 @@ pub(crate) fn estimate(lanes: impl Iterator<Item = (LaneKind, Duration)>) -> Dur
     beside(&ports, PORTS_AT_ONCE).max(beside(&hosts, HOSTS_AT_ONCE))
 }
 
-/// Each is begun as soon as one of those under way is done.
+/// Total time if each starts as soon as a running one is done.
 fn beside(costs: &[Duration], at_once: usize) -> Duration {
     let mut free_at = BinaryHeap::from(vec![Reverse(Duration::ZERO); at_once]);
     let mut end = Duration::ZERO;
@@ -192,7 +192,7 @@ fn beside(costs: &[Duration], at_once: usize) -> Duration {
     end
 }
 
-/// True if both are asked over the same line in the same way, so that a hand that answers to one speaks for the other.
+/// True if both use the same line and protocol, so that a hand that answers one shows that the other has the right settings.
 pub(crate) fn same_line(one: &Endpoint, other: &Endpoint) -> bool {
     let line = |endpoint: &Endpoint| {
         let mut line = endpoint.clone();
@@ -210,7 +210,7 @@ pub(crate) fn same_line(one: &Endpoint, other: &Endpoint) -> bool {
     line(one).is_some_and(|one| line(other) == Some(one))
 }
 
-/// The ids that are asked first on every line, and all others: most hands have the id they were delivered with.
+/// The id that is probed first on every line, and all others: most hands have the default id.
 fn first_and_rest(ids: &[HandId]) -> [&[HandId]; 2] {
     let (first, rest) = ids.split_at(ids.len().min(1));
     [first, rest]
@@ -236,7 +236,7 @@ fn port_lane(wish: &ScanPort, ids: &[HandId]) -> Lane {
     }
     if matches!(wish.speaks, Speaks::Hand | Speaks::Either) {
         for ids in first_and_rest(ids) {
-            // By code, which is also the order of likelihood: as delivered first.
+            // By code, which is also the order of likelihood: the default first.
             for speed in SerialSpeed::ALL {
                 for kind in [Endpoint::Rs485, Endpoint::Rtu] {
                     tries.extend(
@@ -283,7 +283,7 @@ fn host_lane(host: &str, hosts: &Hosts, ids: &[HandId]) -> Lane {
                 unit,
             },
             limit: TCP_REPLY_WAIT,
-            // A host that does not take the call costs the time to call, and is not called again.
+            // A host that does not accept the connection costs the connection time, and is not tried again.
             cost: CONNECT_DEADLINE / 2,
         })
         .into();
@@ -325,7 +325,7 @@ fn line_try(kind: fn(SerialLine) -> Endpoint, port: &str, baud: u32, id: HandId)
     }
 }
 
-/// On a bus that needs nothing but the question.
+/// A probe on a bus that needs no setup.
 const fn bus_try(endpoint: Endpoint) -> Try {
     Try {
         endpoint,
@@ -452,7 +452,7 @@ mod tests {
             let whole = waits * 2 * u32::try_from(count).unwrap();
             let plan = ScanPlan::new(&ports(1), &ids(count), &[]);
             assert_eq!(plan.estimate(), whole, "{count} ids");
-            // Ports are looked at beside each other, eight at a time.
+            // Ports are scanned in parallel, eight at a time.
             let eight = ScanPlan::new(&ports(PORTS_AT_ONCE), &ids(count), &[]);
             assert_eq!(eight.estimate(), whole);
             let nine = ScanPlan::new(&ports(PORTS_AT_ONCE + 1), &ids(count), &[]);
@@ -462,7 +462,7 @@ mod tests {
 
     #[test]
     fn addresses_take_one_call_each_sixty_four_at_a_time() {
-        // One that is named alone is asked for Modbus RTU too.
+        // A single address is also probed for Modbus RTU.
         let alone = ScanPlan::new(&hosts("127.0.0.1"), &ids(10), &[]);
         assert_eq!(alone.estimate(), CONNECT_DEADLINE + TCP_REPLY_WAIT * 10);
         for (range, calls) in [

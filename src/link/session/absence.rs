@@ -1,31 +1,31 @@
-//! Exceptions in place of answers: how long a gateway may speak for a hand before the hand counts as gone. Pure.
+//! Exceptions instead of replies: time for which a gateway may answer for a hand before the hand counts as gone. Pure.
 
 use crate::hand::{ModbusException, Moment, Presence, Refusal};
 use std::time::Duration;
 
-/// A gateway that says so for this long is believed: as long as silence takes to show.
+/// A gateway that reports the hand absent for this long is believed; silence takes as long to detect.
 const ABSENT_MAX: Duration = Duration::from_millis(288);
-/// A device may be busy for this long; with the time before the first reply, the loss shows within a second.
+/// Time for which a device may report busy; with the time before the first reply, the loss shows within a second.
 const BUSY_MAX: Duration = Duration::from_millis(800);
-/// One exception alone may be a frame that was lost behind the gateway.
+/// Minimum count: a single exception may be a frame that was lost behind the gateway.
 const REFUSED_LEAST: u32 = 2;
-/// The next request waits this long: nobody answers it, and a gateway is not to be flooded.
+/// Pause before the next request, so as not to flood a gateway that has no hand behind it.
 pub(crate) const REFUSED_PAUSE: Duration = Duration::from_millis(20);
 
-/// What came of a refused request.
+/// Verdict on a refused request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Refused {
-    /// By the hand: it is there.
+    /// Refused by the hand, which is therefore present.
     ByHand,
-    /// By our own rules: nothing was sent.
+    /// Refused by this program's own rules; nothing was sent.
     Unsent,
-    /// Not by the hand, and it may still answer.
+    /// Not refused by the hand, which may still answer.
     Unsure,
-    /// The hand counts as gone; the last reply says why.
+    /// The hand counts as gone; carries the last exception.
     Gone(ModbusException),
 }
 
-/// Exceptions in a row without an answer of the hand.
+/// Consecutive exceptions without an answer of the hand.
 #[derive(Debug, Default)]
 pub(crate) struct Absence {
     since: Option<Moment>,
@@ -34,17 +34,17 @@ pub(crate) struct Absence {
 }
 
 impl Absence {
-    /// The hand answered.
+    /// Resets the count: the hand answered.
     pub(crate) fn answered(&mut self) {
         *self = Self::default();
     }
 
-    /// The last exception since the hand answered, of those that are not its own.
+    /// The last exception since the hand answered that did not come from the hand itself.
     pub(crate) const fn last(&self) -> Option<ModbusException> {
         self.last
     }
 
-    /// A request was refused.
+    /// Records a refusal and judges it.
     pub(crate) fn refused(&mut self, reason: Refusal, now: Moment) -> Refused {
         let Refusal::Exception(exception) = reason else {
             return Refused::Unsent;

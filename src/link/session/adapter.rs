@@ -1,17 +1,17 @@
-//! Remembers the adapter of a hand, so that it is found again under another port name. Decides where to dial; opens nothing.
+//! Remembers the adapter of a hand, to find it again under another port name. Chooses the port to dial; opens nothing.
 
 use crate::transport::{
     Adapter, Dial, Endpoint, PortFound, TransportError, Whereabouts, is_same_port,
 };
 
-/// The adapter of a link that has answered once.
+/// The adapter of a link; known once the hand has answered.
 #[derive(Debug, Default)]
 pub(crate) struct KnownAdapter {
     adapter: Option<Adapter>,
 }
 
 impl KnownAdapter {
-    /// Notes the adapter through which the hand answered just now, and gives what is known of its port.
+    /// Notes the adapter through which the hand just answered, and returns what the system reports about its port.
     pub(crate) async fn remember(
         &mut self,
         dial: &dyn Dial,
@@ -25,8 +25,8 @@ impl KnownAdapter {
             .find(|found| is_same_port(port, &found.path))
     }
 
-    /// Where to dial now: as asked, or through the port at which the adapter is. A port of this name that is another
-    /// adapter now is not opened unasked.
+    /// Endpoint to dial now: the requested one, or the port where the adapter is now. If another adapter has taken over
+    /// the port name, the port is not opened.
     pub(crate) async fn endpoint(
         &self,
         dial: &dyn Dial,
@@ -44,7 +44,7 @@ impl KnownAdapter {
                 let mut taken = ports.iter().filter(|found| is_same_port(port, &found.path));
                 match taken.next() {
                     Some(taken) => vec![taken.path.clone()],
-                    // Not listed: opening says in its own words what is wrong.
+                    // Not listed: the error from opening it is the more precise one.
                     None => return Ok(asked.clone()),
                 }
             }

@@ -1,5 +1,5 @@
-//! The task that owns one wire: dials, identifies, serves, and comes back after a loss. It decides what goes
-//! on the wire next: stop, then hold, setpoints, requests, reads. Nothing that was asked survives a lost link.
+//! The task that owns one wire: dials, identifies, serves, and reconnects after a loss. It decides what is sent next:
+//! stop, then hold, setpoints, requests, reads. No request survives a lost link.
 
 use crate::hand::{HandSample, ModbusException, Moment, Refusal};
 use crate::link::bus::late_replies::{LateReplies, REPLY_LIMIT_MIN};
@@ -36,28 +36,28 @@ use std::time::Duration;
 use tokio::sync::watch;
 use tokio::time::{sleep_until, timeout};
 
-/// First wait before another try; some hands need 300 ms between close and connect.
+/// Delay before the first retry; some hands need 300 ms between close and connect.
 const RETRY_FIRST: Duration = Duration::from_millis(300);
-/// Longest wait: a hand that is back is seen again within two seconds.
+/// Longest retry delay: a hand that is back is detected within two seconds.
 const RETRY_LONGEST: Duration = Duration::from_secs(1);
-/// Requests in a row without reply after which the link counts as lost …
+/// Consecutive requests without a reply after which the link counts as lost …
 pub(crate) const SILENT_MAX: u32 = 4;
-/// … or fewer, but never one alone, where not even the shortest wait for one more would fit into this: with the time
-/// before the first of them, silence shows within 300 ms. A wire so slow that two requests take longer is given those two.
+/// … or fewer, but never one alone, if not even the minimum wait for one more would fit into this: with the time before
+/// the first of them, silence shows within 300 ms. A wire so slow that two requests take longer is allowed those two.
 const SILENCE_MAX: Duration = Duration::from_millis(288);
 const SILENT_LEAST: u32 = 2;
-/// Longest wait for a reply: part of the time in which a stop gets through, and half of that in which silence shows. Longer
-/// only where replies are known to be late, and a stop does not wait for them.
+/// Longest wait for a reply: part of the time in which a stop gets through, and half of the time in which silence
+/// shows. Longer only where replies are known to be late, and a stop does not wait for them.
 const REPLY_LIMIT_MAX: Duration = Duration::from_millis(120);
-/// How serving a wire ended.
+/// Reason why serving a wire ended.
 pub(crate) enum WireEnd {
-    /// The handle is gone.
+    /// The last handle was dropped.
     Closed,
     /// The link was lost.
     Lost(LinkTrouble),
 }
 
-/// One conversation with one hand.
+/// The session with one hand.
 pub(crate) struct Session {
     pub(crate) config: LinkConfig,
     pub(crate) ends: Ends,
@@ -66,42 +66,42 @@ pub(crate) struct Session {
     pub(crate) sample: HandSample,
     pub(crate) plan: PollPlan,
     pub(crate) motion: Motion,
-    /// What outlives a lost link, and nothing else does.
+    /// The only state that survives a lost link.
     pub(crate) pending_stop: Option<PendingStop>,
     pub(crate) moving: RestWatch,
     pub(crate) feedback: FeedbackWatch,
     pub(crate) heat: HeatWatch,
     pub(crate) job: Option<SessionJob>,
-    /// The line is left to a hand that saves or calibrates.
+    /// The line is reserved for a hand that saves or calibrates.
     pub(crate) leaves_line: bool,
-    /// Answers what a lost link broke off.
+    /// Answers the request that a lost link interrupted.
     pub(crate) broken_off: Option<Box<dyn FnOnce() + Send + Sync>>,
     pub(crate) saving: SaveWatch,
     pub(crate) sleep: SleepWatch,
     pub(crate) stalls: StallMeter,
     silent: u32,
-    /// When the first of the unanswered requests in a row was asked.
+    /// Time of the first of the consecutive unanswered requests.
     silent_since: Option<Moment>,
-    /// Exceptions of a gateway in place of the hand's answers.
+    /// Exceptions of a gateway instead of the hand's replies.
     pub(crate) absence: Absence,
     /// Replies on this wire carry the number of their request.
     has_numbers: bool,
-    /// How late replies are, over all wires to this hand.
+    /// Reply delays, over all wires to this hand.
     pub(crate) slowness: Slowness,
     adapter: KnownAdapter,
     pub(crate) ticks: Ticks,
-    /// The endpoint as it was dialled last: through the port at which the adapter is.
+    /// The endpoint that was dialled last: through the port where the adapter was found.
     pub(crate) dialled: Endpoint,
     late: LateReplies,
     pub(crate) others: OtherController,
-    /// What was read to know whether this is a hand of the series.
+    /// Evidence read to decide whether this is a hand of the series.
     pub(crate) evidence: SeriesEvidence,
-    /// When it is asked for more.
+    /// Time of the next read for more evidence.
     pub(crate) evidence_due: Moment,
-    /// The last step asked for evidence: the next one does not.
+    /// The last step read evidence, so the next one does not.
     pub(crate) asked_evidence: bool,
     closed_wires: BusCounts,
-    /// What holds the hand if this program ends.
+    /// Holds the hand if this program ends.
     pub(crate) guard: Arc<MotionGuard>,
 }
 
@@ -170,7 +170,7 @@ impl Session {
         self.config.clock.now()
     }
 
-    /// One wire, from dialling to its end; and whether the hand answered on it.
+    /// Serves one wire, from dialling to its end; also returns whether the hand answered on it.
     async fn conversation(&mut self, attempt: u32) -> (WireEnd, bool) {
         self.status.dialling = Dialling::Trying { attempt };
         self.publish();
@@ -208,7 +208,7 @@ impl Session {
         (end, answered)
     }
 
-    /// Opens the wire where the adapter is now, and says where that is.
+    /// Opens the wire at the port where the adapter is now, and returns the endpoint used.
     async fn dial(&self) -> Result<(Endpoint, BoxedWire), TransportError> {
         let dial = self.config.dial.as_ref();
         let endpoint = self.adapter.endpoint(dial, &self.config.endpoint).await?;
@@ -216,7 +216,7 @@ impl Session {
         Ok((endpoint, wire))
     }
 
-    /// A hand that never answered, with what was heard instead.
+    /// Refines the trouble of a hand that never answered by what was received instead.
     fn explained(&self, end: WireEnd, bus: &dyn Bus) -> WireEnd {
         let WireEnd::Lost(LinkTrouble::NoAnswer { id }) = end else {
             return end;
@@ -226,7 +226,7 @@ impl Session {
         let is_noisy = heard.checksum_errors + heard.resyncs + heard.foreign_replies > 0;
         WireEnd::Lost(match self.dialled {
             Endpoint::Tcp { .. } => LinkTrouble::Mute { place, unit: id },
-            // It has neither port nor speed that could be wrong.
+            // The simulated hand has no port or speed that could be wrong.
             Endpoint::Sim { .. } => LinkTrouble::NoAnswer { id },
             _ if bus.own_frames() > 0 => LinkTrouble::OnlyEcho { place },
             _ if is_noisy => LinkTrouble::Garbled { place, id },
@@ -234,7 +234,7 @@ impl Session {
         })
     }
 
-    /// Notes through which adapter the hand answered.
+    /// Records the adapter through which the hand answered.
     async fn note_port(&mut self) {
         let (asked, at) = (&self.config.endpoint, &self.dialled);
         let found = self.adapter.remember(self.config.dial.as_ref(), at).await;
@@ -242,8 +242,8 @@ impl Session {
         self.status.moved_to = at.port().filter(|_| at != asked).map(str::to_owned);
     }
 
-    /// A fresh conversation: nothing of an earlier one is wanted or waiting. A stop that came while there was no live link is kept,
-    /// and for it what is known of joints whose feedback froze; nothing else is.
+    /// Starts a fresh session: earlier requests are dropped. Only a stop that was requested while there was no live
+    /// link is kept, with what is known for it of joints whose feedback froze.
     fn begin(&mut self, bus: &dyn Bus) {
         self.keep_pressed_stop();
         self.forget_wishes();
@@ -278,7 +278,7 @@ impl Session {
         }
     }
 
-    /// The link is gone: nothing stays armed, nothing stays queued but a stop that feedback did not confirm.
+    /// Handles a lost link: disarms, and drops everything queued but a stop that feedback did not confirm.
     fn lost(&mut self, trouble: LinkTrouble) {
         self.disarm(Disarmed::LinkLost);
         self.keep_pressed_stop();
@@ -307,7 +307,7 @@ impl Session {
         self.ends.stats.send_replace(self.counters.stats);
     }
 
-    /// Empties the slot of wishes, but not the wish to close and how often to read.
+    /// Clears the pending control requests, except for closing and the poll rates.
     pub(crate) fn forget_wishes(&self) {
         self.ends.wanted.send_if_modified(|wanted| {
             *wanted = wanted.lasting();
@@ -315,13 +315,13 @@ impl Session {
         });
     }
 
-    /// Waits before the next try; true if the handle is gone meanwhile.
+    /// Waits before the next attempt; true if the handle was dropped meanwhile.
     async fn wait_for_retry(&mut self, attempt: u32) -> bool {
         let begun = self.now();
         let doublings = attempt.saturating_sub(1).min(8);
         let usual = (RETRY_FIRST * 2u32.pow(doublings)).min(RETRY_LONGEST);
         loop {
-            // A stop waits for nothing but the pause that the hand needs.
+            // A stop waits only for the pause that the hand needs.
             let asked = self.config.dial.retry_delay(attempt);
             let wait = match self.has_pending_stop() {
                 true => asked.unwrap_or(RETRY_FIRST),
@@ -344,13 +344,13 @@ impl Session {
         }
     }
 
-    /// How long a reply of so many bytes may take on this link.
+    /// Longest wait for a reply of this many bytes on this link.
     pub(crate) fn reply_limit(&self, bus: &dyn Bus, bytes: u16) -> Duration {
         let usual = self.counters.stats.rtt_p99.unwrap_or_default() * 2;
         let on_wire = bus.wire_time(bytes);
         let least = self.slowness.least_wait();
         let limit = on_wire + usual.clamp(REPLY_LIMIT_MIN, REPLY_LIMIT_MAX).max(least);
-        // In a silence the requests share what is left of its time.
+        // During a silence the requests share the time that is left.
         let Some(since) = self.silent_since else {
             return limit;
         };
@@ -358,7 +358,7 @@ impl Session {
         limit.min(left.max(on_wire + least))
     }
 
-    /// A request was answered after `took`.
+    /// Records that a request was answered after `took`.
     pub(crate) fn answered(&mut self, took: Duration) {
         self.heard();
         self.counters.round_trip(took);
@@ -368,13 +368,13 @@ impl Session {
         }
     }
 
-    /// Learns from replies that came after their requests were given up.
+    /// Learns from replies that came after their requests timed out.
     pub(crate) fn learn_late(&mut self, bus: &mut dyn Bus) {
         let Some(late) = bus.take_late() else {
             return;
         };
         if let Some(exception) = late.exception {
-            // It says why nothing comes; that nothing does is counted already.
+            // It explains why nothing comes; the missing reply is counted already.
             let _counted = self.absence.refused(exception.into(), self.now());
             return;
         }
@@ -386,7 +386,7 @@ impl Session {
     fn show_slowness(&mut self) {
         let slowest = self.slowness.slowest();
         let slow_ms = slowest.and_then(|took| u16::try_from(took.as_millis()).ok());
-        // A millisecond more or less is no news.
+        // A change of a millisecond is not worth publishing.
         let is_news = match (self.status.slow_ms, slow_ms) {
             (Some(shown), Some(now)) => shown.abs_diff(now) > shown / 8,
             (shown, now) => shown != now,
@@ -397,7 +397,7 @@ impl Session {
         }
     }
 
-    /// A request failed. Only a lost wire, or too many failures in a row, end the conversation.
+    /// Handles a failed request. Only a lost wire or too many consecutive failures end the session.
     pub(crate) async fn failed(
         &mut self,
         bus: &mut dyn Bus,
@@ -409,7 +409,7 @@ impl Session {
             BusError::Refused { reason } => return self.refused(*reason).await,
             BusError::WrongLength { .. } | BusError::TooLong => self.counters.stats.refusals += 1,
             BusError::Timeout { .. } => self.counters.stats.timeouts += 1,
-            // Nothing was asked.
+            // Nothing was sent.
             BusError::Ambiguous => return Ok(()),
         }
         if self.unheard(error) {
@@ -436,7 +436,7 @@ impl Session {
         settled
     }
 
-    /// A request was refused. Only the hand's own refusals are answers of the hand.
+    /// Handles a refused request. Only the hand's own refusals count as answers of the hand.
     async fn refused(&mut self, reason: Refusal) -> Result<(), WireEnd> {
         self.counters.stats.refusals += 1;
         match self.absence.refused(reason, self.now()) {
@@ -451,26 +451,26 @@ impl Session {
         Ok(())
     }
 
-    /// The trouble of a gateway that answers for a hand that does not.
+    /// The trouble to report if a gateway answers for a hand that does not.
     pub(crate) fn gateway_alone(&self, exception: ModbusException) -> LinkTrouble {
         let place = self.dialled.place();
         LinkTrouble::Gateway { place, exception }
     }
 
-    /// Waits, but lets a stop through at once.
+    /// Waits, unless a stop is requested.
     pub(crate) async fn pause_unless_stopped(&self, length: Duration) {
         let stop = stopped(Arc::clone(&self.ends.wanted));
         let _either = timeout(length, stop).await;
     }
 
-    /// The hand answered.
+    /// Resets the silence: the hand answered.
     pub(crate) fn heard(&mut self) {
         self.silent = 0;
         self.silent_since = None;
         self.absence.answered();
     }
 
-    /// A request got no usable reply; true if the hand now counts as gone.
+    /// Counts a request without a usable reply; true if the hand now counts as lost.
     fn unheard(&mut self, error: &BusError) -> bool {
         let now = self.now();
         let waited = match error {
@@ -478,25 +478,25 @@ impl Session {
             _ => Duration::ZERO,
         };
         let asked = Moment::from_duration(now.since(Moment::ZERO).saturating_sub(waited));
-        // A reply that nobody was there to read was not missing.
+        // A reply that arrived while this program stalled was not missing.
         let stalled = self.stalls.since(asked);
         if stalled.is_zero() || stalled * 2 < waited {
             self.silent += 1;
         }
         let since = *self.silent_since.get_or_insert(asked);
         let one_more = self.silent_for(since) + self.slowness.least_wait();
-        // Over a connection nothing is lost: there a reply is late, and tells how late it is.
+        // A TCP connection loses nothing: a reply is late there, and shows how late.
         let are_many = self.silent >= SILENT_MAX && !self.has_numbers;
         are_many || self.silent >= SILENT_LEAST && one_more > SILENCE_MAX
     }
 
-    /// How long the hand is silent since then: what this program stalled is not counted as the hand's silence.
+    /// Time for which the hand has been silent since `since`, without this program's own stalls.
     fn silent_for(&self, since: Moment) -> Duration {
         let passed = self.now().since(since);
         passed.saturating_sub(self.stalls.since(since))
     }
 
-    /// This program attended to the wire so much too late.
+    /// Records that this program serviced the wire this much too late.
     pub(crate) fn stalled(&mut self, late: Duration) {
         let now = self.now();
         let Some(stall) = self.stalls.late(late, now) else {
@@ -510,7 +510,7 @@ impl Session {
         self.publish();
     }
 
-    /// A silence is not the hand's alone if this program stalled in it.
+    /// The trouble to report for a silence: not the hand's alone if this program stalled during it.
     fn silence(&self) -> LinkTrouble {
         let silent = self.silent;
         let stalled = self
@@ -525,7 +525,7 @@ impl Session {
         }
     }
 
-    /// Goes to a state and tells the window.
+    /// Changes the state and publishes it.
     pub(crate) fn go(&mut self, state: LinkState) {
         let now = self.now();
         if self.status.state != state {
@@ -550,14 +550,14 @@ impl Session {
         }
     }
 
-    /// Tells the readers, if there are any.
+    /// Broadcasts a record.
     pub(crate) fn tell(&self, record: Record) {
-        // Without readers nobody misses it.
+        // An error means that there are no readers.
         let _readers = self.ends.records.send(record);
         (self.config.wake)();
     }
 
-    /// Brings the statistics up to date.
+    /// Updates and publishes the statistics.
     pub(crate) fn count(&mut self, bus: &dyn Bus) {
         let all = self.closed_wires.plus(bus.counts());
         self.counters.stats.checksum_errors = all.checksum_errors;
@@ -576,7 +576,8 @@ impl Session {
 }
 
 impl Drop for Session {
-    /// A link that ends in good order ends with a hand that nobody moves, or that the user was told of.
+    /// Reports the hand at rest if it is disarmed and its last stop, if any, was confirmed or alarmed: the user knows
+    /// its state.
     fn drop(&mut self) {
         let is_held = self.motion.hold.is_none_or(|hold| hold.alarmed);
         if self.status.armed.is_none() && is_held {
@@ -585,7 +586,7 @@ impl Drop for Session {
     }
 }
 
-/// Of all failures only a lost wire ends the conversation.
+/// Ignores every failure but a lost wire, which ends the session.
 pub(crate) fn unless_lost(done: Result<(), BusError>) -> Result<(), WireEnd> {
     match done {
         Err(BusError::Lost(error)) => Err(WireEnd::Lost(error.into())),
@@ -593,13 +594,13 @@ pub(crate) fn unless_lost(done: Result<(), BusError>) -> Result<(), WireEnd> {
     }
 }
 
-/// Resolves when the handle is gone.
+/// Resolves when the handle is dropped.
 pub(crate) async fn closed(wanted: Arc<watch::Sender<PendingControl>>) {
     let mut wanted = wanted.subscribe();
     let _gone = wanted.wait_for(|wanted| wanted.closed).await;
 }
 
-/// Resolves when a stop is wanted, or the handle is gone.
+/// Resolves when a stop is requested or the handle is dropped.
 pub(crate) async fn stopped(wanted: Arc<watch::Sender<PendingControl>>) {
     let mut wanted = wanted.subscribe();
     let _asked = wanted.wait_for(|wanted| wanted.stop || wanted.closed).await;

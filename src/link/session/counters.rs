@@ -1,4 +1,4 @@
-//! Counting for [`LinkStats`]: rates over the last second and percentiles over the last round trips.
+//! Counters for [`LinkStats`]: rates over the last second and percentiles over the last round trips.
 
 use crate::hand::{Finger, Group, Groups, HandSample, Moment};
 use crate::link::poll::meter::LineMeter;
@@ -7,9 +7,9 @@ use crate::link::stats::{LineUse, LinkStats};
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Round trips that the percentiles look back on.
+/// Number of round trips that the percentiles cover.
 const ROUND_TRIPS: usize = 512;
-/// Percentiles are worked out this often.
+/// Interval at which percentiles are recomputed.
 const DIGEST_INTERVAL: Duration = Duration::from_millis(250);
 
 /// Counts one link.
@@ -32,7 +32,7 @@ impl Counters {
         self.round_trips.push_back(took);
     }
 
-    /// A reply with these groups of a sample arrived.
+    /// Counts a reply with these groups of a sample, and whether it is plausible.
     pub(crate) fn judge(&mut self, sample: &HandSample, fresh: Groups) {
         if fresh.is_empty() {
             return;
@@ -41,7 +41,7 @@ impl Counters {
         self.stats.implausible += u64::from(sample.is_implausible(fresh));
     }
 
-    /// New values of these groups arrived.
+    /// Counts new values of these groups.
     pub(crate) fn fresh(&mut self, fresh: Groups, now: Moment) {
         if fresh.contains(Group::Angle) {
             self.stats.state_reads += 1;
@@ -53,7 +53,7 @@ impl Counters {
         }
     }
 
-    /// Brings rates and percentiles up to date, not more often than needed.
+    /// Updates rates and percentiles, at most once per interval.
     pub(crate) fn digest(&mut self, now: Moment) {
         if now.since(self.digested) < DIGEST_INTERVAL && self.stats.rtt_p50.is_some() {
             return;
@@ -67,7 +67,7 @@ impl Counters {
         self.stats.rtt_p99 = percentile(&sorted, 99);
     }
 
-    /// A lost link has no rate and no round trip; its counts stay.
+    /// Resets rates and round trips after the link was lost; counts are preserved.
     pub(crate) fn lost(&mut self) {
         self.round_trips.clear();
         self.state = EventRate::default();
@@ -82,7 +82,7 @@ impl Counters {
     }
 }
 
-/// The fingertips read since all five were.
+/// The fingertips read since the last complete sweep of all five.
 #[derive(Debug, Default)]
 struct Sweep(Groups);
 

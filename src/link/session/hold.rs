@@ -3,61 +3,63 @@
 use crate::hand::{AngleReading, Dof, Group, Groups, HandSample, Moment, PerDof, Target};
 use std::time::Duration;
 
-/// Hold frames are at most this far apart until rest is seen.
+/// Longest interval between hold frames until rest is detected.
 pub(crate) const HOLD_REPEAT: Duration = Duration::from_millis(40);
-/// Hold follows the newest pose for this long after the press, then keeps the pose: a hand acts about 64 ms late, and
-/// a target that follows it for ever makes it swing for ever.
+/// The hold follows the newest pose for this long after the request, then freezes: a hand reacts about 64 ms late, and
+/// a target that follows it forever makes it oscillate forever.
 const HOLD_FOLLOWS: Duration = Duration::from_millis(120);
-/// Without rest by then, the alarm is raised.
+/// The alarm is raised if the hand does not rest within this time.
 pub(crate) const HOLD_ALARM_DELAY: Duration = Duration::from_millis(500);
-/// A joint rests if it moves no more than this many counts …
+/// A joint rests if it moves at most this many counts …
 const REST_COUNTS: i32 = 2;
 /// … over at least this time.
 const REST_OVER: Duration = Duration::from_millis(100);
-/// A hand that moved when it was stopped is not called at rest before this has passed since the first hold frame. Should feedback
-/// have frozen around the stop, the joints go on for the dead time and come back to where they were seen last: by then they are there.
+/// A hand that moved when it was stopped does not count as at rest before this has passed since the first hold frame.
+/// Should feedback have frozen around the stop, the joints move on for the dead time and return to where they were seen
+/// last; they have arrived by then.
 const MOVED_REST_DELAY: Duration = Duration::from_millis(250);
-/// A joint in doubt is told where it must be for this long, counted in acknowledged frames. If it obeys, it stands there by then; if
-/// it is deaf and its angle is true, any further frame would move it once it wakes.
+/// A doubted joint is commanded to its estimated position for this long, counted in acknowledged frames. If it obeys,
+/// it has arrived by then; if it is unresponsive and its angle is true, any further frame would move it once it
+/// recovers.
 const DOUBTED_HOLD: Duration = Duration::from_millis(250);
 
-/// One stop, from the press until feedback shows rest.
+/// One stop, from the request until feedback shows rest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HoldWatch {
     pub(crate) at: Moment,
     pub(crate) sent: u32,
     pub(crate) alarmed: bool,
-    /// When the frames began that go on now.
+    /// Time at which the current run of frames began.
     follows_from: Moment,
     pose: PerDof<Target>,
-    /// The pose was read; until then it is where the joints must be by what they were told.
+    /// The pose was read; until then it is estimated from the commands.
     is_read: bool,
-    /// The first frame that told a joint where to stay; one without a target holds nothing.
+    /// Time of the first frame with a target for any joint; a frame without targets holds nothing.
     first_held: Option<Moment>,
     last_sent: Option<Moment>,
     still_since: Option<(Moment, PerDof<AngleReading>)>,
-    /// No rest is believed before this has passed since the first frame.
+    /// Rest is not accepted before this has passed since the first frame.
     rest_after: Duration,
-    /// The pose was read, or tried to, since the last frame.
+    /// The pose was read since the last frame, or the attempt failed.
     looked: bool,
-    /// The first frame for joints in doubt that the hand acknowledged, and the newest.
+    /// The first and the newest acknowledged frame for doubted joints.
     doubted_acknowledged: Option<(Moment, Moment)>,
-    /// All that can be done was done: joints in doubt were told where to stay, and the others rest.
+    /// Frames have ceased: doubted joints were sent their hold targets, and the others rest.
     has_ceased: bool,
 }
 
-/// A stop without a link.
+/// A stop that is pending without a link.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PendingStop {
-    /// When it was asked for.
+    /// Time of the request.
     pub(crate) at: Moment,
-    /// A hand that answers until then is stopped first.
+    /// A hand that answers before this is stopped first.
     pub(crate) until: Moment,
 }
 
 impl HoldWatch {
-    /// A stop that is asked for now, of a hand that moves or does not as far as is known. `way_back`: how long its joints need from
-    /// where they must be by now to where they were seen last.
+    /// A stop requested now; `moved`: the hand is known to be moving. `way_back`: the time its joints need from their
+    /// estimated positions to where they were seen last.
     pub(crate) fn new(at: Moment, moved: bool, way_back: Duration) -> Self {
         let rest_after = match moved {
             true => way_back.max(MOVED_REST_DELAY),
@@ -80,7 +82,7 @@ impl HoldWatch {
         }
     }
 
-    /// A stop that was asked for at `at` over a link that was lost, of a hand that answers again now.
+    /// A stop that was requested at `at` over a link that was lost, of a hand that answers again now.
     pub(crate) fn resumed(at: Moment, now: Moment) -> Self {
         Self {
             follows_from: now,
@@ -89,7 +91,7 @@ impl HoldWatch {
         }
     }
 
-    /// The same stop, begun anew: it became known where a joint is.
+    /// Restarts the same stop after a joint's position became known.
     pub(crate) fn again(&self, now: Moment) -> Self {
         Self {
             sent: self.sent,
@@ -99,40 +101,40 @@ impl HoldWatch {
         }
     }
 
-    /// When the next hold frame is due; `None` once none is.
+    /// Time of the next hold frame; `None` once frames have ceased.
     pub(crate) fn next_frame(&self, now: Moment) -> Option<Moment> {
         let next = self.last_sent.map_or(now, |sent| sent.plus(HOLD_REPEAT));
         (!self.has_ceased).then_some(next)
     }
 
-    /// The hand acknowledged a frame while joints were in doubt.
+    /// Records that the hand acknowledged a frame while joints were doubted.
     pub(crate) fn doubted_acknowledged(&mut self, now: Moment) {
         let (_, newest) = self.doubted_acknowledged.get_or_insert((now, now));
         *newest = now;
     }
 
-    /// The joints that are trusted rest: nothing more is sent once the others were told for long enough where to stay.
+    /// Records that the trusted joints rest: frames cease once the doubted ones were commanded for long enough.
     pub(crate) fn trusted_rest(&mut self) {
         let told = self.doubted_acknowledged;
         self.has_ceased |= told.is_some_and(|(first, newest)| newest.since(first) >= DOUBTED_HOLD);
     }
 
-    /// True once nothing more is sent, though rest was not seen.
+    /// True once frames have ceased, though rest was not confirmed.
     pub(crate) const fn has_ceased(&self) -> bool {
         self.has_ceased
     }
 
-    /// True, once, for a hand that answers again or for the first time, if nothing is known that a frame could hold it to: the pose is
-    /// read first. A stop over a live link goes first whatever is known.
+    /// True, once, for a hand that answers again or for the first time, if no pose is known that a frame could hold it
+    /// at: the pose is then read first. A stop over a live link is sent first in any case.
     pub(crate) fn needs_pose(&mut self, newest: &PerDof<Target>) -> bool {
         let nothing = PerDof::splat(Target::Leave);
         let is_blind = self.pose == nothing && *newest == nothing;
         is_blind && !std::mem::replace(&mut self.looked, true)
     }
 
-    /// The targets of the hold frame that leaves at `now`, given where the joints are, and when that was asked for; `None` if it is
-    /// expected. A pose that was expected is replaced by the first that is read, however late. `way_back` as for [`Self::new`], by
-    /// now.
+    /// The targets of the hold frame that is sent at `now`. `newest` is the pose, and `read` the time it was requested;
+    /// `None` if the pose is estimated. An estimated pose is replaced by the first that is read, however late.
+    /// `way_back` as for [`Self::new`], at `now`.
     pub(crate) fn frame(
         &mut self,
         newest: &PerDof<Target>,
@@ -142,7 +144,7 @@ impl HoldWatch {
     ) -> PerDof<Target> {
         let is_first_read = read.is_some() && !self.is_read;
         let is_soon = is_first_read || now.since(self.follows_from) <= HOLD_FOLLOWS;
-        // An older pose is that of the first frame, or what it went by.
+        // An older pose is the one that the first frame used, or precedes it.
         let is_newer = |first: Moment| read.is_some_and(|asked| asked >= first);
         let follows = is_soon && self.first_held.is_none_or(is_newer);
         self.is_read |= read.is_some();
@@ -160,13 +162,13 @@ impl HoldWatch {
         self.pose
     }
 
-    /// True if the alarm is to be raised now.
+    /// True if the alarm must be raised now.
     pub(crate) fn alarm_due(&self, now: Moment) -> bool {
         !self.alarmed && now.since(self.follows_from) >= HOLD_ALARM_DELAY
     }
 
-    /// Applies a sample; true if it shows that all joints but those in doubt rest. Only angles that were asked for
-    /// after the first frame that holds count, and an angle that makes no sense is not at rest.
+    /// Applies a sample; true if it shows that all joints but the doubted ones rest. Only angles requested after the
+    /// first frame with a target count, and an implausible angle is not at rest.
     pub(crate) fn rests(
         &mut self,
         sample: &HandSample,
@@ -233,7 +235,7 @@ mod tests {
         )
     }
 
-    /// Feeds an angle each 10 ms and gives the time at which rest was seen.
+    /// Feeds an angle every 10 ms and returns the time at which rest was detected.
     fn rest_at(angle_at: impl Fn(u64) -> i16, sent: u64) -> Option<u64> {
         rest_of(HoldWatch::new(ms(0), false, Duration::ZERO), angle_at, sent)
     }
@@ -263,7 +265,7 @@ mod tests {
         assert!((250..=280).contains(&frozen), "{frozen}");
         let late = rest_of(moved(), |t| 500 - i16::try_from(t.min(300)).unwrap(), 0).unwrap();
         assert!((400..=430).contains(&late), "{late}");
-        // What it was seen at last is as far as 480 ms away.
+        // The joint needs up to 480 ms back to where it was seen last.
         for moved in [true, false] {
             let slow = HoldWatch::new(ms(0), moved, Duration::from_millis(480));
             let back = rest_of(slow, |_| 500, 0).unwrap();
@@ -289,7 +291,7 @@ mod tests {
 
     #[test]
     fn a_slow_creep_is_not_rest() {
-        // Three counts each 100 ms.
+        // Three counts per 100 ms.
         assert_eq!(
             rest_at(|t| 500 + i16::try_from(t * 3 / 100).unwrap(), 0),
             None

@@ -1,5 +1,5 @@
-//! Identifies a hand on a fresh wire, by reading only: is it there, and how does it differ from others. Bounded in time, and
-//! cut short by a stop; nothing is written.
+//! Identifies a hand on a fresh wire, by reading only: detects whether it is present and how it differs from others.
+//! Bounded in time, and cut short by a stop; nothing is written.
 
 use crate::codec::modbus::{detect_packing, words_per_group};
 use crate::hand::register::{ANGLE_ACT, BytePacking, HAND_ID, REDU_RATIO, TEMP, TOUCH};
@@ -16,16 +16,16 @@ use std::time::Duration;
 
 /// Attempts to get a first answer on a fresh wire.
 const TRIES: u32 = 3;
-/// After the first answer, no further request starts later than this: a reconnect must not wait.
+/// No further request starts later than this after the first answer: a reconnect must not wait.
 const WITHIN: Duration = Duration::from_millis(400);
-/// Whether it is a hand of the series is asked again after this, where it is not clear.
+/// Delay between two series of reads while it is unclear whether this is a hand of the series.
 const EVIDENCE_INTERVAL: Duration = Duration::from_millis(500);
-/// On a slow way there is time for this many, one after the other.
+/// Number of consecutive reads that a slow link is given time for.
 const QUESTIONS: u32 = 8;
-/// A question without an answer is asked once more: one lost reply must not look like a quirk.
+/// Attempts per read: one lost reply must not look like a quirk.
 const ASKED: u32 = 2;
 
-/// Ways to ask for the id and for the speed's code, each of another length.
+/// Read shapes for the id and for the baud rate code, each of another length.
 const ID_SHAPES: [Span; 3] = [
     HAND_ID.span(),
     Span::new(HAND_ID.address, 3),
@@ -36,15 +36,15 @@ const BAUD_SHAPES: [Span; 3] = [
     Span::new(REDU_RATIO.address, 3),
     Span::new(REDU_RATIO.address, 5),
 ];
-/// From ANGLE_ACT across the unused addresses into FORCE_ACT. It begins at a group's base: what an address inside a group
-/// means over Modbus is open.
+/// From ANGLE_ACT across the unused addresses into FORCE_ACT. It begins at a group's base, because the meaning of an
+/// address inside a group is undefined over Modbus.
 const GAP_SHAPES: [Span; 4] = [
     Span::new(ANGLE_ACT.address, 38),
     Span::new(ANGLE_ACT.address, 40),
     Span::new(ANGLE_ACT.address, 42),
     Span::new(ANGLE_ACT.address, 44),
 ];
-/// One fingertip and a little more, so that no question of the poll plan looks alike; and another fingertip.
+/// One fingertip and a little more, so that no read of the poll plan has the same shape; and another fingertip.
 const TOUCH_SHAPES: [Span; 3] = [
     Span::new(TOUCH.address, 60),
     Span::new(TOUCH.address, 62),
@@ -56,7 +56,7 @@ const OTHER_TOUCH_SHAPES: [Span; 3] = [
     Span::new(TOUCH.address + 3 * 58, 66),
 ];
 
-/// How a question ended.
+/// Result of a read during identification.
 #[expect(
     clippy::large_enum_variant,
     reason = "it lives on the stack, for one question"
@@ -64,15 +64,15 @@ const OTHER_TOUCH_SHAPES: [Span; 3] = [
 enum IdentityReply {
     Bytes(Bytes),
     Refused,
-    /// Something else refused: a gateway, or a device that is busy.
+    /// A gateway or a busy device refused.
     Busy,
     Silent,
-    /// There was no time for it, or no way to ask that is clear.
+    /// Not sent: no time was left, or no unambiguous shape.
     Unasked,
 }
 
 impl Session {
-    /// Asks until the hand answers, and then what it does in its own way. The session lives on from there.
+    /// Reads until the hand answers, then detects its quirks. The session continues from there.
     pub(crate) async fn identify(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let closed = closed(Arc::clone(&self.ends.wanted));
         tokio::select! {
@@ -84,7 +84,7 @@ impl Session {
 
     async fn get_to_know(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let id = self.first_answer(bus).await?;
-        // Of what was wished before, only a stop belongs to this hand.
+        // Of the earlier control requests only a stop applies to this hand.
         self.keep_pressed_stop();
         self.forget_wishes();
         let known = self.status.quirks;
@@ -92,7 +92,8 @@ impl Session {
         let packing = self.ask_packing(bus, id.as_ref(), until).await?;
         bus.set_packing(packing);
         self.evidence = SeriesEvidence::default();
-        // What was another series stays that until it shows otherwise: a stop that cuts the questions short is not for it.
+        // A device of another series keeps that verdict until it shows otherwise: a stop that cuts the reads short must
+        // not reach it.
         if self.status.series == Series::Ours {
             self.status.series = Series::Unknown;
         }
@@ -103,7 +104,7 @@ impl Session {
             ..self.ask_rest(bus, until).await?
         };
         self.evidence.fingertips(self.status.quirks.touch);
-        // A stop cut the questions short: what was known of this hand stays.
+        // A stop cut the reads short: the known quirks of this hand still apply.
         if self.is_stop_wanted() && known.hand_id == self.status.quirks.hand_id {
             bus.set_packing(known.packing);
             self.status.quirks = known;
@@ -135,7 +136,7 @@ impl Session {
         }
     }
 
-    /// Asks one more question where the series is not clear yet; true if it did. A job or a poll has its turn between two.
+    /// Makes one more read while the series is unclear; true if it did. A job or a poll has its turn between two.
     pub(crate) async fn identify_further(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         let now = self.now();
         if self.status.series != Series::Unknown || now < self.evidence_due {
@@ -174,13 +175,13 @@ impl Session {
         Ok(())
     }
 
-    /// Asks for the id until something comes. A refusal by the hand is an answer too, without an id.
+    /// Reads the id until a reply comes. A refusal by the hand is an answer too, without an id.
     async fn first_answer(&mut self, bus: &mut dyn Bus) -> Result<Option<Bytes>, WireEnd> {
         let mut tries = 0;
         while tries < TRIES {
             tries += 1;
             self.turn(bus).await?;
-            // Where all are open, the id may be asked in the same words again: it does not change.
+            // If all shapes are ambiguous, the same read of the id may be repeated: the id does not change.
             let span = bus.choose(&ID_SHAPES).unwrap_or(HAND_ID.span());
             let span = Span::new(span.address, span.len + u16::from(bus.has_words()));
             let limit = self.first_limit(bus, span.len, tries);
@@ -192,7 +193,7 @@ impl Session {
                     return Ok(Some(bytes));
                 }
                 Err(BusError::WrongLength { .. }) => return Ok(None),
-                // A gateway that says so for long enough ends this, so its exceptions are no tries.
+                // A gateway that reports this for long enough ends the loop, so its exceptions do not count as attempts.
                 Err(error @ BusError::Refused { .. }) => {
                     self.failed(bus, &error).await?;
                     if self.absence.last().is_none() {
@@ -216,8 +217,8 @@ impl Session {
         }))
     }
 
-    /// How long the nth request for the id may take. Where a late reply is known by its number, each waits longer than the
-    /// one before, so that a slow way to the hand is found out.
+    /// Longest wait for the nth read of the id. Where a late reply is identified by its number, each waits longer than
+    /// the one before, so that a slow link is detected.
     fn first_limit(&self, bus: &dyn Bus, bytes: u16, nth: u32) -> Duration {
         let limit = self.reply_limit(bus, bytes);
         if bus.has_numbers() {
@@ -227,13 +228,13 @@ impl Session {
         }
     }
 
-    /// How long the questions behind the first answer may take.
+    /// Time limit for the reads after the first answer.
     fn identifies_within(&self) -> Duration {
         let slow = self.slowness.slowest().unwrap_or_default();
         WITHIN.max(slow * QUESTIONS)
     }
 
-    /// How single bytes stand in words; of wires without words nothing.
+    /// Detects how single bytes are packed into words; `None` on wires without words.
     async fn ask_packing(
         &mut self,
         bus: &mut dyn Bus,
@@ -265,7 +266,7 @@ impl Session {
             IdentityReply::Bytes(bytes) => bytes.first().copied(),
             _ => None,
         };
-        // Where a run is asked for in pieces, no question is worth leading through the gap.
+        // If a range is read in several requests, reading through the gap saves nothing.
         let gap = match bus.cost().turns(GAP_SHAPES[0].len) {
             0 | 1 => self.ask(bus, &GAP_SHAPES, until).await?,
             _ => IdentityReply::Unasked,
@@ -274,7 +275,7 @@ impl Session {
         let gap = match gap {
             IdentityReply::Bytes(_) => Some(GapRead::Through),
             IdentityReply::Refused => Some(GapRead::Split),
-            // The serial framing has no word for no: silence is one if the next question is answered.
+            // The serial framing cannot refuse: silence counts as a refusal if the next read is answered.
             IdentityReply::Silent if !bus.has_words() && touch.is_some() => Some(GapRead::Split),
             IdentityReply::Silent | IdentityReply::Busy | IdentityReply::Unasked => None,
         };
@@ -286,7 +287,7 @@ impl Session {
         })
     }
 
-    /// What the fingertips look like. Where the first says nothing, another is asked.
+    /// Detects the layout of the fingertips. If the first is inconclusive, another is read.
     async fn ask_touch(
         &mut self,
         bus: &mut dyn Bus,
@@ -294,7 +295,7 @@ impl Session {
     ) -> Result<Option<TouchVariant>, WireEnd> {
         const EMPTY: Option<TouchVariant> = Some(TouchVariant::Unknown(TouchDoubt::Empty));
         let mut first = judged(&self.ask(bus, &TOUCH_SHAPES, until).await?);
-        // Pieces of several requests may be of several measurements: their sum says nothing.
+        // Pieces from several requests may belong to several measurements, so their checksum proves nothing.
         let pieces = bus.cost().turns(TOUCH_SHAPES[0].len);
         if pieces > 1 && first == Some(TouchVariant::Unknown(TouchDoubt::Check)) {
             first = Some(TouchVariant::Capacitive);
@@ -306,7 +307,7 @@ impl Session {
         Ok(other.or(first))
     }
 
-    /// A question, asked again if nothing came, and how it ended.
+    /// Reads one of the shapes, again if nothing came, and returns the result.
     async fn ask(
         &mut self,
         bus: &mut dyn Bus,
@@ -365,7 +366,7 @@ impl Session {
                 self.failed(bus, &error).await?;
                 return Ok(match self.absence.last() {
                     None => IdentityReply::Refused,
-                    // It may answer yet.
+                    // The hand may still answer.
                     Some(_) => IdentityReply::Busy,
                 });
             }
@@ -384,7 +385,7 @@ impl Session {
         Ok(IdentityReply::Silent)
     }
 
-    /// True if there is no time for another question.
+    /// True if no time is left for another read.
     fn hurried(&self, until: Moment) -> bool {
         self.now() >= until || self.is_stop_wanted()
     }
@@ -407,7 +408,7 @@ fn judged(heard: &IdentityReply) -> Option<TouchVariant> {
     }
 }
 
-/// The id out of what was read before the packing was known, low byte first.
+/// Extracts the id from words that were read before the packing was known, low byte first.
 fn first_byte(id: &Bytes, packing: Option<BytePacking>) -> Option<u8> {
     match (packing, id.as_slice()) {
         (Some(BytePacking::HighFirst), [_, high, ..]) => Some(*high),

@@ -1,4 +1,4 @@
-//! One conversation with one hand: owner of the wire, arming and hold, requests, reconnecting.
+//! The session with one hand: owns the wire, and handles arming, holding, requests and reconnecting.
 
 mod absence;
 mod adapter;

@@ -1,4 +1,4 @@
-//! What a session holds about moving: arming, setpoints on their way, and the stop. Sends nothing itself.
+//! Motion state of a session: arming, pending setpoints and the stop. Sends nothing itself.
 
 use crate::hand::ArmEpoch;
 use crate::hand::Setpoints;
@@ -10,26 +10,26 @@ use crate::record::{ArmRefusal, LinkState};
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// Setpoint rounds a second at most: as soon as hand tracking has a new target. Before each the pose is looked at.
+/// Maximum setpoint rounds per second: as soon as hand tracking has a new target. The pose is read before each.
 pub const SETPOINT_HZ_MAX: u32 = 200;
-/// On a slow line rounds leave three quarters of the time to what is read, as long as that lets this many a second.
+/// On a slow line rounds leave three quarters of the time to reads, as long as that allows this many per second.
 const SETPOINT_HZ_SLOW: u32 = 50;
 const ROUND_SHARE: u32 = 4;
-/// An armed hand whose angles grow this old is disarmed.
+/// An armed hand whose angles become this old is disarmed.
 pub(crate) const ANGLE_LOST: Duration = Duration::from_millis(500);
-/// An arming waits this long for readings that are missing: on a link that was just made, or after a stall of this computer.
+/// Longest time that an arming waits for missing readings: on a new link, or after a stall of this computer.
 pub(crate) const ARM_READS_TIMEOUT: Duration = Duration::from_secs(1);
-/// Writes of one round: speeds and forces in at most three runs each, and the angles.
+/// Maximum writes per round: speeds and forces in at most three runs each, and the angles.
 const ROUND_MAX: usize = 7;
 
-/// Rounds in a row between which only the motion state is read, on a line that is full with them.
+/// Consecutive rounds between which only the motion state is read, on a line that they fill.
 const ROUNDS_MAX: u8 = 2;
 
-/// An arming that the session has taken.
+/// An arming that the session has accepted.
 #[derive(Debug)]
 pub(crate) struct PendingArm {
     pub(crate) asked: AskedArm,
-    /// It is refused if what it needs is still not known at this moment.
+    /// The arming is refused if required readings are still missing at this time.
     pub(crate) until: Moment,
 }
 
@@ -37,26 +37,26 @@ pub(crate) struct PendingArm {
 #[derive(Debug, Default)]
 pub(crate) struct Motion {
     pub(crate) last_epoch: ArmEpoch,
-    /// Waits until the pose, the faults and the series are known.
+    /// Pending until the pose, the faults and the series are known.
     pub(crate) arming: Option<PendingArm>,
     pub(crate) hold: Option<HoldWatch>,
-    /// A hold frame went out, and the pose was not asked for since.
+    /// A hold frame was sent, and the pose was not requested since.
     pub(crate) waits_for_look: bool,
-    /// The newest wishes that no round has taken yet.
+    /// The newest setpoints that are in no round yet.
     setpoints: Option<Setpoints>,
-    /// The round that is being sent, in order.
+    /// The remaining writes of the current round, in order.
     round: ArrayVec<RegisterWrite, ROUND_MAX>,
     round_began: Option<Moment>,
-    /// What its writes took on the wire so far.
+    /// Time that its writes have taken on the wire so far.
     round_took: Duration,
-    /// No pose was asked for since the round began: on a slow line writes alone must not fill it.
+    /// The pose was not requested since the round began: on a slow line writes alone must not fill it.
     pose_due: bool,
-    /// Rounds since anything but the motion state was asked for.
+    /// Rounds since anything but the motion state was requested.
     rounds: u8,
 }
 
 impl Motion {
-    /// A fresh start that still counts armings on from `last_epoch`.
+    /// A fresh state that continues to count armings from `last_epoch`.
     pub(crate) fn after(last_epoch: ArmEpoch) -> Self {
         Self {
             last_epoch,
@@ -64,20 +64,20 @@ impl Motion {
         }
     }
 
-    /// Nothing is wanted any more.
+    /// Drops the stop, the arming and all setpoints.
     pub(crate) fn forget(&mut self) {
         self.hold = None;
         self.forget_setpoints();
     }
 
-    /// Nothing that was asked for goes out any more.
+    /// Drops the pending arming and all setpoints.
     pub(crate) fn forget_setpoints(&mut self) {
         self.arming = None;
         self.setpoints = None;
         self.round.clear();
     }
 
-    /// Takes newer setpoints, if they belong to the arming in force.
+    /// Merges newer setpoints if they belong to the current arming.
     pub(crate) fn want(&mut self, newer: &Setpoints, armed: Option<ArmEpoch>) {
         if armed != Some(newer.epoch) {
             return;
@@ -88,7 +88,7 @@ impl Motion {
         }
     }
 
-    /// When something can be sent next, if anything waits.
+    /// Time at which the next frame can be sent; `None` if nothing is pending.
     pub(crate) fn next_send(&self, now: Moment) -> Option<Moment> {
         if let Some(hold) = &self.hold {
             return hold.next_frame(now);
@@ -104,7 +104,7 @@ impl Motion {
         }))
     }
 
-    /// True if a round of setpoints begins with the next write, which is due.
+    /// True if the next write is due and begins a round of setpoints.
     pub(crate) fn begins_round(&self, now: Moment) -> bool {
         let is_due = self.next_send(now).is_some_and(|at| at <= now);
         let may_begin = self.round.is_empty() && !self.pose_due && self.rounds < ROUNDS_MAX;
@@ -131,23 +131,23 @@ impl Motion {
         self.round.pop_at(0)
     }
 
-    /// A write of the round took so long.
+    /// Adds the time that a write of the round took.
     pub(crate) const fn took(&mut self, took: Duration) {
         self.round_took = self.round_took.saturating_add(took);
     }
 
-    /// True if the next round waits only for a look at the pose.
+    /// True if the next round waits only for the pose to be read.
     pub(crate) fn wants_pose(&self, now: Moment) -> bool {
         self.pose_due && self.waits(now)
     }
 
-    /// True if the next round waits only for something else to be read.
+    /// True if the next round waits only for another read.
     pub(crate) fn wants_others(&self, now: Moment) -> bool {
         !self.pose_due && self.rounds >= ROUNDS_MAX && self.waits(now)
     }
 
-    /// True if requests may have their turns: not while a stop is being confirmed, but while its alarm lasts, and not
-    /// before the read that the next round waits for.
+    /// True if requests may be served: not while a stop is being confirmed, but while its alarm lasts, and not before
+    /// the read that the next round waits for.
     pub(crate) fn lets_jobs(&self, now: Moment) -> bool {
         match &self.hold {
             Some(hold) => hold.alarmed,
@@ -159,7 +159,7 @@ impl Motion {
         self.round.is_empty() && self.next_send(now).is_some_and(|send| send <= now)
     }
 
-    /// Something was asked for, answered or not.
+    /// Records that something was requested, answered or not.
     pub(crate) const fn asked(&mut self, is_pose: bool) {
         if is_pose {
             self.pose_due = false;
@@ -169,12 +169,12 @@ impl Motion {
         }
     }
 
-    /// Nothing but the pose is wanted of the hand: rounds need not wait.
+    /// Records that only the pose is polled: rounds need not wait.
     pub(crate) const fn nothing_else(&mut self) {
         self.rounds = 0;
     }
 
-    /// The write was not acknowledged: it goes out again, unless something newer replaced it.
+    /// Queues an unacknowledged write again, unless a newer one replaced it.
     pub(crate) fn again(&mut self, write: RegisterWrite) {
         if !self.round.is_full() {
             self.round.insert(0, write);
@@ -190,8 +190,8 @@ fn round(setpoints: &Setpoints) -> ArrayVec<RegisterWrite, ROUND_MAX> {
     round
 }
 
-/// The targets that hold what is known of the pose now: the actual angles if they are fresh, and
-/// "no action" for all joints if not, because an old pose would be a move.
+/// The targets that hold the present pose: the actual angles if they are fresh, otherwise "no action" for all joints,
+/// because an old pose would be a move.
 pub(crate) fn hold_targets(sample: &HandSample, now: Moment) -> PerDof<Target> {
     if sample.angles_fresh(now, ANGLE_FRESH) {
         sample.hold_targets()
@@ -200,7 +200,7 @@ pub(crate) fn hold_targets(sample: &HandSample, now: Moment) -> PerDof<Target> {
     }
 }
 
-/// Why a hand in this state and with these readings must not be armed; `None` if it may be, or is.
+/// Reason why a hand in this state and with these readings must not be armed; `None` if it may be armed, or is.
 pub fn arm_refusal(state: LinkState, sample: &HandSample, now: Moment) -> Option<ArmRefusal> {
     match state {
         LinkState::Offline | LinkState::Identifying => return Some(ArmRefusal::Offline),

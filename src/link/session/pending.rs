@@ -1,5 +1,5 @@
-//! A stop that no feedback had confirmed when its link was lost, or that was asked for while it was. Nothing else outlives a lost
-//! link.
+//! A stop that feedback had not confirmed when the link was lost, or that was requested while it was lost. Nothing else
+//! survives a lost link.
 
 use crate::hand::Moment;
 use crate::link::session::conversation::Session;
@@ -8,7 +8,7 @@ use crate::link::stop::STOP_PENDING;
 use crate::record::{Hold, LinkState};
 
 impl Session {
-    /// Keeps a stop that was asked for at `at`, and raises the alarm: it may not have reached the hand.
+    /// Keeps a stop requested at `at` pending, and raises the alarm, because it may not have reached the hand.
     pub(crate) fn keep_stop(&mut self, at: Moment) {
         let until = self.now().plus(STOP_PENDING);
         self.pending_stop = Some(PendingStop { at, until });
@@ -16,7 +16,7 @@ impl Session {
         self.publish();
     }
 
-    /// Keeps a stop that was asked for while there is no live hand, if one was.
+    /// Keeps a stop pending that was requested while there was no live hand, if there was one.
     pub(crate) fn keep_pressed_stop(&mut self) {
         let mut is_pressed = false;
         self.ends.wanted.send_if_modified(|wanted| {
@@ -28,13 +28,14 @@ impl Session {
         }
     }
 
-    /// True while a stop waits for the hand to answer again.
+    /// True while a stop is pending until the hand answers again.
     pub(crate) fn has_pending_stop(&self) -> bool {
         let now = self.now();
         self.pending_stop.is_some_and(|stop| now <= stop.until)
     }
 
-    /// The hand answers again: it is stopped first, if it came back in time. Otherwise the alarm stays until it shows rest.
+    /// Called when the hand answers again: sends the pending stop first if it has not expired. Otherwise the alarm
+    /// stays until the hand shows rest.
     pub(crate) fn resume_stop(&mut self) {
         let is_in_time = self.has_pending_stop();
         let Some(stop) = self.pending_stop.take() else {
@@ -50,7 +51,7 @@ impl Session {
         self.publish();
     }
 
-    /// The hand rests: so ends the alarm of a stop that could not be sent.
+    /// Ends the alarm of a stop that could not be sent, once the hand rests.
     pub(crate) fn end_late_alarm(&mut self) {
         if let Hold::Alarm { at } = self.status.hold
             && self.motion.hold.is_none()

@@ -1,5 +1,4 @@
-//! Reading by plan: which question goes out now, and what its answer changes. What else may go out first is decided
-//! elsewhere.
+//! Polling by plan: picks the next read and applies its reply. What else may be sent first is decided elsewhere.
 
 use crate::hand::{DriveHeat, Group, Moment, Reply, Span};
 use crate::link::bus::Bus;
@@ -12,19 +11,19 @@ use crate::record::{Disarmed, LinkState, Record};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A group that cannot be requested now is tried again after this: often enough, and not in a busy loop.
+/// Delay before a group that cannot be requested now is tried again: often enough, without a busy loop.
 const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
-/// Setpoints that nobody here wrote are read again after this: one reading may be wrong.
+/// Delay before reading setpoints again that this program did not write: one reading may be wrong.
 const LOOK_AGAIN: Duration = Duration::from_millis(30);
 
 impl Session {
-    /// What to ask now. While a stop is being confirmed only motion and faults count; once it failed, the rest gets its
+    /// The next read. While a stop is being confirmed only motion and faults are read; once it failed, the rest has its
     /// turns again.
     pub(crate) fn next_poll(&mut self) -> Option<NextRead> {
         let now = self.now();
         let tempo = self.tempo(now);
         self.plan.prefer(self.ends.wanted.borrow().priority);
-        // Elsewhere requests of others are heard.
+        // On other links the requests of other controllers are overheard.
         let is_tcp = self.dialled.host().is_some();
         let watched = is_tcp && self.status.armed.is_some();
         self.plan.watch_setpoints(watched, now);
@@ -42,7 +41,7 @@ impl Session {
         self.plan.next(now, tempo)
     }
 
-    /// When the next read is due.
+    /// Time at which the next read is due.
     pub(crate) fn next_read(&self) -> Moment {
         let now = self.now();
         self.plan.next_due(now, self.tempo(now))
@@ -57,21 +56,21 @@ impl Session {
         }
     }
 
-    /// Asks where the hand is, due or not.
+    /// Reads the pose, due or not.
     pub(crate) async fn poll_motion(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let now = self.now();
         let question = self.plan.motion(now, self.tempo(now));
         self.poll(bus, &question).await
     }
 
-    /// The same, for a stop: another stop is no reason to leave it.
+    /// Reads the pose for a stop; another stop request does not interrupt it.
     pub(crate) async fn read_pose(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let now = self.now();
         let question = self.plan.motion(now, self.tempo(now));
         self.poll_unless(bus, &question, &|| false).await
     }
 
-    /// One read of a window, and what its answer changes.
+    /// Reads one window and applies its reply.
     pub(crate) async fn poll(
         &mut self,
         bus: &mut dyn Bus,
@@ -101,7 +100,7 @@ impl Session {
         match result {
             Ok(None) => Ok(()),
             Ok(Some(bytes)) => {
-                // What we stalled says nothing of how slow the hand is.
+                // Our own stall says nothing about how slow the hand is.
                 self.answered(took.saturating_sub(late));
                 self.watch_ticks(span.len, took);
                 self.counters.line.read(self.plan.cost(), span, took);
@@ -152,7 +151,8 @@ impl Session {
         self.watch_hold(fresh);
     }
 
-    /// Every way to ask could be answered by a late reply. The motion state is worth a new wire; the rest waits.
+    /// Handles a read that a late reply could answer in every shape. A read of the motion state justifies a new wire;
+    /// others wait.
     fn ambiguous(&mut self, question: &NextRead) -> Result<(), WireEnd> {
         let now = self.now();
         let window = question.shapes.first().copied();

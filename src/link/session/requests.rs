@@ -1,5 +1,5 @@
-//! Commands and reads on their way: writes that go out one a step, and reads of any memory. Motion among them needs
-//! arming, like every other.
+//! Requests in progress: writes that are sent one per step, and reads of arbitrary memory. A request that moves the
+//! hand needs arming, like all motion.
 
 use crate::hand::{HandCommand, HandSample, Moment, Reply, Span};
 use crate::link::bus::late_replies::LATE_HORIZON;
@@ -12,9 +12,9 @@ use crate::record::{LinkState, WriteCause};
 use std::sync::Arc;
 
 impl Session {
-    /// True if a request is under way or one was waiting.
+    /// True if a request is in progress or was waiting.
     pub(crate) fn next_job(&mut self) -> bool {
-        // One that is answered at once leaves the turn to the next.
+        // A request that is answered at once yields the turn to the next.
         while self.job.is_none()
             && let Ok(request) = self.ends.requests.try_recv()
         {
@@ -23,7 +23,7 @@ impl Session {
         self.job.is_some()
     }
 
-    /// Takes a request, unless nobody waits for its answer any more: that one is not sent.
+    /// Accepts a request, unless its requester no longer waits for the reply; then nothing is sent.
     pub(crate) fn take_job(&mut self, request: Request) {
         if request.is_abandoned() {
             return;
@@ -49,14 +49,14 @@ impl Session {
         }
         self.job = Some(SessionJob::Write(WriteJob {
             writes: command.writes(),
-            // A cleared fault may set free a move to an old target.
+            // Clearing a fault may release a move to an old target.
             holds_first: command == HandCommand::ClearErrors,
             is_motion,
             answer,
         }));
     }
 
-    /// What moves the hand needs arming, and whoever wants it the right to.
+    /// Checks that a write may be sent: motion needs a valid lease and an armed hand.
     fn may_write(&self, is_motion: bool, lease: Option<Lease>) -> Result<(), RequestError> {
         match lease {
             Some(lease) => self.ends.wanted.borrow().book.check(lease)?,
@@ -70,7 +70,7 @@ impl Session {
         }
     }
 
-    /// Sends the next write of the request under way, or its read, and answers when all is done.
+    /// Sends the next write of the current request, or its read, and answers when all is done.
     pub(crate) async fn work(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         match self.job.take() {
             None => Ok(()),
@@ -104,7 +104,7 @@ impl Session {
         Ok(())
     }
 
-    /// Makes the pose of this moment the target: the request may have waited for a stop.
+    /// Makes the present pose the target, because the request may have waited for a stop.
     async fn hold_for(&mut self, bus: &mut dyn Bus, job: WriteJob) -> Result<(), WireEnd> {
         let hold = HandCommand::Angles(self.hold_targets(self.now()).map(Some));
         for write in hold.writes() {
@@ -120,7 +120,7 @@ impl Session {
     async fn read_for(&mut self, bus: &mut dyn Bus, mut job: ReadJob) -> Result<(), WireEnd> {
         let span = job.span;
         if bus.choose(&[span]).is_none() && !job.cleared {
-            // The same question was answered just now; any other answer clears the line of doubles.
+            // The same read was answered just now; any other reply flushes duplicates from the line.
             job.cleared = true;
             self.job = Some(SessionJob::Read(job));
             return self.poll_motion(bus).await;
@@ -137,7 +137,7 @@ impl Session {
         let wanted = Arc::clone(&self.ends.wanted);
         let read = bus.read_unless(span, limit, &|| wanted.borrow().stop).await;
         match read {
-            // Asked again from its start, once the stop is through.
+            // Restarted once the stop has been handled.
             Ok(None) => {
                 job.cleared = false;
                 self.job = Some(SessionJob::Read(job));

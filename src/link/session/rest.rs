@@ -1,34 +1,33 @@
-//! Whether the hand rests, as far as feedback and what was written tell. Pure; decides nothing about reading.
+//! Decides whether the hand rests, from feedback and from what was written. Pure; does not schedule reads.
 
 use crate::hand::{AngleReading, Dof, Group, Groups, HandSample, Moment, PerDof, Timed};
 use crate::record::Rest;
 use std::time::Duration;
 
-/// After the last sign of motion the hand counts as moving for this long: the user who drags pauses, and a hand acts
-/// late.
+/// The hand counts as moving for this long after the last sign of motion: a user who drags pauses, and a hand reacts late.
 const MOTION_DURATION: Duration = Duration::from_secs(1);
-/// A joint that is no more than this many counts from where it was rests: readings swing by so much.
+/// A joint rests while it is within this many counts of where it was: readings fluctuate that much.
 const REST_COUNTS: i32 = 2;
-/// Feedback older than this says nothing of whether the hand rests now.
+/// Feedback older than this does not show whether the hand rests now.
 const MAX_AGE: Duration = Duration::from_millis(500);
 
-/// Watches for motion.
+/// Detects motion.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct RestWatch {
-    /// Where the joints were when they were last seen to have moved.
+    /// Joint angles at the last detected motion.
     from: Option<PerDof<AngleReading>>,
-    /// The first angles that were seen.
+    /// Time of the first angles.
     watched_since: Option<Moment>,
     moved: Option<Moment>,
 }
 
 impl RestWatch {
-    /// A motion was commanded.
+    /// Records that motion was commanded.
     pub(crate) const fn commanded(&mut self, now: Moment) {
         self.moved = Some(now);
     }
 
-    /// Takes what was read.
+    /// Applies a reading.
     pub(crate) fn take(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         if fresh.contains(Group::Angle)
             && let Some(angle) = sample.angle
@@ -51,15 +50,15 @@ impl RestWatch {
         }
     }
 
-    /// True if something moves, or did just now.
+    /// True if the hand moves or moved just now.
     pub(crate) fn moves(&self, now: Moment) -> bool {
         self.moved
             .is_some_and(|moved| now.since(moved) < MOTION_DURATION)
     }
 
-    /// Whether the hand rests. A status code that the manual does not list says nothing: 255 was seen on joints that rest
-    /// since power-up. Then angles that stood still for as long as motion counts have to do.
-    /// Readings may be older by `late` than on a quick way.
+    /// Returns whether the hand rests. A status code that the manual does not list proves nothing: 255 was seen on
+    /// joints at rest since power-up. In that case angles that are unchanged for [`MOTION_DURATION`] decide. `late`
+    /// extends the maximum age of readings on a slow link.
     pub(crate) fn rest(&self, sample: &HandSample, now: Moment, late: Duration) -> Rest {
         if self.moves(now) {
             return Rest::Moving;

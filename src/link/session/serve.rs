@@ -1,5 +1,5 @@
-//! One step of a live conversation: what goes on the wire next, and what its answer changes. Never two
-//! requests at once, and the wishes of the window are looked at before each.
+//! One step of a live session: picks what is sent next, and applies its result. Never two requests at once; control
+//! requests are checked before each.
 
 use crate::hand::{
     ArmEpoch, Dof, Groups, HandCommand, Moment, PerDof, Refusal, RegisterWrite, Target, Timed,
@@ -24,15 +24,17 @@ use std::time::Duration;
 use tokio::sync::oneshot;
 use tokio::time::{sleep_until, timeout};
 
-/// The process that holds the hand if this one dies is there within some milliseconds; arming waits no longer.
+/// Longest time that arming waits for the holder process, which holds the hand if this program dies; it starts within
+/// milliseconds.
 const HOLDER_TIMEOUT: Duration = Duration::from_millis(250);
-/// So much of a stall of this program leaves a hand armed whose angles grow old by it: the hand goes on as it was told, and is read next.
+/// Stall time of this program that is added to the maximum age of an armed hand's angles: the hand follows its last
+/// setpoints, and is read next.
 const STALL_FORGIVEN: Duration = Duration::from_secs(1);
-/// Bytes of an acknowledgement's data.
+/// Data bytes of an acknowledgement.
 const ACK_LEN: u16 = 1;
 
 impl Session {
-    /// Serves the wire until it is lost or the handle is gone.
+    /// Serves the wire until it is lost or the handle is dropped.
     pub(crate) async fn serve(&mut self, bus: &mut dyn Bus) -> WireEnd {
         loop {
             match self.round(bus).await {
@@ -52,13 +54,13 @@ impl Session {
         self.step(bus).await
     }
 
-    /// Whether this computer slept; then the link is not what it was.
+    /// Ends the session if this computer slept, because the link state is then unknown.
     pub(crate) fn wake_up(&mut self) -> Result<(), WireEnd> {
         let Some(slept) = self.sleep.slept() else {
             return Ok(());
         };
         if self.status.armed.is_some() {
-            // Nobody watched what became of its move.
+            // The end of its motion was not observed.
             self.keep_stop(self.now());
         }
         self.disarm(Disarmed::Resume);
@@ -66,7 +68,7 @@ impl Session {
         Err(WireEnd::Lost(LinkTrouble::Suspended { slept_s }))
     }
 
-    /// What is told after something was done.
+    /// Publishes state and statistics after a step.
     pub(crate) fn after_step(&mut self, bus: &mut dyn Bus) {
         self.learn_late(bus);
         self.tell_rest();
@@ -92,7 +94,7 @@ impl Session {
         Ok(true)
     }
 
-    /// What goes before everything that was asked for: wishes, a stop, setpoints.
+    /// Handles what precedes all requests: control requests, a stop, setpoints. Returns true if it sent something.
     pub(crate) async fn urgent_step(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         if let Some(asked) = self.take_wishes()? {
             let until = self.now().plus(ARM_READS_TIMEOUT);
@@ -109,11 +111,12 @@ impl Session {
         let hold = self.motion.hold;
         let is_due = |hold: HoldWatch| hold.next_frame(now).is_some_and(|at| at <= now);
         if hold.is_some_and(is_due) {
-            // Where an acknowledgement takes longer than the frames are apart, the pose is read between two: frames alone would never
-            // see the hand rest. While the line is left to the hand nobody looks.
-            // In pieces a look takes longer than the verdict may: there frames go on.
+            // If an acknowledgement takes longer than the interval between hold frames, the pose is read between two
+            // frames: frames alone would never show the hand at rest. Nothing is read while the hand saves or
+            // calibrates. Over CAN a pose takes several requests, longer than the verdict on rest may take, so only
+            // frames are sent.
             let looks = !self.leaves_line && !self.dialled.is_can();
-            // A frame without a target holds nothing, and what -1 does to a joint on its way is not known (manual 2.6.12).
+            // A frame without a target holds nothing, and the effect of -1 on a moving joint is unknown (manual 2.6.12).
             let newest = self.hold_targets(now);
             let is_blind = |hold: &mut HoldWatch| hold.needs_pose(&newest);
             if looks && self.motion.waits_for_look
@@ -122,7 +125,7 @@ impl Session {
                 return self.read_pose(bus).await.map(|()| true);
             }
             let is_acknowledged = self.send_hold(bus).await?;
-            // One that was not is repeated at once, unless its acknowledgement is only late.
+            // An unacknowledged frame is repeated at once, unless its acknowledgement is only late.
             self.motion.waits_for_look = is_acknowledged || self.slowness.slowest().is_some();
         } else if self.pose_is_due(now) {
             self.poll_motion(bus).await?;
@@ -140,7 +143,7 @@ impl Session {
         Ok(true)
     }
 
-    /// Says whether the hand rests, and whether the line is left to it.
+    /// Publishes whether the hand rests, and whether the line is left to it.
     pub(crate) fn tell_rest(&mut self) {
         self.watch_holder();
         let rest = if self.feedback.is_doubted() || self.feedback.is_frozen() {
@@ -162,19 +165,19 @@ impl Session {
         }
     }
 
-    /// Whether the hand rests, by what is read of it.
+    /// Returns whether the hand rests according to its feedback.
     pub(crate) fn rest_now(&self, now: Moment) -> Rest {
         self.moving
             .rest(&self.sample, now, self.status.slow_allowance())
     }
 
-    /// Feedback shows that the hand rests. True if that is news.
+    /// Records that feedback shows the hand at rest; true if that is new.
     fn rests(&mut self) -> bool {
         self.guard.rests();
         std::mem::take(&mut self.status.may_move)
     }
 
-    /// Waits until something is due or the window wants something.
+    /// Waits until something is due, or a control request or other request arrives.
     pub(crate) async fn idle(&mut self) {
         let now = self.now();
         let read = self.next_read();
@@ -199,7 +202,7 @@ impl Session {
         self.stalled(self.now().since(due_at));
     }
 
-    /// Takes what the window wants; gives back the wish to arm, which takes exchanges of its own.
+    /// Applies the pending control requests; returns a request to arm, which takes exchanges of its own.
     fn take_wishes(&mut self) -> Result<Option<AskedArm>, WireEnd> {
         let mut wishes = PendingControl::default();
         self.ends.wanted.send_if_modified(|wanted| {
@@ -237,7 +240,7 @@ impl Session {
         Ok(wishes.arm)
     }
 
-    /// Why the hand cannot be armed now.
+    /// Reason why the hand cannot be armed now, if any.
     fn arm_refusal(&self) -> Option<ArmRefusal> {
         let busy = self.leaves_line.then_some(ArmRefusal::HandBusy);
         let is_let_go = self.ends.wanted.borrow().is_let_go(self.now());
@@ -247,7 +250,7 @@ impl Session {
         busy.or(let_go).or_else(refusal).or(unknown)
     }
 
-    /// The arming that was asked for, once nothing that it needs is missing, or it has waited long enough.
+    /// Returns the requested arming once everything that it needs is known, or its wait is over.
     fn due_arming(&mut self) -> Option<PendingArm> {
         let waits = self.arm_refusal() == Some(ArmRefusal::NotRead);
         let now = self.now();
@@ -256,15 +259,15 @@ impl Session {
             .take_if(|arming| !waits || now >= arming.until)
     }
 
-    /// True if what is being armed for is not to be any more.
+    /// True if the arming in progress was superseded: its lease ended, or a stop, disarm or close was requested.
     fn arming_is_over(&self, lease: Lease) -> bool {
         let wanted = self.ends.wanted.borrow();
         let is_ended = wanted.book.check(lease).is_err() || wanted.is_let_go(self.now());
         wanted.stop || wanted.disarm || wanted.closed || is_ended
     }
 
-    /// Sends the limits, and lets setpoints pass once the hand acknowledged them. No angle is written.
-    /// An armed hand stays armed as it is.
+    /// Sends the limits, and enables setpoints once the hand acknowledged them. No angle is written. An armed hand
+    /// stays armed as it is.
     async fn arm(&mut self, bus: &mut dyn Bus, asked: AskedArm) -> Result<(), WireEnd> {
         let AskedArm {
             lease,
@@ -300,17 +303,17 @@ impl Session {
             }
         }
         self.holder_started().await;
-        // The writes of the limits took longer than a pose lasts, on a slow way.
+        // On a slow link the writes of the limits take longer than a pose stays fresh.
         if self.slowness.slowest().is_some() {
             self.turn(bus).await?;
-            // A stop that came meanwhile goes first.
+            // A stop requested meanwhile goes first.
             if self.arming_is_over(lease) {
                 return Ok(());
             }
             self.poll_motion(bus).await?;
         }
         self.status.unguarded = self.guard.unguarded();
-        // A stop that came meanwhile wins: it is taken in the next step, and arming has to be asked for anew.
+        // A stop requested meanwhile takes precedence: it is handled in the next step, and arming must be requested anew.
         if self.arming_is_over(lease) {
             return Ok(());
         }
@@ -331,7 +334,8 @@ impl Session {
         Ok(())
     }
 
-    /// Waits a little for the process that holds the hand if this one dies: nothing moves before. One that is late will be there.
+    /// Waits briefly for the holder process that holds the hand if this program dies: nothing moves before it started.
+    /// If the wait times out, the process is still starting.
     async fn holder_started(&self) {
         if let Some(mut holder) = self.guard.holder() {
             let started = holder.wait_for(|state| *state != HolderState::Starting);
@@ -339,7 +343,7 @@ impl Session {
         }
     }
 
-    /// The process that holds the hand may end later than it was started.
+    /// Publishes the end of the holder process, which may happen long after arming.
     fn watch_holder(&mut self) {
         let unguarded = self.status.armed.and_then(|_| self.guard.unguarded());
         if unguarded.is_some() && self.status.unguarded != unguarded {
@@ -358,7 +362,7 @@ impl Session {
         let _gone = answer.send(Err(reason));
     }
 
-    /// Disarms, and drops the setpoints that are on their way. What nobody asked for ends the right to move the hand too.
+    /// Disarms, and drops pending setpoints. A disarm that was not requested also ends the lease.
     pub(crate) fn disarm(&mut self, why: Disarmed) {
         let holder = &mut self.status.holder;
         self.ends.wanted.send_if_modified(|wanted| {
@@ -368,7 +372,7 @@ impl Session {
             *holder = wanted.book.holder();
             false
         });
-        // After the lease: whoever waits for an arming finds there why it was dropped.
+        // After the lease: the requester of a dropped arming finds the reason there.
         self.motion.forget_setpoints();
         if self.status.armed.take().is_none() {
             return;
@@ -380,13 +384,13 @@ impl Session {
         self.publish();
     }
 
-    /// How old the angles of an armed hand may be: what this program stalled since is not counted, up to a limit.
+    /// Maximum age of an armed hand's angles: extended by stalls of this program since, up to a limit.
     fn angle_lost(&self) -> Duration {
         let asked = self.sample.angle.map_or(Moment::ZERO, |angle| angle.asked);
         ANGLE_LOST + self.stalls.since(asked).min(STALL_FORGIVEN)
     }
 
-    /// On a slow way every other exchange of an armed hand reads its pose: behind a round of writes it would be too old.
+    /// On a slow link every other exchange of an armed hand reads its pose: after a round of writes it would be too old.
     fn pose_is_due(&self, now: Moment) -> bool {
         let slow = self.slowness.slowest();
         let slow = slow.filter(|_| self.status.armed.is_some() && !self.leaves_line);
@@ -394,7 +398,8 @@ impl Session {
         slow.is_some_and(|slow| self.sample.angle.is_none_or(|angle| is_due(angle, slow)))
     }
 
-    /// An armed hand whose pose is not known any more is stopped.
+    /// Stops an armed hand whose pose is no longer known or whose hold-to-run key was released, and raises the alarm of
+    /// a stop that is overdue.
     fn watch_age(&mut self) {
         let now = self.now();
         if self.status.armed.is_some() && !self.sample.angles_fresh(now, self.angle_lost()) {
@@ -412,7 +417,7 @@ impl Session {
         }
     }
 
-    /// A drive that is hot, or may be, ends what moves the hand.
+    /// Stops an armed hand with a drive that is hot or may be.
     fn watch_heat(&mut self) {
         let reason = self.heat.reason(&self.sample, self.now());
         if let Some(why) = reason.filter(|_| self.status.armed.is_some()) {
@@ -420,7 +425,7 @@ impl Session {
         }
     }
 
-    /// Another controller disarms, once: who arms while it is there has been told and wants it.
+    /// Disarms once when another controller appears: a user who arms while it is active has been warned.
     fn watch_others(&mut self, bus: &dyn Bus) {
         let is_there = self.others.is_active(self.now());
         let is_news = is_there && !self.status.other_controller;
@@ -438,7 +443,7 @@ impl Session {
         }
     }
 
-    /// A reply took so long. Where the system does not tell an adapter's latency timer, its ticks do.
+    /// Records a round trip. If the system does not report an adapter's latency timer, its ticks reveal it.
     pub(crate) fn watch_ticks(&mut self, bytes: u16, took: Duration) {
         self.ticks.took(bytes, took);
         let untold = self.status.latency_timer_ms.is_none() && self.dialled.port().is_some();
@@ -449,15 +454,16 @@ impl Session {
         }
     }
 
-    /// Disarms and stops the hand. So ends every arming over a live link, but one that another controller or a person ends without a
-    /// stop.
+    /// Disarms and stops the hand. Every arming over a live link ends this way, except one that another controller or
+    /// the user ends without a stop.
     pub(crate) fn begin_hold(&mut self, why: Disarmed) {
         let now = self.now();
         self.disarm(why);
         if let Some(job) = self.job.take_if(|job| job.is_motion()) {
             job.fail(RequestError::NotArmed);
         }
-        // Joints in doubt that were told where to stay are not told again: a deaf one that woke would move.
+        // Doubted joints that were sent their hold targets are not commanded again: an unresponsive joint that
+        // recovered would move.
         if (self.motion.hold).is_none_or(|hold| hold.alarmed && !hold.has_ceased()) {
             self.motion.hold = Some(HoldWatch::new(
                 now,
@@ -473,7 +479,7 @@ impl Session {
         self.go(LinkState::Holding);
     }
 
-    /// What is read of suspect joints counts for nothing until it changes: the hold that is asked for cannot be confirmed by it.
+    /// Ignores readings of suspect joints until they change: they cannot confirm the requested hold.
     pub(crate) fn doubt_feedback(&mut self) {
         self.feedback.doubt();
         self.status.feedback_in_doubt = true;
@@ -483,14 +489,14 @@ impl Session {
         self.publish();
     }
 
-    /// An angle that is unchanged where motion was commanded ends arming, and confirms no stop.
+    /// Ends arming on an angle that is unchanged while motion was commanded; such an angle confirms no stop.
     pub(crate) fn watch_feedback(&mut self, doubted_before: &PerDof<bool>) {
         let doubted = self.feedback.doubted();
         let is_trusted_again = |dof: &Dof| doubted_before[*dof] && !doubted[*dof];
         if Dof::ALL.iter().any(is_trusted_again)
             && let Some(hold) = &mut self.motion.hold
         {
-            // Now it is known where it is to be held.
+            // Its hold position is known now.
             *hold = hold.again(self.config.clock.now());
         }
         if self.status.feedback_in_doubt && !self.feedback.is_doubted() {
@@ -504,10 +510,11 @@ impl Session {
         }
     }
 
-    /// The targets that hold the hand where it is, as far as that is known.
+    /// The targets that hold the hand in place, as far as its pose is known.
     pub(crate) fn hold_targets(&self, now: Moment) -> PerDof<Target> {
         let seen = hold_targets(&self.sample, now);
-        // On a slow way the newest pose is old: where the joints are by now follows from how they went, or from what they were told.
+        // On a slow link the newest pose is old: the present pose is extrapolated from the joints' motion, or from
+        // their commands.
         let is_slow = self.slowness.slowest().is_some();
         let is_old = !self.sample.angles_fresh(now, ANGLE_FRESH);
         PerDof::from_fn(|dof| {
@@ -521,7 +528,7 @@ impl Session {
         })
     }
 
-    /// Whether the trusted joints rest, and so the hand.
+    /// Confirms the hold once the trusted joints, and so the hand, rest.
     pub(crate) fn watch_hold(&mut self, fresh: Groups) {
         let doubted = self.feedback.doubted();
         let Some(hold) = &mut self.motion.hold else {
@@ -532,7 +539,7 @@ impl Session {
         }
         hold.trusted_rest();
         if hold.has_ceased() {
-            // Who held it in place of this program would lead its joints back to where they froze.
+            // The holder process would drive the joints back to where their feedback froze.
             self.guard.rests();
         }
         if !self.feedback.is_doubted() {
@@ -540,7 +547,7 @@ impl Session {
         }
     }
 
-    /// True if the hand acknowledged it.
+    /// Sends one hold frame; true if the hand acknowledged it.
     async fn send_hold(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         let now = self.now();
         let newest = self.hold_targets(now);
@@ -591,7 +598,7 @@ impl Session {
         });
     }
 
-    /// One write and its acknowledgement, timed and counted.
+    /// Sends one write and waits for its acknowledgement; timed and counted.
     pub(crate) async fn write(
         &mut self,
         bus: &mut dyn Bus,
@@ -666,7 +673,7 @@ impl Session {
         Ok(())
     }
 
-    /// Waits for the line; of all failures it can only be lost.
+    /// Waits for the line to be free; fails only if the wire is lost.
     pub(crate) async fn turn(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         let (turned, late) = watched(bus.turn()).await;
         self.stalled(late);

@@ -1,5 +1,5 @@
-//! What is done at rest and with the line for itself: kept settings, SAVE, reset, calibration. One at a time; a stop
-//! passes before each exchange. What a late frame means is decided in `save_watch`.
+//! Operations at rest with exclusive use of the line: persistent settings, SAVE, reset, calibration. One at a time; a
+//! stop precedes each exchange. `watch::save` decides what a late frame means.
 
 use crate::hand::register::{DEFAULT_FORCE_SET, DEFAULT_SPEED_SET, SAVE};
 use crate::hand::{Moment, Refusal, Setting, Span, Trigger};
@@ -17,23 +17,24 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::sleep_until;
 
-/// Reads that may verify one write: one lost answer must not leave it unverified, and a value that differs is read twice.
+/// Maximum reads to verify one write: one lost reply must not leave it unverified, and a value that differs is read twice.
 const READS: u8 = 3;
-/// Other questions asked to get a double of the last answer out of the way.
+/// Maximum other reads to flush a duplicate of the last reply.
 const CLEARINGS: u8 = 3;
-/// Looks at the pose of a hand of which it is not known whether it rests.
+/// Maximum reads of the pose if it is unknown whether the hand rests.
 const LOOKS: u8 = 2;
-/// What is compared before and after a SAVE on wires without a result frame: the two default groups, side by side.
+/// Range compared before and after a SAVE on wires without a result frame: the two default groups, which are adjacent.
 const PARAMETERS: Span = Span::new(
     DEFAULT_SPEED_SET.address,
     DEFAULT_SPEED_SET.len + DEFAULT_FORCE_SET.len,
 );
-/// While the line is left to the hand, the session looks around this often.
+/// While the line is reserved for the hand, the session checks for other events at this interval.
 const LISTEN_DURATION: Duration = Duration::from_millis(100);
-/// From a request to calibrate until it is over without a word. Manual: 2.6.6 names no time; hands in use were seen to take 2 to 6 s.
+/// Longest time from a calibration request to its end without a result frame. Manual: 2.6.6 gives no time; hands in use
+/// took 2 to 6 s.
 pub(crate) const CALIBRATION_TAKES: Duration = Duration::from_secs(8);
 
-/// Reads that are left to verify with.
+/// Remaining reads to verify with.
 struct Tries {
     reads: u8,
     clearings: u8,
@@ -49,8 +50,8 @@ impl Tries {
 }
 
 impl Session {
-    /// Does one of these to its end and answers it. When the link is lost meanwhile, what is known then is the answer,
-    /// given once everybody can see that the link is lost.
+    /// Runs one of these requests to its end and answers it. If the link is lost meanwhile, the answer is the state
+    /// known then, sent once the lost link was published.
     pub(crate) async fn alone(
         &mut self,
         bus: &mut dyn Bus,
@@ -114,7 +115,7 @@ impl Session {
         }
     }
 
-    /// What is more urgent goes first: wishes, and a stop until it is confirmed or has failed.
+    /// Handles more urgent work first: control requests, and a stop until it is confirmed or has failed.
     async fn give_way(&mut self, bus: &mut dyn Bus) -> Result<(), WireEnd> {
         loop {
             self.wake_up()?;
@@ -131,7 +132,7 @@ impl Session {
         }
     }
 
-    /// Why it must not be done now. What is not known is looked at first.
+    /// Reason why the request must not be done now, if any. An unknown rest state is resolved by reading first.
     async fn refusal(&mut self, bus: &mut dyn Bus) -> Result<Option<NotSent>, WireEnd> {
         let mut looks = LOOKS;
         loop {
@@ -153,7 +154,7 @@ impl Session {
         }
     }
 
-    /// The same, and not while the result of an earlier SAVE may still come.
+    /// The same, and also refuses while the result of an earlier SAVE may still come.
     async fn trigger_refusal(&mut self, bus: &mut dyn Bus) -> Result<Option<NotSent>, WireEnd> {
         let why = self.refusal(bus).await?;
         let wait = self.saving.may_send(self.now()).err();
@@ -173,7 +174,7 @@ impl Session {
         if let Some(why) = self.refusal(bus).await? {
             return Ok(written(Verdict::NotSent(why), None));
         }
-        // The same value again does no harm: after a missing answer it goes out a second time.
+        // Writing the same value twice is harmless: after a missing reply it is sent a second time.
         for may_repeat in [true, false] {
             let (refused, is_unanswered) = self.write_group(bus, setting).await?;
             let mut tries = Tries::new();
@@ -184,7 +185,7 @@ impl Session {
                     Ok(bytes) if setting.is_held_by(&bytes) => {
                         return Ok(written(Verdict::Applied, Some(bytes)));
                     }
-                    // What a line without a check worth the name gave once is asked for again.
+                    // The line may have no effective checksum, so a value read once is read again.
                     Ok(bytes) if held.as_ref() != Some(&bytes) && tries.reads > 0 => {
                         held = Some(bytes);
                     }
@@ -203,7 +204,7 @@ impl Session {
         Ok(written(Verdict::Unverified { why }, None))
     }
 
-    /// Writes a group once. The hand may answer elsewhere then, or not at all.
+    /// Writes a group once without reading it back: the hand may answer elsewhere afterwards, or not at all.
     async fn write_unread(
         &mut self,
         bus: &mut dyn Bus,
@@ -222,8 +223,8 @@ impl Session {
         Ok(Ok(()))
     }
 
-    /// Sends all writes of a group: the first refusal, and whether an answer is missing. Over CAN a part of the group may
-    /// be written and the rest not.
+    /// Sends all writes of a group; returns the first refusal, and true if a reply is missing. Over CAN the group may
+    /// be written in part.
     async fn write_group(
         &mut self,
         bus: &mut dyn Bus,
@@ -251,7 +252,7 @@ impl Session {
             return Ok(Saved::NotSent(why));
         }
         let frame = bus.save_result_frame();
-        // Without a picture from before there is nothing to compare with, and that is said at the end.
+        // Without the values from before there is nothing to compare with, which the result reports.
         let mut before = None;
         if frame == ResultFrame::None {
             let mut tries = Tries::new();
@@ -260,7 +261,7 @@ impl Session {
                 return Ok(Saved::NotSent(why));
             }
         }
-        // What came until now is of an earlier one.
+        // Frames received until now belong to an earlier one.
         while bus.take_save_result().is_some() {}
         self.saving.send(self.now(), frame);
         self.leave_line();
@@ -270,7 +271,7 @@ impl Session {
             Err(BusError::Refused { reason }) => Ack::Refused { reason: *reason },
             Err(_) => Ack::Unanswered,
         });
-        // A hand that writes its flash may be mute: that is no silence to be counted.
+        // A hand may be mute while it writes its flash; that does not count as silence.
         if let Err(BusError::Lost(error)) = sent {
             return Err(WireEnd::Lost(error.into()));
         }
@@ -303,12 +304,12 @@ impl Session {
         }
     }
 
-    /// Sent once, then the line is left to the hand until its frame comes or it must be over.
+    /// Sends the calibration once, then reserves the line for the hand until its end frame comes or the time is over.
     async fn calibrate_forces(&mut self, bus: &mut dyn Bus) -> Result<Calibrated, WireEnd> {
         if let Some(why) = self.trigger_refusal(bus).await? {
             return Ok(Calibrated::NotSent(why));
         }
-        // What came until now is of an earlier one.
+        // Frames received until now belong to an earlier one.
         let _earlier = bus.take_calibration_end();
         let over = self.now().plus(CALIBRATION_TAKES);
         self.leave_line();
@@ -316,7 +317,7 @@ impl Session {
             Ok(()) => true,
             Err(BusError::Refused { reason }) => return Ok(Calibrated::Refused { reason }),
             Err(BusError::Lost(error)) => return Err(WireEnd::Lost(error.into())),
-            // A hand that measures may be mute: that is no silence to be counted.
+            // A hand may be mute while it measures; that does not count as silence.
             Err(_) => false,
         };
         loop {
@@ -336,7 +337,7 @@ impl Session {
         }
     }
 
-    /// From now on the line is left to a hand that saves or calibrates.
+    /// Reserves the line for a hand that saves or calibrates.
     fn leave_line(&mut self) {
         self.leaves_line = true;
         self.tell_rest();
@@ -346,11 +347,11 @@ impl Session {
         self.write(bus, &what.write(), WriteCause::Setting).await
     }
 
-    /// Leaves the line to the hand: takes what comes, asks nothing, and ends early for a wish of the window.
+    /// Listens without sending a request; ends early for a control request.
     async fn listen(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<(), WireEnd> {
         let now = self.now();
         let until = until.min(now.plus(LISTEN_DURATION));
-        // A stop that feedback does not confirm goes on meanwhile.
+        // An unconfirmed stop continues meanwhile.
         let until = self
             .motion
             .next_send(now)
@@ -365,7 +366,7 @@ impl Session {
         }
     }
 
-    /// Reads a group in a form that no late reply can answer.
+    /// Reads a group in a shape that no late reply can answer.
     async fn read_back(
         &mut self,
         bus: &mut dyn Bus,
@@ -374,7 +375,7 @@ impl Session {
     ) -> Result<Result<Vec<u8>, Doubt>, WireEnd> {
         while tries.reads > 0 {
             self.give_way(bus).await?;
-            // The same bytes and a few more: each length is another question.
+            // The same bytes and a few more: each length is a distinct read.
             let shapes = [0, 2, 4, 6].map(|more| Span::new(span.address, span.len + more));
             let Some(shape) = bus.choose(&shapes) else {
                 if tries.clearings == 0 {
@@ -391,7 +392,7 @@ impl Session {
                 .read_unless(shape, limit, &|| wanted.borrow().stop)
                 .await;
             match read {
-                // A stop came between.
+                // A stop was requested meanwhile.
                 Ok(None) => {}
                 Ok(Some(bytes)) => {
                     tries.reads -= 1;
@@ -408,7 +409,7 @@ impl Session {
         Ok(Err(Doubt::NotReadBack))
     }
 
-    /// True if a read of this run could be answered by the result of a SAVE.
+    /// True if the result of a SAVE could answer a read of this range.
     pub(crate) fn looks_like_save(&self, span: Span) -> bool {
         span == SAVE.span() && self.saving.is_claimed(self.now())
     }

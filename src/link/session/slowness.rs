@@ -1,14 +1,14 @@
-//! How late replies are on a wire where a late one is known by its number. Pure.
+//! Measures the delay of replies on a wire where a late reply is identified by its number. Pure.
 
 use crate::link::bus::late_replies::{LateReply, REPLY_LIMIT_MIN, slow_limit};
 use std::time::Duration;
 
-/// A reply later than this is a hiccup and tells nothing of the next one.
+/// A reply later than this is an outlier and predicts nothing about the next one.
 const SLOWEST: Duration = Duration::from_millis(350);
-/// So many replies in a row, each in half the time, and the way is quick again.
+/// After this many consecutive replies, each in less than half the slowest time, the link counts as fast again.
 const QUICK_LEAST: u32 = 20;
 
-/// The slowest reply lately, if it took longer than the shortest wait for one.
+/// The slowest recent reply, if it took longer than the minimum wait.
 #[derive(Debug, Default)]
 pub(crate) struct Slowness {
     slowest: Option<Duration>,
@@ -16,12 +16,12 @@ pub(crate) struct Slowness {
 }
 
 impl Slowness {
-    /// A reply came after its request was given up.
+    /// Records a reply that came after its request had timed out.
     pub(crate) fn late(&mut self, reply: LateReply) {
         self.took(reply.took);
     }
 
-    /// A reply took so long.
+    /// Records the round trip time of a reply.
     pub(crate) fn took(&mut self, took: Duration) {
         let Some(slowest) = self.slowest else {
             self.slowest = Some(took).filter(|took| is_slow(*took));
@@ -40,12 +40,12 @@ impl Slowness {
         }
     }
 
-    /// How long a reply takes, where that is long.
+    /// The slowest recent round trip; `None` while replies are fast.
     pub(crate) const fn slowest(&self) -> Option<Duration> {
         self.slowest
     }
 
-    /// The shortest wait for a reply.
+    /// The minimum time to wait for a reply.
     pub(crate) fn least_wait(&self) -> Duration {
         self.slowest.map_or(REPLY_LIMIT_MIN, slow_limit)
     }

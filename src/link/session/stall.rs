@@ -1,4 +1,4 @@
-//! Stalls of this program's own loop: for how long it could not attend to the wire. Such a time says nothing of the hand.
+//! Stalls of this program's own loop: times when it did not service the wire. Such a time says nothing about the hand.
 
 use crate::hand::Moment;
 use crate::link::status::Stall;
@@ -7,11 +7,11 @@ use std::pin::pin;
 use std::time::Duration;
 use tokio::time::{Instant, sleep_until};
 
-/// A shorter delay is the usual work of a scheduler.
+/// A shorter delay is normal scheduler jitter.
 pub(crate) const STALL_MIN: Duration = Duration::from_millis(20);
-/// How often a wait that goes on looks whether it was woken in time.
+/// Interval at which a pending wait checks that it was woken in time.
 const TICK: Duration = Duration::from_millis(10);
-/// More than fit into the time that any judgement looks back on.
+/// Stalls kept: more than fit into the longest time that any check looks back on.
 const STALLS_MAX: usize = 64;
 
 /// The stalls of one session.
@@ -21,7 +21,7 @@ pub(crate) struct StallMeter {
 }
 
 impl StallMeter {
-    /// The loop was this late at `now`; the stall, if it is one.
+    /// Records that the loop was `late` at `now`; returns the stall if it is long enough to count.
     pub(crate) fn late(&mut self, late: Duration, now: Moment) -> Option<Stall> {
         if late < STALL_MIN {
             return None;
@@ -37,7 +37,7 @@ impl StallMeter {
         Some(stall)
     }
 
-    /// How much of the time since then was a stall.
+    /// Total stalled time since `then`.
     pub(crate) fn since(&self, then: Moment) -> Duration {
         let parts = self.recent.iter().map(|stall| {
             let passed = stall.ended.since(then);
@@ -47,7 +47,7 @@ impl StallMeter {
     }
 }
 
-/// Does the work, and says for how long it was not attended to meanwhile.
+/// Runs the future, and also returns for how long the loop stalled meanwhile.
 pub(crate) async fn watched<T>(work: impl Future<Output = T>) -> (T, Duration) {
     let mut work = pin!(work);
     let mut stalled = Duration::ZERO;

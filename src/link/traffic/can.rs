@@ -1,4 +1,4 @@
-//! CAN for the tap: Linux's frames, and the text and the packets of serial adapters. What they hold is the codecs' to know.
+//! CAN for the tap: Linux's frames, and the text and the packets of serial adapters. The codecs decode their contents.
 
 use crate::codec::can::{CanFrame, CanFunction, CanId, CanRecord, RECORD_LEN, from_record};
 use crate::codec::slcan::{AnswerDecoder, CommandDecoder, LINE_MAX, SlcanAnswer, SlcanCommand};
@@ -12,7 +12,7 @@ use crate::record::Direction;
 const CR: u8 = b'\r';
 const BEL: u8 = 0x07;
 
-/// What stands here of a CAN interface.
+/// Finds a frame of a CAN interface at the first byte.
 pub const fn look_record(bytes: &[u8]) -> FrameCut {
     if bytes.len() >= RECORD_LEN {
         FrameCut::Whole(RECORD_LEN)
@@ -21,7 +21,7 @@ pub const fn look_record(bytes: &[u8]) -> FrameCut {
     }
 }
 
-/// What stands here of an adapter's line.
+/// Finds a line of a serial adapter at the first byte.
 pub fn look_line(bytes: &[u8]) -> FrameCut {
     match bytes.iter().position(|byte| matches!(*byte, CR | BEL)) {
         Some(end) if end <= LINE_MAX => FrameCut::Whole(end + 1),
@@ -30,7 +30,7 @@ pub fn look_line(bytes: &[u8]) -> FrameCut {
     }
 }
 
-/// What stands here of the maker's adapter.
+/// Finds a packet of the maker's adapter at the first byte.
 pub fn look_packet(bytes: &[u8]) -> FrameCut {
     match inspect(bytes) {
         PacketStart::Packet(len, _) => FrameCut::Whole(len),
@@ -42,7 +42,7 @@ pub fn look_packet(bytes: &[u8]) -> FrameCut {
     }
 }
 
-/// What a packet says; one that is damaged says nothing.
+/// Content of a packet; a damaged one has none.
 pub fn said_packet(direction: Direction, packet: &[u8]) -> FrameContent {
     match (inspect(packet), direction) {
         (PacketStart::Packet(_, PacketContent::Frame(frame)), _) => said_frame(direction, &frame),
@@ -52,7 +52,7 @@ pub fn said_packet(direction: Direction, packet: &[u8]) -> FrameContent {
     }
 }
 
-/// What a frame of a CAN interface says.
+/// Content of a frame of a CAN interface.
 pub fn said_record(direction: Direction, record: &[u8]) -> FrameContent {
     let Ok(record) = <&[u8; RECORD_LEN]>::try_from(record) else {
         return FrameContent::new(Kind::Noise);
@@ -65,7 +65,7 @@ pub fn said_record(direction: Direction, record: &[u8]) -> FrameContent {
     }
 }
 
-/// What a line from or to an adapter says.
+/// Content of a line from or to an adapter.
 pub fn said_line(direction: Direction, line: &[u8]) -> FrameContent {
     match direction {
         Direction::ToHand => {
@@ -113,7 +113,7 @@ fn said_frame(direction: Direction, frame: &CanFrame) -> FrameContent {
         (Direction::FromHand, CanFunction::Write, _) => {
             let mut said = FrameContent::new(Kind::WriteReply);
             said.span = Some(Span::new(id.address, 0));
-            // An acknowledgement has one byte (manual 2.3.2); an adapter that echoes gives back all.
+            // An acknowledgement has one byte (manual 2.3.2); an adapter that echoes returns all.
             said.wrong((len > 1).then_some(Wrong::Echo))
         }
         (Direction::ToHand, CanFunction::Read, _) => {

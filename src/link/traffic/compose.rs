@@ -1,9 +1,9 @@
-//! A frame that passed over the wire, as code that the user can paste. Sends nothing.
+//! Converts a recorded frame to code that the user can paste. Sends nothing.
 
 use crate::link::traffic::frame::hex;
 use crate::transport::Endpoint;
 
-/// A way to write the bytes down.
+/// Format of a snippet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum SnippetFormat {
     /// Hexadecimal digits.
@@ -17,10 +17,10 @@ pub enum SnippetFormat {
 }
 
 impl SnippetFormat {
-    /// All formats, in the order of the menu.
+    /// All formats, in menu order.
     pub const ALL: [Self; 4] = [Self::Hex, Self::Python, Self::C, Self::Rust];
 
-    /// Its name, the same in all languages.
+    /// Name of the format, the same in all UI languages.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Hex => "Hex",
@@ -30,8 +30,7 @@ impl SnippetFormat {
         }
     }
 
-    /// One frame that passed over the wire of this endpoint. On CAN only its digits: there the bytes hold more than the
-    /// frame.
+    /// The text of one frame of this endpoint. On CAN only hexadecimal: the bytes there contain more than the frame.
     pub fn text(self, bytes: &[u8], endpoint: Option<&Endpoint>) -> Option<String> {
         if matches!(endpoint, Some(Endpoint::Can { .. })) && self != Self::Hex {
             return None;

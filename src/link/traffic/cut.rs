@@ -1,43 +1,43 @@
-//! Cuts a stream of one direction into frames and runs of other bytes, by what a protocol sees at each place. Bounded;
-//! knows no protocol.
+//! Splits a stream of one direction into frames and runs of other bytes, by a protocol's verdict at each position.
+//! Bounded; independent of the protocol.
 
 use crate::link::traffic::frame::Wrong;
 
-/// Bytes that may wait for the rest of their frame: the longest frame of any wire has 261.
+/// Maximum bytes kept for an incomplete frame: the longest frame of any wire has 261.
 pub const WAITING_MAX: usize = 600;
-/// Longest run of other bytes that is one entry.
+/// Maximum length of a run of other bytes in one entry.
 const RUN_MAX: usize = 128;
 
-/// What a protocol sees at a place.
+/// A protocol's verdict at one position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FrameCut {
     /// A frame of this many bytes.
     Whole(usize),
-    /// A damaged frame of this many bytes. A good one may begin inside.
+    /// A damaged frame of this many bytes. A valid one may begin inside.
     Damaged(usize, Wrong),
-    /// A frame that is not whole yet; its length if that is known.
+    /// An incomplete frame; its length if known.
     Open(Option<usize>),
     /// No frame begins here.
     Nothing(Wrong),
 }
 
-/// Some bytes of the stream, cut out.
+/// One cut piece of the stream.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cut {
     /// The bytes, at least one.
     pub bytes: Vec<u8>,
-    /// What is wrong about them; `None` for a good frame.
+    /// Fault of the bytes; `None` for a valid frame.
     pub wrong: Option<Wrong>,
 }
 
-/// The bytes of one direction that wait for the rest of their frame.
+/// The bytes of one direction that are still incomplete.
 #[derive(Debug, Clone, Default)]
 pub struct Cutter {
     waiting: Vec<u8>,
 }
 
 impl Cutter {
-    /// Takes bytes and gives what is cut by them to `out`. At most [`WAITING_MAX`] bytes are kept.
+    /// Applies bytes and passes the resulting pieces to `out`. At most [`WAITING_MAX`] bytes are kept.
     pub fn push(
         &mut self,
         mut bytes: &[u8],
@@ -56,12 +56,12 @@ impl Cutter {
         }
     }
 
-    /// The line fell silent: what is not whole by now never will be.
+    /// Called when the line is silent: cuts all incomplete bytes, as the rest will not come.
     pub fn flush(&mut self, look: impl Fn(&[u8]) -> FrameCut, mut out: impl FnMut(Cut)) {
         self.cut(&look, &mut out, true);
     }
 
-    /// Bytes that wait.
+    /// Number of incomplete bytes.
     pub const fn waiting(&self) -> usize {
         self.waiting.len()
     }
@@ -95,7 +95,7 @@ impl Cutter {
     }
 }
 
-/// Bytes up to the first good frame behind a damaged beginning, or all `len`.
+/// Bytes up to the first valid frame after a damaged beginning, or all `len`.
 fn until_next(bytes: &[u8], len: usize, look: impl Fn(&[u8]) -> FrameCut) -> usize {
     let good = |at: &usize| {
         let rest = bytes.get(*at..).unwrap_or_default();
@@ -104,7 +104,7 @@ fn until_next(bytes: &[u8], len: usize, look: impl Fn(&[u8]) -> FrameCut) -> usi
     (1..len.min(bytes.len())).find(good).unwrap_or(len)
 }
 
-/// Bytes that begin no frame, one behind the other.
+/// Consecutive bytes at which no frame begins.
 #[derive(Default)]
 struct NoiseRun {
     bytes: Vec<u8>,

@@ -1,4 +1,4 @@
-//! Pieces of a tap to frames, for one link. Pure: no clock, no lock; the same pieces give the same frames.
+//! Decodes the pieces of a tap into frames, for one link. Pure: no clock, no lock; the same pieces give the same frames.
 
 use crate::hand::Moment;
 use crate::link::bus::error::id_of;
@@ -11,16 +11,16 @@ use crate::record::{Direction, Piece, PieceKind};
 use crate::transport::Endpoint;
 use std::time::Duration;
 
-/// After so long without a byte an unfinished frame will not be finished: a reply's pieces follow one another within
-/// the 16 ms of a USB adapter.
+/// After this long without a byte an incomplete frame counts as ended: a reply's pieces follow one another within the
+/// 16 ms of a USB adapter.
 pub const SILENCE: Duration = Duration::from_millis(25);
 
-/// Result of decoding a stretch of bytes.
+/// Result of decoding some bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Heard {
     /// A complete frame, valid or not.
     Frame(Frame),
-    /// The request of this number stayed without reply.
+    /// The request with this number got no reply.
     NoReply(u64),
 }
 
@@ -28,11 +28,11 @@ pub enum Heard {
 #[derive(Debug, Clone, Default)]
 struct Half {
     cutter: Cutter,
-    /// When its last byte passed.
+    /// Time of its last byte.
     last: Moment,
 }
 
-/// Makes frames of pieces.
+/// Decodes pieces into frames.
 #[derive(Debug, Clone)]
 pub struct Decoder {
     form: FrameFormat,
@@ -44,7 +44,7 @@ pub struct Decoder {
 }
 
 impl Decoder {
-    /// For a link to this hand.
+    /// A decoder for a link to this hand.
     pub fn new(endpoint: &Endpoint) -> Self {
         let form = FrameFormat::of(endpoint);
         let hand = id_of(endpoint);
@@ -69,7 +69,7 @@ impl Decoder {
         }
     }
 
-    /// Pieces are missing here.
+    /// Records that pieces are missing here.
     pub fn gap(&mut self, at: Moment, pieces: u64, out: &mut Vec<Heard>) {
         self.wire(at, Kind::Gap, out);
         if let Some(Heard::Frame(frame)) = out.last_mut() {
@@ -77,7 +77,7 @@ impl Decoder {
         }
     }
 
-    /// Time passes: what has been unfinished for [`SILENCE`] is given as it is.
+    /// Advances time: bytes incomplete for [`SILENCE`] are emitted as they are.
     pub fn tick(&mut self, now: Moment, out: &mut Vec<Heard>) {
         for direction in [Direction::ToHand, Direction::FromHand] {
             let half = self.half(direction);
@@ -88,7 +88,7 @@ impl Decoder {
         out.extend(self.matching.overdue(now).map(Heard::NoReply));
     }
 
-    /// Bytes that wait for the rest of their frame, of both directions.
+    /// Number of incomplete bytes, of both directions.
     pub const fn waiting(&self) -> usize {
         self.to_hand.cutter.waiting() + self.from_hand.cutter.waiting()
     }
@@ -132,7 +132,7 @@ impl Decoder {
         };
         let mut frame = self.empty(at, direction, said.kind);
         frame.bytes = cut.bytes.into_boxed_slice();
-        // Damage counts before what damaged bytes seem to say.
+        // Damage takes precedence over the content of damaged bytes.
         frame.wrong = cut.wrong;
         out.extend(self.matching.place(&mut frame, said).map(Heard::NoReply));
         out.push(Heard::Frame(frame));

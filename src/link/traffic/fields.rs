@@ -1,4 +1,4 @@
-//! A frame byte by byte: which bytes are what, and which of them are wrong. Words for people are the views'.
+//! A frame byte by byte: the meaning of its bytes, and their faults. The views provide the wording.
 
 use crate::codec::usbcan::split_escapes;
 use crate::link::traffic::frame::{Frame, FrameFormat, Kind, Wrong};
@@ -6,16 +6,16 @@ use crate::link::traffic::values;
 use crate::record::Direction;
 use std::ops::Range;
 
-/// What some bytes of a frame are.
+/// Meaning of some bytes of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FieldName {
-    /// The two bytes that a frame begins with (manual 2.2).
+    /// The two bytes at the start of a frame (manual 2.2).
     Header,
     /// The hand's id.
     Id,
     /// The Modbus unit.
     Unit,
-    /// Length of what follows.
+    /// Length of the rest.
     Length,
     /// 0x11 read, 0x12 write.
     Command,
@@ -23,15 +23,15 @@ pub enum FieldName {
     Function,
     /// Byte address in the hand's memory.
     Address,
-    /// Bytes that are asked for.
+    /// Number of bytes requested.
     Wanted,
-    /// Words that are asked for or were written.
+    /// Number of words requested or written.
     Words,
     /// Bytes of memory.
     Data,
-    /// 1 = taken.
+    /// 1 = accepted.
     Acknowledge,
-    /// Why the hand said no.
+    /// Reason code of a refusal.
     Code,
     /// Sum over the frame.
     Checksum,
@@ -43,35 +43,35 @@ pub enum FieldName {
     Protocol,
     /// CAN identifier.
     CanId,
-    /// Filler of Linux's form of a CAN frame, or of a packet of the maker's CAN adapter.
+    /// Padding of Linux's CAN frame, or of a packet of the maker's CAN adapter.
     Filler,
-    /// Channel, 29 or 11 bits, data or remote frame: of a packet of the maker's CAN adapter.
+    /// Channel, 29 or 11 bits, data or remote frame: in a packet of the maker's CAN adapter.
     FrameKind,
-    /// The two bytes that such a packet ends with.
+    /// The two bytes at the end of such a packet.
     Tail,
     /// Text of a serial CAN adapter.
     Text,
-    /// Bytes of no known meaning.
+    /// Bytes of unknown meaning.
     Unknown,
 }
 
-/// Some bytes of a frame.
+/// One field of a frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Field {
-    /// Bytes of the frame, from its first.
+    /// Byte range in the frame.
     pub at: Range<usize>,
     /// Meaning of the bytes.
     pub name: FieldName,
-    /// The register whose memory they are, as the manual names it.
+    /// The register that they belong to, as the manual names it.
     pub register: Option<String>,
-    /// What they say, as a number or numbers; empty if nothing.
+    /// Their value, as a number or numbers; empty if none.
     pub value: String,
-    /// What is wrong about them.
+    /// Fault of these bytes.
     pub wrong: Option<Wrong>,
 }
 
 impl Frame {
-    /// All bytes, in order and without holes.
+    /// All fields, in order and without gaps.
     pub fn fields(&self) -> Vec<Field> {
         let mut parts = Parts {
             frame: self,
@@ -114,7 +114,7 @@ impl Parts<'_> {
         self.frame.bytes.len().saturating_sub(self.at)
     }
 
-    /// The next `len` bytes, or what is left.
+    /// Appends a field of the next `len` bytes, or of the rest.
     fn put(&mut self, len: usize, name: FieldName) {
         let len = len.min(self.left());
         if len == 0 {
@@ -132,19 +132,19 @@ impl Parts<'_> {
         });
     }
 
-    /// As [`Self::put`], and the A5 that were put in before them.
+    /// As [`Self::put`], including the escape bytes A5 before them.
     fn put_escaped(&mut self, len: usize, name: FieldName) {
         let whole = self.escaped(len);
         self.put(whole, name);
     }
 
-    /// Bytes that the next `len` take with the A5 that were put in.
+    /// Number of bytes that the next `len` take, including the escape bytes A5.
     fn escaped(&self, len: usize) -> usize {
         let left = self.bytes(&(self.at..self.frame.bytes.len()));
         split_escapes(left).take(len).map(|(taken, _)| taken).sum()
     }
 
-    /// The next `len` bytes are memory: one field a register.
+    /// Appends the next `len` bytes as memory: one field per register.
     fn memory(&mut self, len: usize) {
         let end = self.at + len.min(self.left());
         let (Some(span), true) = (self.frame.span, self.frame.memory.len() == len) else {
@@ -181,7 +181,7 @@ impl Parts<'_> {
     }
 }
 
-/// Which field a fault is shown at; the first if none fits.
+/// True for the field at which a fault is shown; it is shown at the first if none matches.
 const fn blames(wrong: Wrong, name: FieldName) -> bool {
     matches!(
         (wrong, name),
@@ -282,7 +282,7 @@ fn tcp(parts: &mut Parts<'_>) {
     pdu(parts, 0);
 }
 
-/// Function and what follows, up to `behind` bytes before the end.
+/// Function and its data, up to `behind` bytes before the end.
 fn pdu(parts: &mut Parts<'_>, behind: usize) {
     use FieldName as F;
     let function = parts.frame.bytes.get(parts.at).copied().unwrap_or_default();
@@ -336,7 +336,7 @@ fn packet(parts: &mut Parts<'_>) {
     use FieldName as F;
     parts.put(2, F::Header);
     parts.put_escaped(4, F::CanId);
-    // The length stands behind the data.
+    // The length follows the data.
     let at = parts.at + parts.escaped(8);
     let len = usize::from(parts.frame.bytes.get(at).copied().unwrap_or_default()).min(8);
     match parts.frame.kind {

@@ -1,11 +1,11 @@
-//! One frame as it is shown: when, which way, what it says, what is wrong about it. How it is found is not known here.
+//! One frame for display: time, direction, content, fault. Independent of the decoding.
 
 use crate::hand::{Moment, Span};
 use crate::record::Direction;
 use crate::transport::Endpoint;
 use std::time::Duration;
 
-/// How frames stand on the wire.
+/// Framing on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FrameFormat {
     /// The private framing (manual 2.2).
@@ -23,7 +23,7 @@ pub enum FrameFormat {
 }
 
 impl FrameFormat {
-    /// What an endpoint speaks; the built-in hand speaks RS485.
+    /// Framing of an endpoint; the built-in hand uses RS485.
     pub const fn of(endpoint: &Endpoint) -> Self {
         match endpoint {
             Endpoint::Sim { .. } | Endpoint::Rs485(_) => Self::Rs485,
@@ -45,29 +45,29 @@ pub enum Kind {
     Closed,
     /// The other side hung up, or the wire broke.
     Broken,
-    /// Pieces that went out of the ring before anybody looked.
+    /// Pieces that were dropped from the ring before they were read.
     Gap,
-    /// Memory is asked for.
+    /// A read request.
     Read,
-    /// Memory is told.
+    /// A reply with memory.
     ReadReply,
-    /// Memory is to be changed.
+    /// A write request.
     Write,
-    /// A change was taken.
+    /// An acknowledged write.
     WriteReply,
-    /// The hand said no.
+    /// The hand refused.
     Refusal,
-    /// The late frame that tells how a SAVE ended (manual 2.2.2).
+    /// The late frame with the result of a SAVE (manual 2.2.2).
     SaveResult,
-    /// Something for the CAN adapter itself.
+    /// A command to the CAN adapter itself.
     Adapter,
-    /// Something from the CAN adapter or the CAN interface itself.
+    /// A message of the CAN adapter or the CAN interface itself.
     AdapterReply,
-    /// No frame.
+    /// Not a frame.
     Noise,
 }
 
-/// What is wrong about a frame.
+/// Fault of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum Wrong {
     /// The sum over the frame differs (manual 2.2.1).
@@ -86,15 +86,15 @@ pub enum Wrong {
         /// Value computed over the frame.
         want: u16,
     },
-    /// It ended before its own length byte says.
+    /// It ended before its own length byte indicates.
     #[error("cut off: {got} bytes{}", of(.want))]
     CutOff {
-        /// Bytes there were.
+        /// Number of bytes received.
         got: usize,
-        /// Bytes there should be, as far as that is known.
+        /// Number of bytes expected, if known.
         want: Option<usize>,
     },
-    /// A header and an impossible length or command behind it.
+    /// A header followed by an impossible length or command.
     #[error("header with impossible length {len} or command")]
     BadHead {
         /// The length byte.
@@ -105,7 +105,7 @@ pub enum Wrong {
     /// Bytes in which no frame begins.
     #[error("{len} bytes that are not a frame")]
     NoFrame {
-        /// How many.
+        /// Number of bytes.
         len: usize,
     },
     /// Another protocol id than 0 (manual 2.5).
@@ -114,48 +114,48 @@ pub enum Wrong {
         /// Value in the frame.
         got: u16,
     },
-    /// A length field that no message has (manual 2.5).
+    /// A length field with an impossible value (manual 2.5).
     #[error("length field {got}, possible are 2 to 254")]
     LengthField {
         /// Value in the frame.
         got: u16,
     },
-    /// A function that this hand does not know, or whose length does not fit it.
+    /// A function that this hand does not support, or with a wrong length.
     #[error("unknown function {function}, or one of the wrong length")]
     Function {
         /// Value in the frame.
         function: u8,
     },
-    /// From or to another hand.
+    /// A frame from or to another hand.
     #[error("id {got}, this hand is {want}")]
     ForeignId {
         /// Value in the frame.
         got: u16,
-        /// The one of this link.
+        /// Id of this link's hand.
         want: u16,
     },
-    /// A CAN identifier that is not this hand's protocol.
+    /// A CAN identifier outside this hand's protocol.
     #[error("identifier {id:08X} does not belong to the hand")]
     ForeignCanId {
         /// Value in the frame.
         id: u32,
     },
-    /// A request that came in: an adapter that echoes, or another program that asks.
+    /// A received request: an echo of the adapter, or another program's.
     #[error("a request from outside: an echo, or another program on the bus")]
     Echo,
-    /// A reply from us, which nobody sends.
+    /// A sent reply, which is never valid.
     #[error("a reply going out")]
     Backwards,
-    /// Nothing was asked that this could answer.
+    /// No request matches this reply.
     #[error("nobody asked for it")]
     NotAsked,
-    /// It answers a request that was given up.
+    /// It answers a request that timed out.
     #[error("late: the request was given up {after_ms} ms ago")]
     Late {
         /// Time since the request.
         after_ms: u64,
     },
-    /// Fewer or more bytes than were asked for.
+    /// Fewer or more bytes than requested.
     #[error("{got} bytes of memory, {want} were requested")]
     Amount {
         /// Value in the frame.
@@ -163,7 +163,7 @@ pub enum Wrong {
         /// Value in the request.
         want: u16,
     },
-    /// It is about another address than was asked.
+    /// Another address than requested.
     #[error("address {got}, {want} was requested")]
     Address {
         /// Value in the frame.
@@ -179,13 +179,13 @@ pub enum Wrong {
         /// Value in the request.
         want: u16,
     },
-    /// The hand said no.
+    /// The hand refused.
     #[error("refused with code {code}")]
     Refused {
-        /// Why, by the standard's table.
+        /// Reason code of the standard.
         code: u8,
     },
-    /// The hand did not take it: an acknowledgement other than 1.
+    /// The hand did not accept the write: an acknowledgement other than 1.
     #[error("not accepted: acknowledgement {value}, should be 1")]
     NotTaken {
         /// Value in the frame.
@@ -197,25 +197,25 @@ pub enum Wrong {
         /// Value in the frame.
         value: u8,
     },
-    /// No reply came before the next request.
+    /// No reply before the next request.
     #[error("no reply")]
     NoReply,
-    /// A line that no adapter says or takes.
+    /// Not a line of a serial adapter.
     #[error("not a line of a serial CAN adapter")]
     Line,
-    /// The adapter said that it could not.
+    /// The adapter reported a failure.
     #[error("the adapter reports failure")]
     AdapterFailed,
-    /// The CAN controller gave the bus up.
+    /// The CAN controller left the bus.
     #[error("bus-off: the controller left the bus")]
     BusOff,
-    /// The CAN controller met many errors.
+    /// The CAN controller counted many errors.
     #[error("error-passive: the controller saw many errors")]
     ErrorPassive,
-    /// Pieces that are gone.
+    /// Pieces that were dropped.
     #[error("{pieces} earlier pieces are no longer kept")]
     Forgotten {
-        /// How many.
+        /// Number of pieces.
         pieces: u64,
     },
 }
@@ -225,7 +225,7 @@ fn of(want: &Option<usize>) -> String {
 }
 
 impl Wrong {
-    /// True if the bytes themselves are damaged or no frame, not only out of place.
+    /// True if the bytes themselves are damaged or not a frame, rather than only out of place.
     pub const fn is_damage(&self) -> bool {
         matches!(
             self,
@@ -245,43 +245,43 @@ impl Wrong {
 /// One frame, or a change of the wire, which has no bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// Counts all frames of a link, from 1. Never given twice.
+    /// Sequence number of the frame on its link, from 1. Never reused.
     pub number: u64,
-    /// When its last byte passed.
+    /// Time of its last byte.
     pub at: Moment,
-    /// To the hand or from it.
+    /// Direction of the frame.
     pub direction: Direction,
-    /// How it stands on the wire.
+    /// Framing on the wire.
     pub form: FrameFormat,
-    /// All of it, as it passed.
+    /// All bytes on the wire.
     pub bytes: Box<[u8]>,
     /// Request, reply, event of the wire, or noise.
     pub kind: Kind,
     /// The hand that is addressed, or that answers.
     pub hand: Option<u16>,
-    /// The memory it is about. In a reply without address, that of the request it answers.
+    /// The memory range. In a reply without address, that of the request it answers.
     pub span: Option<Span>,
     /// Bytes of the hand's memory that it carries, in memory order.
     pub memory: Box<[u8]>,
-    /// What is wrong about it.
+    /// Fault of the frame.
     pub wrong: Option<Wrong>,
-    /// From the end of the request to the end of this reply.
+    /// Time from the end of the request to the end of this reply.
     pub took: Option<Duration>,
 }
 
 impl Frame {
-    /// True if it is part of the regular reading and nothing is wrong about it.
+    /// True if it belongs to regular polling and has no fault.
     pub const fn is_polling(&self) -> bool {
         matches!(self.kind, Kind::Read | Kind::ReadReply) && self.wrong.is_none()
     }
 
-    /// The bytes in hex, two digits each with spaces between.
+    /// The bytes in hex, two digits each, separated by spaces.
     pub fn hex(&self) -> String {
         hex(&self.bytes)
     }
 }
 
-/// Bytes in hex, two digits each with spaces between.
+/// Bytes in hex, two digits each, separated by spaces.
 pub fn hex(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
     let digit = |half: u8| char::from(DIGITS.get(usize::from(half)).copied().unwrap_or(b'?'));

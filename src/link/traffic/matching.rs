@@ -1,5 +1,4 @@
-//! Sets what comes in against what was asked: which request a reply answers, and what is out of place. One request is
-//! open at a time, as the link has it.
+//! Matches replies with requests, and finds what is out of place. One request is open at a time, as on the link.
 
 use crate::codec::modbus::{detect_packing, group_bytes};
 use crate::codec::rs485::SaveResult;
@@ -13,9 +12,9 @@ use crate::record::Direction;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Requests without reply that a late reply is still set against.
+/// Requests without reply that a late reply can still match.
 const GIVEN_UP_MAX: usize = 16;
-/// A request that is open for this long gets no reply any more.
+/// A request that is open for this long counts as unanswered.
 const REPLY_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A request that waits for its reply.
@@ -47,7 +46,7 @@ impl OpenRequest {
     }
 }
 
-/// A request of the link and its outcome.
+/// Matching state of one link.
 #[derive(Debug, Clone)]
 pub struct Matching {
     form: FrameFormat,
@@ -59,7 +58,7 @@ pub struct Matching {
 }
 
 impl Matching {
-    /// Nothing asked yet of this hand.
+    /// State before the first request to this hand.
     pub fn new(form: FrameFormat, hand: u16) -> Self {
         Self {
             form,
@@ -71,20 +70,20 @@ impl Matching {
         }
     }
 
-    /// The number of a request that will get no reply any more.
+    /// Number of the open request, once it counts as unanswered.
     pub fn overdue(&mut self, now: Moment) -> Option<u64> {
         self.open
             .take_if(|open| now.since(open.at) >= REPLY_TIMEOUT)
             .map(|open| self.give_up(open))
     }
 
-    /// The wire is another one now: nothing asked before is answered on it. Gives the number of the open request.
+    /// Handles a new wire, on which earlier requests are not answered. Returns the number of the open request.
     pub fn renew(&mut self) -> Option<u64> {
         self.given_up.clear();
         self.open.take().map(|open| open.number)
     }
 
-    /// Puts what was said into a frame. If it is a request, the number of the one before it that stayed without reply.
+    /// Adds the content to a frame. If it is a request, returns the number of the previous one if that got no reply.
     pub fn place(&mut self, frame: &mut Frame, said: FrameContent) -> Option<u64> {
         frame.kind = said.kind;
         frame.hand = said.hand;
@@ -153,7 +152,7 @@ impl Matching {
         }
         let wrong = self.misfit(said);
         frame.wrong = Some(wrong);
-        // It was the answer, only a wrong one: no other will come.
+        // It was the reply, only a wrong one: no other will come.
         if matches!(wrong, Wrong::Amount { .. }) {
             self.open = None;
         }
@@ -179,7 +178,7 @@ impl Matching {
         {
             return Wrong::Address { got, want };
         }
-        // Request and reply share an identifier on CAN, so an echo is told by what it carries.
+        // Request and reply share an identifier on CAN, so an echo is recognised by its content.
         let is_can = matches!(
             self.form,
             FrameFormat::Can | FrameFormat::Slcan | FrameFormat::UsbCan
@@ -211,7 +210,7 @@ impl Matching {
         true
     }
 
-    /// Some hands keep single bytes one a word (manual 2.5 is silent); the link finds out at TEMP, and so is it here.
+    /// Some hands store one byte per word (manual 2.5 is silent); the link detects that at TEMP, and so does this code.
     fn unpack(&mut self, frame: &mut Frame) {
         let is_modbus = matches!(self.form, FrameFormat::Rtu | FrameFormat::Tcp);
         let Some(span) = frame
@@ -222,7 +221,7 @@ impl Matching {
         };
         let (pairs, _) = frame.memory.as_chunks::<2>();
         let words: Vec<u16> = pairs.iter().map(|pair| u16::from_le_bytes(*pair)).collect();
-        // Over RTU the link asks for more words than six where a late reply could have as many.
+        // Over RTU the link requests more than six words if a late reply could have as many.
         let Some(six) = words.first_chunk::<6>() else {
             return;
         };
@@ -240,10 +239,10 @@ impl Matching {
     }
 }
 
-/// The word at HAND_ID of a hand that puts the low byte first, as most do; only one a word is looked for here.
+/// The word at HAND_ID of a hand that puts the low byte first, as most do; only one byte per word is detected here.
 const ANY_ID: u16 = 1;
 
-/// True if a frame with this fault takes no part in asking and answering.
+/// True if a frame with this fault takes no part in matching.
 const fn is_final(wrong: Wrong) -> bool {
     !matches!(
         wrong,

@@ -1,5 +1,5 @@
-//! Frames cut out of what a tap recorded, with what they mean and what is wrong about them. Only for those who look:
-//! the link itself never asks here.
+//! Frames decoded from recorded traffic, with their meaning and faults. For viewers only: the link itself does not use
+//! this module.
 pub mod can;
 pub mod compose;
 pub mod cut;

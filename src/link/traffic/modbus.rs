@@ -1,4 +1,4 @@
-//! Modbus RTU and TCP for the tap: where messages are, and what they say. Envelopes and functions are the codecs'.
+//! Modbus RTU and TCP for the tap: finds messages, and extracts their content. The codecs implement envelopes and functions.
 
 use crate::codec::mbap::{MbapError, MbapSplitter};
 use crate::codec::modbus_rtu::crc16;
@@ -20,13 +20,14 @@ const fn side(direction: Direction) -> ModbusRole {
     }
 }
 
-/// What stands here of an RTU line. `unit` is ours: only from it is a frame with a wrong check taken for one.
+/// Finds a frame of an RTU line at the first byte. `unit` is ours: a frame with a wrong CRC is accepted as damaged only
+/// from it.
 pub fn look_rtu(direction: Direction, unit: u8, bytes: &[u8]) -> FrameCut {
     let seen = look_side(side(direction), bytes);
     if direction == Direction::ToHand || matches!(seen, FrameCut::Whole(_)) {
         return seen;
     }
-    // An adapter that echoes, or another program on the line: only a good check tells.
+    // An adapter that echoes, or another program on the line: only a correct CRC is proof.
     match look_side(ModbusRole::Client, bytes) {
         echo @ FrameCut::Whole(_) => echo,
         _ => match (seen, bytes.first()) {
@@ -57,7 +58,7 @@ fn look_side(side: ModbusRole, bytes: &[u8]) -> FrameCut {
     }
 }
 
-/// What an RTU frame says.
+/// Content of an RTU frame.
 pub fn said_rtu(direction: Direction, frame: &[u8]) -> FrameContent {
     let [unit, pdu @ .., _, _] = frame else {
         return FrameContent::new(Kind::Noise);
@@ -73,7 +74,7 @@ pub fn said_rtu(direction: Direction, frame: &[u8]) -> FrameContent {
     said.hand(u16::from(*unit))
 }
 
-/// What stands here of a Modbus TCP connection.
+/// Finds a message of a Modbus TCP connection at the first byte.
 pub fn look_tcp(bytes: &[u8]) -> FrameCut {
     let mut splitter = MbapSplitter::default();
     splitter.push(bytes);
@@ -88,7 +89,7 @@ pub fn look_tcp(bytes: &[u8]) -> FrameCut {
     }
 }
 
-/// What a Modbus TCP message says.
+/// Content of a Modbus TCP message.
 pub fn said_tcp(direction: Direction, frame: &[u8]) -> FrameContent {
     let (Some([t0, t1, _, _, _, _, unit]), Some(pdu)) =
         (frame.first_chunk::<MBAP_LEN>(), frame.get(MBAP_LEN..))
@@ -100,7 +101,7 @@ pub fn said_tcp(direction: Direction, frame: &[u8]) -> FrameContent {
     said.hand(u16::from(*unit))
 }
 
-/// One-register writes look the same both ways; the direction says which it is.
+/// One-register writes look the same both ways; the direction distinguishes them.
 fn said_by(direction: Direction, pdu: Pdu<'_>) -> FrameContent {
     let mut said = said(pdu);
     if direction == Direction::FromHand && said.kind == Kind::Write {
@@ -153,7 +154,7 @@ fn said(pdu: Pdu<'_>) -> FrameContent {
     }
 }
 
-/// Words from the wire, high byte first, as memory has them.
+/// Converts words from the wire, high byte first, to memory order.
 fn swapped(words: &[u8]) -> Vec<u8> {
     let (pairs, _) = words.as_chunks::<2>();
     pairs.iter().flat_map(|[high, low]| [*low, *high]).collect()

@@ -1,4 +1,4 @@
-//! The last frames of a link, read on from its tap by whoever looks. Costs the link nothing but the copying of pieces.
+//! The last frames of a link, decoded from its tap by a viewer. Costs the link only the copying of pieces.
 
 use crate::hand::Moment;
 use crate::link::tap::WireTap;
@@ -8,9 +8,9 @@ use crate::transport::Endpoint;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Frames kept: half a minute of the fastest wire, and as much as the user looks through.
+/// Maximum frames kept: half a minute of the fastest wire, and as much as the user looks through.
 pub const FRAMES_MAX: usize = 10_000;
-/// Requests are marked "no reply" this far back: the next request comes right behind.
+/// Number of frames back at which requests are marked "no reply": the next request follows directly.
 const LOOK_BACK: usize = 64;
 
 /// The last frames of one link.
@@ -29,7 +29,7 @@ struct TapSource {
 }
 
 impl Traffic {
-    /// Of this link, from the oldest piece that its tap still has.
+    /// The traffic of this link, from the oldest piece in its tap.
     pub fn of(tap: WireTap, endpoint: &Endpoint) -> Self {
         Self {
             source: Some(TapSource {
@@ -41,12 +41,12 @@ impl Traffic {
         }
     }
 
-    /// Reads on, until nothing more waits.
+    /// Decodes all available pieces.
     pub fn read_on(&mut self, now: Moment) {
         while self.read_some(now) {}
     }
 
-    /// Reads some pieces on; true if more wait.
+    /// Decodes some pieces; true if others are available.
     pub fn read_some(&mut self, now: Moment) -> bool {
         let Some(source) = &mut self.source else {
             return false;
@@ -97,19 +97,19 @@ impl Traffic {
         }
     }
 
-    /// Oldest first, at most [`FRAMES_MAX`].
+    /// The frames, oldest first, at most [`FRAMES_MAX`].
     pub const fn frames(&self) -> &VecDeque<Arc<Frame>> {
         &self.frames
     }
 
-    /// Grows with each change of the frames.
+    /// Counter that grows with each change of the frames.
     pub const fn changes(&self) -> u64 {
         self.changes
     }
 
     /// Number of the newest frame; 0 before the first.
     pub fn newest(&self) -> u64 {
-        // A frame that was finished by silence may stand before one with a smaller number.
+        // A frame that ended by silence may precede one with a smaller number.
         let last = self.frames.iter().rev().take(LOOK_BACK);
         last.map(|frame| frame.number).max().unwrap_or_default()
     }

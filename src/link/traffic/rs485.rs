@@ -1,4 +1,4 @@
-//! The private RS485 framing for the tap: where frames are, and what they say. The framing itself is the codec's.
+//! The private RS485 framing for the tap: finds frames, and extracts their content. The codec implements the framing itself.
 
 use crate::codec::rs485::client::SaveResult;
 use crate::codec::rs485::framing::{FrameDirection, FrameStart, WRITE, parts, scan};
@@ -9,7 +9,7 @@ use crate::link::traffic::frame::{Kind, Wrong};
 use crate::link::traffic::said::FrameContent;
 use crate::record::Direction;
 
-/// The frame that begins at the first byte, or why none does.
+/// Finds a frame at the first byte, or the reason why there is none.
 pub fn look(bytes: &[u8]) -> FrameCut {
     match scan(bytes) {
         FrameStart::Frame(_, len) => FrameCut::Whole(len),
@@ -22,7 +22,7 @@ pub fn look(bytes: &[u8]) -> FrameCut {
     }
 }
 
-/// What a frame says; its checksum may be wrong.
+/// Content of a frame; its checksum may be wrong.
 pub fn said(direction: Direction, frame: &[u8]) -> FrameContent {
     let sent = match frame {
         [0xEB, ..] => FrameDirection::Request,
@@ -61,7 +61,7 @@ fn misplaced(direction: Direction, sent: FrameDirection) -> Option<Wrong> {
     }
 }
 
-/// The late frame that tells how a SAVE ended, where one was asked and nothing else can be meant.
+/// The late result of a SAVE, if the content can only be that. The caller checks that one was requested.
 pub fn save_result(said: &FrameContent) -> Option<SaveResult> {
     let address = said.span?.address;
     let value = match (said.kind, said.wrong, said.memory.as_slice()) {

@@ -1,4 +1,4 @@
-//! What a frame says, taken out of its protocol, before it is set against what was asked.
+//! Content of a frame, extracted from its protocol, before it is matched with its request.
 
 use crate::hand::Span;
 use crate::link::traffic::frame::{Kind, Wrong};
@@ -10,20 +10,20 @@ pub struct FrameContent {
     pub kind: Kind,
     /// The hand that is addressed, or that answers.
     pub hand: Option<u16>,
-    /// The memory it is about; a Modbus reply to a read does not say.
+    /// The memory range; `None` in a Modbus reply to a read.
     pub span: Option<Span>,
-    /// How many bytes of memory it is about; equals the span's where there is one.
+    /// Number of bytes of memory; equals the span's length if there is one.
     pub len: Option<u16>,
-    /// Number by which a reply belongs to its request (Modbus TCP).
+    /// Number that links a reply to its request (Modbus TCP).
     pub transaction: Option<u16>,
     /// Bytes of memory, in memory order.
     pub memory: Vec<u8>,
-    /// What can be seen to be wrong about it by itself.
+    /// Fault that is visible without the request.
     pub wrong: Option<Wrong>,
 }
 
 impl FrameContent {
-    /// Of this kind, and nothing more.
+    /// Content of this kind, and nothing more.
     pub const fn new(kind: Kind) -> Self {
         Self {
             kind,
@@ -36,14 +36,14 @@ impl FrameContent {
         }
     }
 
-    /// To or from this hand.
+    /// Sets the hand.
     #[must_use]
     pub const fn hand(mut self, hand: u16) -> Self {
         self.hand = Some(hand);
         self
     }
 
-    /// Sets the memory that the frame is about.
+    /// Sets the memory range.
     #[must_use]
     pub const fn about(mut self, span: Span) -> Self {
         self.len = Some(span.len);
@@ -51,21 +51,21 @@ impl FrameContent {
         self
     }
 
-    /// Carrying these bytes of memory.
+    /// Sets the carried bytes of memory.
     #[must_use]
     pub fn with(mut self, memory: &[u8]) -> Self {
         self.memory = memory.to_vec();
         self
     }
 
-    /// With this fault, unless one is known already.
+    /// Sets this fault, unless one is set already.
     #[must_use]
     pub fn wrong(mut self, wrong: impl Into<Option<Wrong>>) -> Self {
         self.wrong = self.wrong.or(wrong.into());
         self
     }
 
-    /// Bytes that are no frame.
+    /// Content of bytes that are not a frame.
     pub fn noise(wrong: Wrong) -> Self {
         Self::new(Kind::Noise).wrong(wrong)
     }

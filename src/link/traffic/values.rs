@@ -1,28 +1,28 @@
-//! Bytes of the hand's memory as register names and numbers. No words of any language but the manual's own names.
+//! Bytes of the hand's memory as register names and numbers. No text in any language but the manual's own names.
 
 use crate::hand::register::{Element, REGISTERS, Register};
 use crate::hand::{Span, TactileBlock};
 use crate::link::traffic::frame::hex;
 
-/// What one register, or a part of it, holds.
+/// Values of one register or a part of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RegisterValues {
     /// Register that the value belongs to.
     pub row: &'static Register,
-    /// The part of it that the bytes hold.
+    /// The part of it that the bytes cover.
     pub span: Span,
-    /// Its numbers, with spaces between.
+    /// Its numbers, separated by spaces.
     pub numbers: String,
 }
 
 impl RegisterValues {
-    /// The manual's name, with the elements in brackets where it is not all of them.
+    /// The manual's name, with the elements in brackets if it is not all of them.
     pub fn name(&self) -> String {
         part_name(self.row, self.span)
     }
 }
 
-/// The registers that a run of memory touches, by address.
+/// The registers that a range of memory touches, by address.
 fn rows(span: Span) -> impl Iterator<Item = (&'static Register, Span)> {
     REGISTERS.iter().filter_map(move |row| {
         let from = row.address.max(span.address);
@@ -32,7 +32,7 @@ fn rows(span: Span) -> impl Iterator<Item = (&'static Register, Span)> {
     })
 }
 
-/// The names of the registers in a run of memory: one, or the first and the last; the bare place if none is listed.
+/// The names of the registers in a range of memory: one, or the first and the last; the bare range if none is listed.
 pub fn names(span: Span) -> String {
     let mut all = rows(span);
     let Some((row, part)) = all.next() else {
@@ -44,7 +44,7 @@ pub fn names(span: Span) -> String {
     }
 }
 
-/// What the registers hold that lie in these bytes.
+/// Values of the registers in these bytes.
 pub fn held(span: Span, memory: &[u8]) -> Vec<RegisterValues> {
     rows(span)
         .filter_map(|(row, part)| {

@@ -1,5 +1,5 @@
-//! Frames as lines: English text, JSON, CSV, for the terminal and for files. Their forms are a contract, documented in
-//! `assets/manual/json.md`.
+//! Frames as lines: English text, JSON, CSV, for the terminal and for files. Their formats are a contract, documented
+//! in `assets/manual/json.md`.
 
 use crate::link::traffic::frame::{Frame, FrameFormat, Kind};
 use crate::link::traffic::values;
@@ -48,7 +48,7 @@ struct FrameJson<'a> {
 }
 
 impl Frame {
-    /// What it is about: register names, and their numbers where it carries any. Text of an adapter as it stands.
+    /// Register names, with their numbers if it carries any. Text of an adapter is unchanged.
     pub fn meaning(&self) -> String {
         if self.form == FrameFormat::Slcan
             && matches!(self.kind, Kind::Adapter | Kind::AdapterReply)
@@ -72,7 +72,7 @@ impl Frame {
         text
     }
 
-    /// One line for the user.
+    /// One line of text for the user.
     pub fn text_line(&self) -> String {
         let id = self.hand.map(|id| format!("id {id}")).unwrap_or_default();
         let mut line = format!(
@@ -108,7 +108,7 @@ impl Frame {
             took_ms: self.took.map(|took| took.as_secs_f64() * 1000.0),
             hex: &hex,
         };
-        // Numbers and strings only: it always has a JSON form.
+        // Numbers and strings only: it always serializes.
         serde_json::to_string(&line).unwrap_or_default()
     }
 

@@ -1,4 +1,4 @@
-//! What the program wants of a session, and the session's ends of the channels between them.
+//! Pending control requests to a session, and the session's ends of the channels.
 
 #[cfg(test)]
 #[allow(clippy::indexing_slicing, clippy::expect_used, reason = "a test may")]
@@ -16,7 +16,7 @@ use crate::record::{ArmRefusal, Disarmed, Record};
 use std::sync::Arc;
 use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
-/// An arming that was asked for. Dropped without an answer if something else came first.
+/// A requested arming. Dropped without a reply if something else replaced it.
 #[derive(Debug)]
 pub(crate) struct AskedArm {
     pub(crate) lease: Lease,
@@ -24,49 +24,49 @@ pub(crate) struct AskedArm {
     pub(crate) answer: oneshot::Sender<Result<ArmEpoch, ArmRefusal>>,
 }
 
-/// What is wanted and the session has not taken yet. One slot, so that nothing queues up, and a stop empties it in the
-/// same step.
+/// Control requests that the session has not applied yet. One slot, so that nothing queues up, and a stop clears it in
+/// the same step.
 #[derive(Debug, Default)]
 pub(crate) struct PendingControl {
     pub(crate) stop: bool,
     pub(crate) disarm: bool,
-    /// Why the hand is to be stopped or disarmed, if that is wanted.
+    /// Reason of the requested stop or disarm.
     pub(crate) why: Option<Disarmed>,
     pub(crate) arm: Option<AskedArm>,
     pub(crate) setpoints: Option<Setpoints>,
-    /// Another may move the hand from now on: what the one before asked for is dropped.
+    /// A new lease was granted: the previous owner's requests are dropped.
     pub(crate) handed_over: bool,
     pub(crate) rates: Option<PollRates>,
     pub(crate) closed: bool,
-    /// Who may move the hand.
+    /// The lease of the hand.
     pub(crate) book: LeaseBook,
-    /// Motion passes only until then; it is put off while the user holds what has to be held.
+    /// Motion ends at this time; extended while the user holds the key.
     pub(crate) runs_until: Option<Moment>,
-    /// What the user at the window has to hold, whoever moves the hand.
+    /// Hold-to-run mode set in the window; it applies to every owner.
     pub(crate) hold_to_run: HoldToRun,
-    /// What is read first while something moves.
+    /// Reads to prefer while the hand moves.
     pub(crate) priority: PollPriority,
 }
 
 impl PendingControl {
-    /// True if anything is wanted at all.
+    /// True if any request is pending.
     pub(crate) const fn is_any(&self) -> bool {
         let moves = self.arm.is_some() || self.setpoints.is_some() || self.handed_over;
         self.stop || self.disarm || self.closed || moves || self.rates.is_some()
     }
 
-    /// When motion passes no more, if nobody puts that off.
+    /// Time at which motion ends unless it is extended; `None` if unlimited.
     pub(crate) fn ends(&self) -> Option<Moment> {
         let ends = [self.runs_until, self.hold_to_run.until()];
         ends.into_iter().flatten().min()
     }
 
-    /// True if nothing may move now, because what has to be held is not.
+    /// True if motion is disabled because the key is not held.
     pub(crate) fn is_let_go(&self, now: Moment) -> bool {
         self.ends().is_some_and(|end| end <= now)
     }
 
-    /// Gives out what is wanted; what outlasts it stays.
+    /// Takes the pending requests and keeps the persistent ones.
     pub(crate) fn take(&mut self) -> Self {
         let rest = Self {
             rates: None,
@@ -75,7 +75,7 @@ impl PendingControl {
         std::mem::replace(self, rest)
     }
 
-    /// What outlasts a lost link.
+    /// The part that survives a lost link.
     pub(crate) fn lasting(&self) -> Self {
         Self {
             closed: self.closed,
@@ -88,7 +88,7 @@ impl PendingControl {
         }
     }
 
-    /// The user grants the right to move the hand. Nothing of the one before is sent any more.
+    /// Grants a lease and drops the previous owner's requests.
     pub(crate) fn grant(&mut self, owner: Owner) -> Lease {
         self.forget_motion();
         self.handed_over = true;
@@ -103,14 +103,14 @@ impl PendingControl {
         self.forget_motion();
     }
 
-    /// Lets no setpoint pass any more.
+    /// Requests a disarm and drops pending setpoints.
     pub(crate) fn disarm(&mut self, why: Disarmed) {
         self.disarm = true;
         self.why.get_or_insert(why);
         self.forget_motion();
     }
 
-    /// Wants this under a lease, if it holds.
+    /// Applies a change under a lease, if it is valid.
     pub(crate) fn under(
         &mut self,
         lease: Lease,
@@ -121,7 +121,7 @@ impl PendingControl {
         Ok(())
     }
 
-    /// Puts newer setpoints over older ones.
+    /// Merges newer setpoints over older ones.
     pub(crate) fn set(&mut self, setpoints: &Setpoints) {
         match &mut self.setpoints {
             Some(older) => older.merge(setpoints),
@@ -135,7 +135,7 @@ impl PendingControl {
     }
 }
 
-/// The session's ends of what the handle holds.
+/// The session's ends of the handle's channels.
 pub(crate) struct Ends {
     pub(crate) wanted: Arc<watch::Sender<PendingControl>>,
     pub(crate) requests: mpsc::Receiver<Request>,

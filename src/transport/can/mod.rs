@@ -1,4 +1,4 @@
-//! Linux's CAN sockets as a wire: each 16 bytes are one `struct can_frame`. What frames mean is not known here.
+//! Linux's CAN sockets as a wire: each 16 bytes are one `struct can_frame`. Does not interpret frames.
 
 use crate::system::SystemError;
 use crate::transport::wire::TransportError;
@@ -14,13 +14,13 @@ use tokio::time::{Interval, interval};
 /// Linux marks 29-bit identifiers with this bit, and remote frames with the next.
 const EXTENDED: u32 = 0x8000_0000;
 const REMOTE: u32 = 0x4000_0000;
-/// The part of an identifier that names a node here: its low 14 bits.
+/// The part of an identifier that contains the node id: its low 14 bits.
 const NODE: u32 = 0x3FFF;
 
-/// Who only listens is not woken when the interface goes down, so it is looked at this often.
+/// Interval at which the interface is checked, because a listener is not woken when it goes down.
 const POLL_INTERVAL: Duration = Duration::from_millis(500);
 
-// What the kernel says.
+// Error codes of the kernel.
 const ENXIO: i32 = 6;
 const ENODEV: i32 = 19;
 const EPROTONOSUPPORT: i32 = 93;
@@ -33,15 +33,15 @@ const ENOBUFS: i32 = 105;
 pub struct CanWire {
     socket: CanSocket,
     place: String,
-    /// When to see next whether the interface is still up.
+    /// Timer for the next check that the interface is still up.
     look: Interval,
 }
 
-/// Opens an interface. Comes through: data frames with a 29-bit identifier, of one node if it is given, and error
-/// frames; never what this socket sent itself. Must be called within a tokio runtime.
+/// Opens an interface. It receives data frames with a 29-bit identifier, of one node if given, and error frames; never
+/// what this socket sent itself. Must be called within a tokio runtime.
 ///
 /// # Errors
-/// `NoInterface`, `NotCan`, `InterfaceDown`, `NoCan`, or `Io` with the system's words.
+/// `NoInterface`, `NotCan`, `InterfaceDown`, `NoCan`, or `Io` with the system's message.
 pub fn open(interface: &str, node: Option<u32>) -> Result<CanWire, TransportError> {
     let failed = |error: io::Error| can_error(interface, &error);
     let address = CanAddr::from_iface(interface).map_err(failed)?;
@@ -59,9 +59,9 @@ pub fn open(interface: &str, node: Option<u32>) -> Result<CanWire, TransportErro
     })
 }
 
-/// The CAN interfaces that there are, up or down, by name.
+/// The existing CAN interfaces, up or down, by name.
 pub fn interfaces() -> Vec<String> {
-    /// What the kernel calls a CAN interface (ARPHRD_CAN).
+    /// The kernel's type of a CAN interface (ARPHRD_CAN).
     const CAN: &str = "280";
     let Ok(all) = std::fs::read_dir("/sys/class/net") else {
         return Vec::new();
@@ -78,7 +78,7 @@ pub fn interfaces() -> Vec<String> {
     names
 }
 
-/// The kernel opens an interface that is down, and says so only when something is sent.
+/// The kernel opens an interface that is down, and fails only when something is sent.
 fn refuse_if_down(interface: &str) -> Result<(), TransportError> {
     const UP: u32 = 1;
     let flags = std::fs::read_to_string(format!("/sys/class/net/{interface}/flags"));
@@ -94,7 +94,7 @@ fn refuse_if_down(interface: &str) -> Result<(), TransportError> {
         Some(flags) if flags & UP == 0 => Err(TransportError::InterfaceDown {
             place: interface.into(),
         }),
-        // Where it cannot be read, sending will tell.
+        // If it cannot be read, sending will fail.
         _ => Ok(()),
     }
 }
@@ -121,7 +121,7 @@ fn can_error(interface: &str, error: &io::Error) -> TransportError {
 }
 
 impl CanWire {
-    /// The system's errors in our words, which the link takes out again.
+    /// Converts the system's errors to [`TransportError`], which the link extracts again.
     fn worded<T>(&self, polled: Poll<io::Result<T>>) -> Poll<io::Result<T>> {
         polled.map_err(|error| io::Error::other(can_error(&self.place, &error)))
     }

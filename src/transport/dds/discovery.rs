@@ -1,13 +1,13 @@
-//! What participants announce of themselves, their readers and their writers (DDSI-RTPS 2.5, 8.5 and 9.6.2).
+//! Announcements of participants, their readers and their writers (DDSI-RTPS 2.5, 8.5 and 9.6.2).
 
 use crate::transport::dds::wire::{Cursor, EntityId, Guid, LOCATOR_UDP_V4};
 use crate::transport::dds::wire::{end_parameters, parameter, u16_le, u32_le};
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
 
-/// The longest name of a topic or a type: DDS itself allows 255 characters.
+/// Maximum length of a topic or type name: DDS itself allows 255 characters.
 pub(super) const NAME_MAX: usize = 256;
-/// Places that are looked at of those that are announced.
+/// Maximum locators used of those announced.
 const LOCATORS_MAX: usize = 16;
 
 const PID_LEASE: u16 = 0x0002;
@@ -26,30 +26,30 @@ const PID_PARTICIPANT_GUID: u16 = 0x0050;
 const PID_BUILTIN_ENDPOINTS: u16 = 0x0058;
 const PID_ENDPOINT_GUID: u16 = 0x005a;
 
-/// Parameters in big and in little endian, of a payload's head.
+/// Encodings in a payload's header: parameters in big and in little endian.
 const PL_CDR_BE: u8 = 2;
 const PL_CDR_LE: u8 = 3;
 
-/// What a participant has of those that announce: itself, writers, readers, each with one that listens.
+/// Built-in endpoints of a participant: writer and reader for announcements of writers, and the same for readers.
 pub(super) const HAS_PUBLICATIONS_WRITER: u32 = 1 << 2;
 pub(super) const HAS_PUBLICATIONS_READER: u32 = 1 << 3;
 pub(super) const HAS_SUBSCRIPTIONS_WRITER: u32 = 1 << 4;
 pub(super) const HAS_SUBSCRIPTIONS_READER: u32 = 1 << 5;
 const HAS_ALL: u32 = 0b11_1111;
 
-/// A participant, as it says.
+/// A participant as announced.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Announced {
     pub(super) guid: Guid,
     pub(super) domain: Option<u32>,
     pub(super) lease: Duration,
     pub(super) builtin: u32,
-    /// Where it listens for what is announced, and for messages.
+    /// Its addresses for announcements, and for messages.
     pub(super) announcements: Vec<SocketAddrV4>,
     pub(super) messages: Vec<SocketAddrV4>,
 }
 
-/// What a lease is if none is told (9.6.3.2).
+/// Default lease duration (9.6.3.2).
 const LEASE_DEFAULT: Duration = Duration::from_secs(100);
 
 impl Announced {
@@ -79,7 +79,7 @@ impl Announced {
         Some(announced)
     }
 
-    /// As a payload.
+    /// Encodes it as a payload.
     pub(super) fn payload(&self) -> Vec<u8> {
         let mut bytes = head();
         put(&mut bytes, PID_PROTOCOL_VERSION, &[2, 2, 0, 0]);
@@ -106,19 +106,19 @@ impl Announced {
     }
 }
 
-/// A reader or a writer, as its participant says.
+/// A reader or writer, as announced by its participant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Endpoint {
     pub(super) guid: Guid,
     pub(super) topic: String,
     pub(super) type_name: String,
-    /// Of a writer: it repeats what was lost. Of a reader: it wants that.
+    /// Reliable: a writer repeats lost messages; a reader requires that.
     pub(super) is_reliable: bool,
-    /// Whoever comes later gets the last message, too; or wants it.
+    /// Transient local: late joiners get the last message, or request it.
     pub(super) is_lasting: bool,
-    /// Is in a partition, which nothing here is.
+    /// In a partition, which nothing here uses.
     pub(super) is_apart: bool,
-    /// Where it listens, if not where its participant does.
+    /// Its addresses, if they differ from its participant's.
     pub(super) places: Vec<SocketAddrV4>,
 }
 
@@ -129,7 +129,7 @@ const TRANSIENT_LOCAL: u32 = 1;
 impl Endpoint {
     pub(super) fn parse(payload: &[u8], is_writer: bool) -> Option<Self> {
         let (mut guid, mut topic, mut type_name) = (None, None, None);
-        // Unless they say, writers repeat what was lost, and readers do without.
+        // By default writers are reliable, and readers are not.
         let (mut is_reliable, mut is_lasting, mut is_apart) = (is_writer, false, false);
         let mut places = Vec::new();
         each(payload, |id, mut value| {
@@ -158,7 +158,7 @@ impl Endpoint {
         })
     }
 
-    /// As a payload.
+    /// Encodes it as a payload.
     pub(super) fn payload(&self) -> Vec<u8> {
         let mut bytes = head();
         put(&mut bytes, PID_ENDPOINT_GUID, &self.guid.bytes());
@@ -170,7 +170,7 @@ impl Endpoint {
             BEST_EFFORT
         };
         let mut reliability = kind.to_le_bytes().to_vec();
-        // How long a writer may wait for readers, which it does not.
+        // Maximum blocking time of a writer, which is unused.
         reliability.extend([0; 8]);
         put(&mut bytes, PID_RELIABILITY, &reliability);
         let durability = if self.is_lasting { TRANSIENT_LOCAL } else { 0 };
@@ -270,7 +270,7 @@ fn put(bytes: &mut Vec<u8>, id: u16, value: &[u8]) {
     bytes.resize(bytes.len() + padded - value.len(), 0);
 }
 
-/// Where a participant is reached: at the address that its announcement came from, so that nobody has messages sent to a third.
+/// Address of a participant: the source address of its announcement, so that it cannot redirect messages to a third party.
 pub(super) fn reached(places: &[SocketAddrV4], source: Ipv4Addr) -> Option<SocketAddrV4> {
     let same = places.iter().find(|place| *place.ip() == source);
     let port = same.or(places.first())?.port();

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Who wrote a message: one writer of one process. None is ever given twice.
+/// Id of a writer: one writer of one process. Never reused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct DdsWriterId(pub [u8; 16]);
 
@@ -12,12 +12,12 @@ impl fmt::Display for DdsWriterId {
     }
 }
 
-/// A message that came in.
+/// A received message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DdsMessage {
-    /// Who wrote it.
+    /// Its writer.
     pub from: DdsWriterId,
-    /// CDR with its head of four bytes; empty if it is in another encoding.
+    /// CDR with its header of four bytes; empty if it is in another encoding.
     pub bytes: Vec<u8>,
 }
 

@@ -1,8 +1,9 @@
-//! DDS: a participant on one interface, with writers and readers of messages in CDR. Nothing is open before it, nor after it and
-//! all that it made are dropped. Knows no hand.
+//! DDS: a participant on one interface, with writers and readers of messages in CDR. No socket is open before it is
+//! created, nor after it and everything it created are dropped. Independent of the hand.
 //!
-//! It speaks RTPS itself, so far as this program needs it: reliable writers, best-effort readers, UDP over IPv4. The crates that
-//! speak more of it listen at every address of the computer, and keep and count what a stranger's datagram tells them to.
+//! It implements the part of RTPS that this program needs: reliable writers, best-effort readers, UDP over IPv4. Crates
+//! that implement more of it listen at every address of the computer, and store whatever an untrusted datagram
+//! requests.
 
 mod discovery;
 mod message;
@@ -30,50 +31,50 @@ use tokio::sync::{Notify, mpsc};
 
 /// The highest domain whose ports exist (RTPS 9.6.2.3).
 pub const DOMAIN_MAX: u16 = 232;
-/// Messages that may wait to be looked at; a reader keeps the newest of those beyond.
+/// Capacity of a reader's channel; beyond it the reader keeps the newest.
 const MESSAGES_MAX: usize = 64;
 /// Messages that a writer keeps to repeat them for readers that lost them.
 const REPEATED_MAX: usize = 8;
-/// How often it is looked after what is due.
+/// Interval at which due work is done.
 const TICK: Duration = Duration::from_millis(20);
 
-/// Why there is no DDS.
+/// Reason why DDS is unavailable.
 #[derive(Debug, thiserror::Error)]
 pub enum DdsError {
-    /// No interface of this computer is named so, or has such an address.
+    /// No interface of this computer has this name or address.
     #[error(
         "there is no network interface {name} with an IPv4 address here; 'ip address' lists them"
     )]
     NoInterface {
-        /// As the user named it.
+        /// Name given by the user.
         name: String,
     },
-    /// The system did not let it listen or ask for interfaces.
+    /// The system refused to listen or to list interfaces.
     #[error("the system does not let DDS use {name}: {error}")]
     System {
         /// The interface.
         name: String,
-        /// The system's words.
+        /// The system's error.
         error: io::Error,
     },
 }
 
-/// Where DDS is to be.
+/// Configuration of a participant.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DdsPlace {
     /// The interface: its name, or its address in numbers.
     pub interface: String,
-    /// Programs of other domains are not met.
+    /// DDS domain; programs in other domains are invisible.
     pub domain: u16,
 }
 
-/// One participant. Copies are the same one.
+/// One participant, shared by its copies.
 #[derive(Debug, Clone)]
 pub struct DdsNode {
     open: Arc<Open>,
 }
 
-/// A participant and its sockets. Dropped, it leaves, and its threads end soon by themselves.
+/// A participant and its sockets. When dropped, it leaves, and its threads end soon afterwards.
 struct Open {
     shared: Arc<Shared>,
     prefix: Prefix,
@@ -87,10 +88,10 @@ struct Shared {
 }
 
 impl DdsNode {
-    /// Joins from now on, at this interface alone.
+    /// Joins now, on this interface alone.
     ///
     /// # Errors
-    /// [`DdsError`], if there is no such interface or nobody can listen there.
+    /// [`DdsError`], if there is no such interface or it cannot be listened on.
     pub fn open(place: &DdsPlace) -> Result<Self, DdsError> {
         let address = address(&place.interface)?;
         let failed = |error| DdsError::System {
@@ -131,17 +132,17 @@ impl DdsNode {
         self.open.address
     }
 
-    /// Whether a message came from this participant itself.
+    /// True if a message came from this participant itself.
     pub fn wrote(&self, message: &DdsMessage) -> bool {
         message.from.0.starts_with(&self.open.prefix)
     }
 
-    /// Writes to a topic, as CycloneDDS and ROS 2 do unless they are told otherwise: reliably, to whoever is there now.
+    /// Creates a writer with the default QoS of CycloneDDS and ROS 2: reliable, for the present readers.
     pub fn writer(&self, topic: &DdsTopic) -> DdsWriter {
         self.writer_that((REPEATED_MAX, false), topic)
     }
 
-    /// The same; whoever comes later gets the last message, too.
+    /// The same, and late joiners also get the last message.
     pub fn lasting_writer(&self, topic: &DdsTopic) -> DdsWriter {
         self.writer_that((1, true), topic)
     }
@@ -155,8 +156,8 @@ impl DdsNode {
         }
     }
 
-    /// The messages of a topic from now on, of every writer, reliable or not; the newest so many are kept until they are taken. Must
-    /// be called within a tokio runtime.
+    /// Returns the messages of a topic from now on, of every writer, reliable or not; the newest `kept` are kept until
+    /// they are read. Must be called within a tokio runtime.
     pub fn reader(&self, topic: &DdsTopic, kept: u16) -> mpsc::Receiver<DdsMessage> {
         let waiting = Arc::new(Waiting {
             messages: Mutex::new(VecDeque::new()),
@@ -191,7 +192,7 @@ impl Drop for Open {
 }
 
 impl Shared {
-    /// Does something with the participant, and sends what comes of it; false beside if some of it could not go out.
+    /// Runs `work` on the participant, and sends the resulting datagrams; also returns false if some of them could not be sent.
     fn with<T>(&self, work: impl FnOnce(&mut Core, Instant) -> T) -> (T, bool) {
         let (done, outgoing) = {
             let mut core = lock(&self.core);
@@ -221,7 +222,7 @@ impl Shared {
     }
 }
 
-/// Ends by itself when the participant does; nobody waits for it.
+/// Spawns a thread that ends with the participant and is not joined.
 fn spawn(work: impl FnOnce() + Send + 'static) -> io::Result<()> {
     let thread = thread::Builder::new().name("dds".into());
     thread.spawn(work).map(drop)
@@ -231,7 +232,7 @@ fn lock<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
     value.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Begins as those of no vendor do.
+/// A random prefix whose first two bytes are those of no vendor.
 fn new_prefix() -> Prefix {
     let mut prefix = [0; 12];
     prefix
@@ -241,7 +242,7 @@ fn new_prefix() -> Prefix {
     prefix
 }
 
-/// Messages that came and were not taken yet.
+/// Received messages that were not read yet.
 struct Waiting {
     messages: Mutex<VecDeque<DdsMessage>>,
     kept: usize,
@@ -258,7 +259,7 @@ impl Waiting {
         self.arrived.notify_one();
     }
 
-    /// Hands messages on for as long as somebody takes them.
+    /// Forwards messages until the receiver is dropped.
     async fn hand_on(&self, to: mpsc::Sender<DdsMessage>) {
         loop {
             let next = lock(&self.messages).pop_front();
@@ -276,7 +277,7 @@ impl Waiting {
     }
 }
 
-/// A writer. Dropped, it is gone for its readers.
+/// A writer. When dropped, it is removed from its readers.
 #[derive(Debug)]
 pub struct DdsWriter {
     entity: EntityId,
@@ -284,7 +285,7 @@ pub struct DdsWriter {
 }
 
 impl DdsWriter {
-    /// Sends little-endian CDR with its head; false if it could not go out at once.
+    /// Sends little-endian CDR with its header; false if it could not be sent at once.
     pub fn send(&self, message: Vec<u8>) -> bool {
         debug_assert!(message.len() <= MESSAGE_MAX, "{}", message.len());
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
@@ -305,13 +306,13 @@ impl Drop for DdsWriter {
     }
 }
 
-/// The address of an interface of this computer, which is named or given in numbers.
+/// The address of an interface of this computer, given by name or address.
 fn address(interface: &str) -> Result<Ipv4Addr, DdsError> {
     let missing = || DdsError::NoInterface {
         name: interface.to_owned(),
     };
     match interface.parse() {
-        // Only an own address can be listened at.
+        // Only a local address can be bound.
         Ok(IpAddr::V4(address)) if UdpSocket::bind((address, 0)).is_ok() => Ok(address),
         Ok(_) => Err(missing()),
         Err(_a_name) => named(interface)?.ok_or_else(missing),

@@ -1,5 +1,5 @@
-//! A participant without its sockets: what it was told, what it tells, and to whom (DDSI-RTPS 2.5, chapter 8). All that it keeps of
-//! others is bounded.
+//! A participant without its sockets: what it has received, and what it sends to whom (DDSI-RTPS 2.5, chapter 8). All
+//! state about others is bounded.
 
 use crate::transport::dds::discovery::{
     Announced, Endpoint, HAS_PUBLICATIONS_READER, HAS_PUBLICATIONS_WRITER,
@@ -17,42 +17,42 @@ use std::collections::{BTreeMap, HashMap};
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::{Duration, Instant};
 
-/// The longest message that fits into a datagram with all that stands before it.
+/// Maximum length of a message that fits into a datagram with all headers.
 pub(super) const MESSAGE_MAX: usize = 60_000;
-/// Participants, and readers and writers of all of them, that are kept.
+/// Maximum participants, and readers and writers of all of them.
 const PARTICIPANTS_MAX: usize = 128;
 const ENDPOINTS_MAX: usize = 16_384;
-/// Announcements of own readers and writers, and of their ends, that are kept for those that come later.
+/// History of announcements of our readers and writers, and of their ends, for late joiners.
 const ANNOUNCEMENTS_KEPT: usize = 1024;
-/// How often a participant announces itself: at first, and later.
+/// Interval of a participant's announcements: at first, and later.
 const ANNOUNCED_AT_FIRST: Duration = Duration::from_millis(200);
 const ANNOUNCE_INTERVAL: Duration = Duration::from_secs(3);
 const FIRST_ANNOUNCEMENTS: u64 = 10;
-/// For how long others believe in it without a word.
+/// Lease announced to others.
 const LEASE: Duration = Duration::from_secs(20);
-/// For how long it believes in others, whatever they say: CycloneDDS announces itself each 30 s.
+/// Limits of the lease of others, whatever they announce: CycloneDDS announces itself every 30 s.
 const LEASE_MIN: Duration = Duration::from_secs(40);
 const LEASE_MAX: Duration = Duration::from_secs(120);
-/// How often one is asked for its readers and writers that never told of them.
+/// Interval at which a participant is queried for readers and writers that it never announced.
 const INQUIRY_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Where one is, and where others may be.
+/// Our own addresses, and the destinations of announcements.
 #[derive(Debug, Clone)]
 pub(super) struct Places {
     pub(super) domain: u16,
     pub(super) announcements: SocketAddrV4,
     pub(super) messages: SocketAddrV4,
-    /// Where each announcement goes.
+    /// Destinations of each announcement.
     pub(super) everyone: Vec<SocketAddrV4>,
 }
 
-/// Who takes messages.
+/// Receiver of messages.
 pub(super) type Inbox = Box<dyn Fn(DdsMessage) + Send>;
 
 /// Another participant.
 #[derive(Debug)]
 struct Participant {
-    /// Where its announcements come from.
+    /// Source address of its announcements.
     source: Ipv4Addr,
     announcements: SocketAddrV4,
     messages: Option<SocketAddrV4>,
@@ -82,7 +82,7 @@ pub(super) struct Core {
     announcement: u64,
     announce_at: Instant,
     participants: HashMap<Prefix, Participant>,
-    /// Tell of own writers and readers.
+    /// Announce our writers and readers.
     publications: Writer,
     subscriptions: Writer,
     writers: BTreeMap<EntityId, LocalWriter>,
@@ -111,7 +111,7 @@ impl Core {
         }
     }
 
-    /// What is to be sent.
+    /// Takes the datagrams to send.
     pub(super) fn outgoing(&mut self) -> Vec<(SocketAddrV4, Vec<u8>)> {
         let all = std::mem::take(&mut self.outgoing).into_iter();
         all.map(|(place, datagram)| (place, datagram.bytes()))
@@ -140,7 +140,7 @@ impl Core {
         }
     }
 
-    /// A reliable writer that keeps the last so many messages, for those that come later if it is lasting.
+    /// Adds a reliable writer with a history of `depth` messages, for late joiners if it is lasting.
     pub(super) fn add_writer(
         &mut self,
         topic: &DdsTopic,
@@ -165,7 +165,7 @@ impl Core {
         entity
     }
 
-    /// A reader of what comes from now on, of whoever writes.
+    /// Adds a reader of all messages from now on, from any writer.
     pub(super) fn add_reader(&mut self, topic: &DdsTopic, inbox: Inbox, now: Instant) -> EntityId {
         let entity = EntityId::user_reader(self.next_entity());
         let endpoint = self.endpoint(entity, topic);
@@ -190,7 +190,7 @@ impl Core {
         entity
     }
 
-    /// A reader or writer that is no more.
+    /// Removes a reader or writer.
     pub(super) fn remove(&mut self, entity: EntityId, now: Instant) {
         let guid = self.guid(entity);
         let announcing = if self.writers.remove(&entity).is_some() {
@@ -210,7 +210,7 @@ impl Core {
             .extend(announcing.write(gone, self.prefix, (0, 0), now));
     }
 
-    /// Writes a message, with its head, at a time since 1970; false if it is too long.
+    /// Writes a message, with its header, at a time since 1970; false if it is too long.
     pub(super) fn write(
         &mut self,
         entity: EntityId,
@@ -230,7 +230,7 @@ impl Core {
             let bytes = message.clone();
             (reader.inbox)(DdsMessage { from, bytes });
         }
-        // A time of RTPS ends in 2106; nothing here believes it.
+        // RTPS time ends in 2106; nothing here relies on it.
         let seconds = u32::try_from(since_1970.as_secs()).unwrap_or(u32::MAX);
         let fraction = (u64::from(since_1970.subsec_nanos()) << 32) / 1_000_000_000;
         let stamp = (seconds, u32::try_from(fraction).unwrap_or_default());
@@ -240,7 +240,7 @@ impl Core {
         true
     }
 
-    /// Does what is due.
+    /// Performs all due work.
     pub(super) fn tick(&mut self, now: Instant) {
         if now >= self.announce_at {
             let is_new = self.announcement < FIRST_ANNOUNCEMENTS;
@@ -292,7 +292,7 @@ impl Core {
             .extend(to.iter().map(|place| (*place, datagram.clone())));
     }
 
-    /// Says that this participant is no more.
+    /// Announces that this participant leaves.
     pub(super) fn leave(&mut self) {
         self.announcement += 1;
         let guid = self.guid(EntityId::PARTICIPANT);
@@ -304,7 +304,7 @@ impl Core {
             .extend(to.map(|place| (place, datagram.clone())));
     }
 
-    /// A datagram came.
+    /// Applies a received datagram.
     pub(super) fn receive(&mut self, datagram: &[u8], source: Ipv4Addr, now: Instant) {
         let Some(message) = Message::parse(datagram) else {
             return;
@@ -371,7 +371,7 @@ impl Core {
         }
     }
 
-    /// Whether somebody here listens to a writer.
+    /// True if a reader here uses this writer.
     fn is_read(&self, writer: Guid) -> bool {
         let is_announcing = [
             EntityId::PUBLICATIONS_WRITER,
@@ -383,10 +383,10 @@ impl Core {
             || readers.any(|reader| reader.sources.contains_key(&writer))
     }
 
-    /// One announces itself, or leaves.
+    /// Applies the announcement of a participant, or of its end.
     fn participant(&mut self, from: Prefix, data: &Data<'_>, (source, now): (Ipv4Addr, Instant)) {
         if data.is_disposed {
-            // Each speaks for itself alone.
+            // A participant can remove only itself.
             return self.remove_participant(from);
         }
         let Some(announced) = Announced::parse(data.payload) else {
@@ -497,7 +497,7 @@ impl Core {
         }
     }
 
-    /// A participant announces a reader or a writer, or its end.
+    /// Applies a participant's announcement of a reader or writer, or of its end.
     fn announced(&mut self, from: Prefix, is_writer: bool, data: &Data<'_>, now: Instant) {
         let endpoints = |other: &Participant| other.writers.len() + other.readers.len();
         let known: usize = self.participants.values().map(endpoints).sum();
@@ -583,13 +583,13 @@ impl Core {
     }
 }
 
-/// From and to the one that announces participants.
+/// The ends for announcements of participants.
 const SPDP: Ends = Ends {
     reader: EntityId::SPDP_READER,
     writer: EntityId::SPDP_WRITER,
 };
 
-/// The reader of what a writer announces.
+/// The ends of a reply to an announcing writer.
 const fn answering(writer: EntityId) -> Ends {
     let reader = match writer {
         EntityId::PUBLICATIONS_WRITER => EntityId::PUBLICATIONS_READER,
@@ -604,7 +604,7 @@ fn is_of_topic(one: &Endpoint, other: &Endpoint) -> bool {
 }
 
 impl Participant {
-    /// What came of the writer with which it announces its own.
+    /// State of the messages received from one of its announcing writers.
     fn announced_by(&mut self, writer: EntityId) -> Option<&mut Received> {
         match writer {
             EntityId::PUBLICATIONS_WRITER => Some(&mut self.publications),
@@ -613,7 +613,7 @@ impl Participant {
         }
     }
 
-    /// Has a writer of ours write to a reader of it, if that reads it.
+    /// Adds one of its readers to one of our writers, if they match.
     fn reads(&self, endpoint: &Endpoint, writer: &mut Writer, reader: &Endpoint, now: Instant) {
         let own = reached(&reader.places, self.source);
         let Some(place) = own.or(self.messages) else {
@@ -625,7 +625,7 @@ impl Participant {
         }
     }
 
-    /// Asks what it has, if it never said.
+    /// Queries its readers and writers, if it never announced them.
     fn inquire(&mut self, own: Prefix, prefix: Prefix) -> Vec<Outgoing> {
         let place = self.announcements;
         let all = [
@@ -645,7 +645,7 @@ impl Participant {
     }
 }
 
-/// A message with the head that all have here: plain CDR in one of two byte orders, without what fills it up to a multiple of four.
+/// A message with the uniform header: plain CDR in one of two byte orders, without the padding to a multiple of four.
 /// Empty if it is in another encoding.
 fn message(payload: &[u8]) -> Vec<u8> {
     match payload {

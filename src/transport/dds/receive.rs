@@ -1,25 +1,25 @@
-//! What came of a writer's messages, what is missing, and the parts of long ones. What is kept is bounded whatever is said.
+//! Received messages of a writer, missing ones, and the fragments of long ones. All state is bounded regardless of the input.
 
 use crate::transport::dds::wire::{EntityId, Fragment, Guid, NumberSet, Request, SET_MAX};
 use std::collections::{BTreeSet, VecDeque};
 
-/// A number so far behind is no late message: its writer began anew, or a forged one went before it.
+/// A number this far behind is not a late message: its writer restarted, or a forged number preceded it.
 const BEHIND_MAX: u64 = 1024;
-/// The longest message that is put together of fragments.
+/// Maximum length of a message assembled from fragments.
 pub(super) const ASSEMBLED_MAX: usize = 256 * 1024;
-/// Fragments of one message: others make them of 1344 bytes and more.
+/// Maximum fragments of one message: others use 1344 bytes and more each.
 const FRAGMENTS_MAX: usize = 1024;
-/// Messages that are put together at one time.
+/// Maximum messages assembled concurrently.
 const ASSEMBLIES_MAX: usize = 8;
 
 /// The messages of one writer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Received {
-    /// All before this came, or will not.
+    /// All numbers before this were received, or will not come.
     next: u64,
-    /// What came of the 256 that follow.
+    /// Received numbers among the 256 from there on.
     ahead: BTreeSet<u64>,
-    /// Whether its writer ever told what it has.
+    /// True once its writer reported its messages.
     pub(super) is_known: bool,
     acknacks: u32,
 }
@@ -36,7 +36,7 @@ impl Default for Received {
 }
 
 impl Received {
-    /// Whether a message is new. Those that are missing will be asked for.
+    /// Returns true if a message is new. Missing ones will be requested.
     pub(super) fn accept(&mut self, number: u64) -> bool {
         let is_near = (self.next..self.next + SET_MAX).contains(&number);
         let is_new = is_near && self.ahead.insert(number);
@@ -44,7 +44,7 @@ impl Received {
         is_new
     }
 
-    /// Whether a message is new. Those that are missing will not be asked for.
+    /// Returns true if a message is new. Missing ones will not be requested.
     pub(super) fn accept_newest(&mut self, number: u64) -> bool {
         let is_old = number < self.next && self.next - number <= BEHIND_MAX;
         if !is_old {
@@ -53,14 +53,14 @@ impl Received {
         !is_old
     }
 
-    /// The writer has these. Gives what to ask for.
+    /// Applies a heartbeat with the writer's range; returns the request for missing messages.
     pub(super) fn heartbeat(
         &mut self,
         (first, last): (u64, u64),
         wants_answer: bool,
     ) -> Option<Request> {
         self.is_known = true;
-        // It began anew, or what was heard of it before was forged.
+        // The writer restarted, or its earlier numbers were forged.
         let is_anew = last + 1 < self.next;
         if first > self.next || is_anew {
             self.next = first;
@@ -76,7 +76,7 @@ impl Received {
         (wants_answer || !numbers.is_empty()).then(|| self.request(numbers))
     }
 
-    /// Asks the writer what it has.
+    /// Requests a heartbeat from the writer.
     pub(super) fn inquire(&mut self) -> Request {
         self.request(Vec::new())
     }
@@ -91,7 +91,7 @@ impl Received {
         }
     }
 
-    /// These will not come.
+    /// Records numbers that will not come.
     pub(super) fn gap(&mut self, start: u64, set: &NumberSet) {
         let near = self.next..self.next + SET_MAX;
         if start <= self.next {
@@ -118,7 +118,7 @@ impl Received {
     }
 }
 
-/// A message of which parts came.
+/// A partially received message.
 #[derive(Debug)]
 struct Assembly {
     writer: Guid,
@@ -129,12 +129,12 @@ struct Assembly {
     missing: BTreeSet<usize>,
 }
 
-/// The messages of which parts came, the last ones.
+/// The last partially received messages.
 #[derive(Debug, Default)]
 pub(super) struct Assemblies(VecDeque<Assembly>);
 
 impl Assemblies {
-    /// The message, once it is whole.
+    /// Applies a fragment; returns the message once it is complete.
     pub(super) fn push(
         &mut self,
         (writer, reader): (Guid, EntityId),
@@ -190,7 +190,7 @@ impl Assembly {
             let Some(to) = self.bytes.get_mut(start..end) else {
                 return;
             };
-            // Behind the last fragment may stand padding.
+            // Padding may follow the last fragment.
             if let Some(bytes) = bytes.get(..to.len()) {
                 to.copy_from_slice(bytes);
                 self.missing.remove(&nth);

@@ -1,35 +1,35 @@
-//! A writer: what it keeps, who reads it, and what of it they have.
+//! A writer: its history, its readers, and what each of them has acknowledged.
 
 use crate::transport::dds::wire::{Datagram, Ends, EntityId, Guid, NumberSet, Prefix};
 use std::collections::BTreeMap;
 use std::net::SocketAddrV4;
 use std::time::{Duration, Instant};
 
-/// Readers of one participant that one writer writes to.
+/// Maximum readers of one participant per writer.
 const READERS_MAX: usize = 8;
-/// How long a reader may be silent until it is asked again what it has: at first, and at most.
+/// Time without an acknowledgement after which a reader is queried again: at first, and at most.
 const ASKED_AGAIN: Duration = Duration::from_millis(100);
 const ASKED_AGAIN_MAX: Duration = Duration::from_secs(2);
-/// A reader is answered no more often, so that its questions cost no more than its messages.
+/// Shortest interval between replies to one reader, so that its requests cost at most as much as its messages.
 const ANSWER_INTERVAL: Duration = Duration::from_millis(5);
 
-/// What is written.
+/// One entry of the history.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Change {
-    /// With its head.
+    /// A message with its header.
     Payload(Vec<u8>),
-    /// What has this id is no more.
+    /// The entity with this id was removed.
     Gone(Guid, Vec<u8>),
 }
 
-/// Someone who reads.
+/// A matched reader.
 #[derive(Debug, Clone)]
 pub(super) struct ReaderProxy {
     place: SocketAddrV4,
     is_reliable: bool,
-    /// What was written before it came is not for it.
+    /// Messages up to this number precede the reader and are not sent to it.
     after: u64,
-    /// It has all up to this one, or does without.
+    /// The reader has all up to this number, or does not need them.
     acknowledged: u64,
     asked_again: Duration,
     ask_at: Instant,
@@ -46,11 +46,11 @@ pub(super) struct Writer {
     readers: BTreeMap<Guid, ReaderProxy>,
 }
 
-/// A datagram and where it goes.
+/// A datagram and its destination.
 pub(super) type Outgoing = (SocketAddrV4, Datagram);
 
 impl Writer {
-    /// Keeps the last so many.
+    /// A writer with a history of `depth` messages.
     pub(super) const fn new(entity: EntityId, depth: usize) -> Self {
         Self {
             entity,
@@ -62,7 +62,7 @@ impl Writer {
         }
     }
 
-    /// Writes to this one, too, from now on: also what is kept, if it wants that.
+    /// Adds a reader, from now on: including the history, if it requests that.
     pub(super) fn add_reader(
         &mut self,
         (reader, place): (Guid, SocketAddrV4),
@@ -98,12 +98,12 @@ impl Writer {
         self.readers.retain(|reader, _| reader.prefix != prefix);
     }
 
-    /// Forgets what it kept of this one, which is no more.
+    /// Drops history entries of an entity that was removed.
     pub(super) fn forget(&mut self, is_it: impl Fn(&Change) -> bool) {
         self.changes.retain(|_, change| !is_it(change));
     }
 
-    /// Writes to all that read. `stamp` is the time, and `own` our participant.
+    /// Writes to all readers. `stamp` is the time, and `own` our participant.
     pub(super) fn write(
         &mut self,
         change: Change,
@@ -142,7 +142,7 @@ impl Writer {
             .collect()
     }
 
-    /// Asks those that may miss something.
+    /// Queries the readers that may miss messages.
     pub(super) fn ask(&mut self, own: Prefix, now: Instant) -> Vec<Outgoing> {
         let waiting = self.readers.iter().filter(|(_, proxy)| {
             proxy.is_reliable && proxy.acknowledged < self.last && proxy.ask_at <= now
@@ -159,8 +159,8 @@ impl Writer {
         outgoing
     }
 
-    /// What a reader is told of what there is: where, from whom to whom, the numbers, and whether it has to answer. `None` if it
-    /// does without.
+    /// The heartbeat for a reader: destination, ends, range of numbers, and whether it must answer. `None` for a
+    /// best-effort reader.
     fn heartbeat(
         &mut self,
         reader: Guid,
@@ -182,7 +182,7 @@ impl Writer {
         Some((proxy.place, ends, range, wants_answer))
     }
 
-    /// A reader says what it has and what it misses.
+    /// Applies a reader's acknowledgement, and answers its request for missing messages.
     pub(super) fn acknack(
         &mut self,
         reader: Guid,
@@ -195,7 +195,7 @@ impl Writer {
         let Some(proxy) = self.readers.get_mut(&reader) else {
             return Vec::new();
         };
-        // Nobody has what was not written yet.
+        // A number that was not written yet cannot be acknowledged.
         if missing.base > last + 1 {
             return Vec::new();
         }
@@ -207,7 +207,7 @@ impl Writer {
         proxy.answer_at = now + ANSWER_INTERVAL;
         let (place, after) = (proxy.place, proxy.after);
         let datagram = || Datagram::new(own, Some(reader.prefix));
-        // One that never heard what there is asks with nothing.
+        // A reader that never received a heartbeat sends an empty request.
         if missing.numbers.is_empty() && missing.base <= last {
             proxy.ask_at = now;
             return self.ask(own, now);
@@ -228,7 +228,7 @@ impl Writer {
         outgoing
     }
 
-    /// The first number that is kept.
+    /// The first number in the history.
     fn first(&self) -> u64 {
         let first = self.changes.first_key_value();
         first.map_or(self.last + 1, |(number, _)| *number)

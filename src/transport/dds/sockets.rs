@@ -1,4 +1,4 @@
-//! The sockets of a participant, all at one address, with the ports that RTPS gives to a domain (DDSI-RTPS 2.5, 9.6.2.3).
+//! The sockets of a participant, all at one address, with the ports that RTPS assigns to a domain (DDSI-RTPS 2.5, 9.6.2.3).
 
 use socket2::{Domain, Protocol, SockAddr, Socket, Type};
 use std::io;
@@ -6,16 +6,16 @@ use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::thread;
 use std::time::Duration;
 
-/// Where participants announce themselves to everyone.
+/// Multicast group for announcements.
 const GROUP: Ipv4Addr = Ipv4Addr::new(239, 255, 0, 1);
 const FIRST_PORT: u16 = 7400;
 const PORTS_OF_DOMAIN: u16 = 250;
 const FIRST_OWN_PORT: u16 = 10;
-/// Participants of one address whose ports are in the domain's.
+/// Maximum participants per address within the domain's ports.
 const PARTICIPANTS: u16 = 120;
-/// Participants of this address that are told of this one each by itself, for those that take no multicast.
+/// Number of participants at this address that are announced to by unicast, for those that do not receive multicast.
 const NEIGHBOURS: u16 = 10;
-/// How long a thread waits for a datagram until it looks whether it is to end.
+/// Receive timeout, after which a thread checks whether it should end.
 const POLL_INTERVAL: Duration = Duration::from_millis(100);
 pub(super) const DATAGRAM_MAX: usize = 65_535;
 
@@ -33,7 +33,7 @@ impl Sockets {
     /// Listens at this address and nowhere else.
     ///
     /// # Errors
-    /// The system's, if there is no pair of ports left, or the group cannot be joined there.
+    /// The system's error if no pair of ports is free, or the group cannot be joined there.
     pub(super) fn open(address: Ipv4Addr, domain: u16) -> io::Result<Self> {
         let group = group(address, first_port(domain))?;
         let mut failure = io::ErrorKind::AddrInUse.into();
@@ -75,7 +75,7 @@ impl Sockets {
         self.messages
     }
 
-    /// Where others may be: the group, and those at this address that take no multicast.
+    /// Destinations of announcements: the group, and the ports at this address for participants that do not receive multicast.
     pub(super) fn everyone(&self) -> Vec<SocketAddrV4> {
         let group = SocketAddrV4::new(GROUP, first_port(self.domain));
         let ports = (0..NEIGHBOURS).map(|number| own_port(self.domain, number));
@@ -84,13 +84,13 @@ impl Sockets {
         std::iter::once(group).chain(others).collect()
     }
 
-    /// Whether it went out.
+    /// Sends a datagram; true if it was sent.
     pub(super) fn send(&self, datagram: &[u8], place: SocketAddrV4) -> bool {
         let [_, announcements, _] = &self.all;
         announcements.send_to(datagram, place).is_ok()
     }
 
-    /// Waits a moment for a datagram.
+    /// Waits for a datagram until the timeout.
     pub(super) fn receive(
         &self,
         nth: usize,
@@ -106,7 +106,7 @@ impl Sockets {
             }
             Ok(_) => {}
             Err(error) if is_waiting(&error) => {}
-            // One that fails each time must not keep a core busy.
+            // A socket that fails each time must not keep a core busy.
             Err(_) => thread::sleep(POLL_INTERVAL),
         }
     }
@@ -125,14 +125,14 @@ const fn own_port(domain: u16, number: u16) -> u16 {
     first_port(domain) + FIRST_OWN_PORT + 2 * number
 }
 
-/// What is sent to everyone, so far as it comes to this address.
+/// The socket for multicast datagrams that reach this address.
 fn group(address: Ipv4Addr, port: u16) -> io::Result<UdpSocket> {
     let socket = Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::UDP))?;
-    // Every participant of this computer listens there.
+    // Every participant of this computer binds this port.
     socket.set_reuse_address(true)?;
     #[cfg(unix)]
     socket.set_reuse_port(true)?;
-    // Windows binds to no group.
+    // Windows cannot bind to a group.
     let at = if cfg!(windows) { address } else { GROUP };
     socket.bind(&SockAddr::from(SocketAddrV4::new(at, port)))?;
     socket.join_multicast_v4(&GROUP, &address)?;

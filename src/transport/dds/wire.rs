@@ -1,10 +1,10 @@
-//! Messages of RTPS (DDSI-RTPS 2.5, chapter 9): what a datagram says, checked here once, and made. A datagram is a stranger's: nothing
-//! in it is believed beyond its own length, and no number in it sets how much is kept or how long is worked.
+//! RTPS messages (DDSI-RTPS 2.5, chapter 9): decodes, validates and encodes datagrams. A datagram is untrusted: nothing
+//! in it is believed beyond its own length, and no number in it determines memory use or run time.
 
 use std::fmt;
 use std::net::{Ipv4Addr, SocketAddrV4};
 
-/// A participant's name: the first part of the ids of all that it has.
+/// A participant's id: the first part of the ids of all its entities.
 pub(super) type Prefix = [u8; 12];
 
 /// A reader or writer of a participant.
@@ -12,16 +12,16 @@ pub(super) type Prefix = [u8; 12];
 pub(super) struct EntityId(pub(super) [u8; 4]);
 
 impl EntityId {
-    /// All that it concerns.
+    /// Addresses all matching entities.
     pub(super) const UNKNOWN: Self = Self([0; 4]);
     pub(super) const PARTICIPANT: Self = Self([0, 0, 1, 0xc1]);
-    /// Announce participants.
+    /// Announces participants.
     pub(super) const SPDP_WRITER: Self = Self([0, 1, 0, 0xc2]);
     pub(super) const SPDP_READER: Self = Self([0, 1, 0, 0xc7]);
-    /// Announce writers.
+    /// Announces writers.
     pub(super) const PUBLICATIONS_WRITER: Self = Self([0, 0, 3, 0xc2]);
     pub(super) const PUBLICATIONS_READER: Self = Self([0, 0, 3, 0xc7]);
-    /// Announce readers.
+    /// Announces readers.
     pub(super) const SUBSCRIPTIONS_WRITER: Self = Self([0, 0, 4, 0xc2]);
     pub(super) const SUBSCRIPTIONS_READER: Self = Self([0, 0, 4, 0xc7]);
 
@@ -38,7 +38,7 @@ impl EntityId {
     }
 }
 
-/// A reader or writer, of all that there are.
+/// Globally unique id of a reader or writer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct Guid {
     pub(super) prefix: Prefix,
@@ -70,7 +70,7 @@ impl fmt::Display for Guid {
     }
 }
 
-/// Bytes that are read from their beginning on, in the byte order that was announced.
+/// Reads bytes in sequence, in the announced byte order.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cursor<'a> {
     rest: &'a [u8],
@@ -121,7 +121,7 @@ impl<'a> Cursor<'a> {
         usize::try_from(self.u32()?).ok()
     }
 
-    /// At most 2^63 - 1, so that some may be added to it without a check.
+    /// At most 2^63 - 1, so that small additions cannot overflow.
     fn sequence_number(&mut self) -> Option<u64> {
         let (high, low) = (self.u32()?, self.u32()?);
         let high = u64::from(high);
@@ -132,7 +132,7 @@ impl<'a> Cursor<'a> {
         self.array().map(EntityId)
     }
 
-    /// An IPv4 place for UDP; `None` within, if it is of another kind.
+    /// An IPv4 address for UDP; the inner `None` if it is of another kind.
     pub(super) fn locator(&mut self) -> Option<Option<SocketAddrV4>> {
         let (kind, port) = (self.u32()?, self.u32()?);
         let address: [u8; 16] = self.array()?;
@@ -144,10 +144,10 @@ impl<'a> Cursor<'a> {
 }
 
 pub(super) const LOCATOR_UDP_V4: u32 = 1;
-/// Numbers that one set can name (9.4.2.6).
+/// Maximum numbers in one set (9.4.2.6).
 pub(super) const SET_MAX: u64 = 256;
 
-/// Some of 256 numbers from a base on.
+/// A subset of 256 numbers from a base on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct NumberSet {
     pub(super) base: u64,
@@ -198,31 +198,31 @@ impl NumberSet {
     }
 }
 
-/// What a reader asks of a writer.
+/// A reader's request to a writer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Request {
     pub(super) missing: NumberSet,
-    /// It does not know what there is.
+    /// The reader does not know the writer's range.
     pub(super) wants_heartbeat: bool,
-    /// Grows with each.
+    /// Grows with each request.
     pub(super) count: u32,
 }
 
-/// From whom to whom, within their participants.
+/// Reader and writer, within their participants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Ends {
     pub(super) reader: EntityId,
     pub(super) writer: EntityId,
 }
 
-/// A message, or word that one is no more.
+/// A message, or notice of a removed entity.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Data<'a> {
     pub(super) number: u64,
-    /// What stands beside it: the thing was disposed or left, and the key of it.
+    /// From the inline QoS: the entity was disposed or unregistered, and its key.
     pub(super) is_disposed: bool,
     pub(super) key_hash: Option<[u8; 16]>,
-    /// With its head; empty if it has none.
+    /// The payload with its header; empty if it has none.
     pub(super) payload: &'a [u8],
 }
 
@@ -239,14 +239,14 @@ pub(super) struct Fragment<'a> {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Submessage<'a> {
-    /// What follows is for this participant; all zeros: for whoever reads it.
+    /// The following submessages are for this participant; all zeros: for all.
     Destination(Prefix),
     Data(Ends, Data<'a>),
     Fragment(Ends, Fragment<'a>),
     Heartbeat {
         ends: Ends,
         first: u64,
-        /// One less than the first if there is none.
+        /// One less than the first if there are none.
         last: u64,
         wants_answer: bool,
     },
@@ -254,7 +254,7 @@ pub(super) enum Submessage<'a> {
         ends: Ends,
         missing: NumberSet,
     },
-    /// These will not come: from the start up to the base of the set, and those in it.
+    /// Numbers that will not come: from the start up to the base of the set, and those in it.
     Gap {
         ends: Ends,
         start: u64,
@@ -273,18 +273,18 @@ const DATA: u8 = 0x15;
 const DATA_FRAG: u8 = 0x16;
 
 const LITTLE: u8 = 1;
-/// Of a heartbeat: nobody needs to answer. Of an acknowledgement: no heartbeat is asked for.
+/// On a heartbeat: no answer required. On an acknowledgement: no heartbeat requested.
 const FINAL: u8 = 2;
 const INLINE_QOS: u8 = 2;
 const HAS_DATA: u8 = 4;
 const HAS_KEY: u8 = 8;
-/// Of a fragment, the key has another place than of a whole message.
+/// In a fragment, the key flag differs from that of a whole message.
 const FRAGMENT_HAS_KEY: u8 = 4;
 
 const PID_SENTINEL: u16 = 1;
 const PID_KEY_HASH: u16 = 0x70;
 const PID_STATUS_INFO: u16 = 0x71;
-/// Disposed or unregistered, of the status.
+/// Status bits: disposed or unregistered.
 const GONE: u8 = 3;
 
 /// The submessages of a datagram, up to the first that is malformed.
@@ -295,7 +295,7 @@ pub(super) struct Message<'a> {
 }
 
 impl<'a> Message<'a> {
-    /// `None` unless it is of RTPS 2.
+    /// Parses a header; `None` unless it is RTPS 2.
     pub(super) fn parse(datagram: &'a [u8]) -> Option<Self> {
         let mut head = Cursor::new(datagram, true);
         let is_rtps = head.array()? == *b"RTPS" && head.array::<2>()?.first() == Some(&2);
@@ -317,7 +317,7 @@ impl<'a> Iterator for Message<'a> {
             let (kind, flags) = (*kind, *flags);
             let is_little = flags & LITTLE != 0;
             let length = Cursor::new(length, is_little).u16()?;
-            // No length means all the rest, but of those that may be empty (9.4.5.1.3).
+            // No length means all the rest, except for those that may be empty (9.4.5.1.3).
             let length = match (length, kind) {
                 (0, PAD | INFO_TS) => 0,
                 (0, _) => rest.len(),
@@ -333,7 +333,7 @@ impl<'a> Iterator for Message<'a> {
                 HEARTBEAT => heartbeat(body, flags),
                 ACKNACK => acknack(body),
                 GAP => gap(body),
-                // Speaks in another's name: nobody here needs that.
+                // Changes the source, which nothing here needs.
                 INFO_SRC => None,
                 _ => continue,
             };
@@ -381,7 +381,7 @@ fn gap(mut body: Cursor<'_>) -> Option<Submessage<'_>> {
     (start <= set.base).then_some(Submessage::Gap { ends, start, set })
 }
 
-/// What stands at the beginning of a message and of a fragment: the ends, the number, and where the rest begins.
+/// Header of a message and of a fragment: the ends, the number, and the rest.
 fn data_head<'a>(body: &mut Cursor<'a>) -> Option<(Ends, u64, Cursor<'a>)> {
     let _extra_flags = body.u16()?;
     let to_rest: usize = body.u16()?.into();
@@ -443,7 +443,7 @@ fn fragment(mut body: Cursor<'_>, flags: u8) -> Option<Submessage<'_>> {
     ))
 }
 
-/// The next of a list of parameters; `None` within at its end.
+/// The next parameter of a list; the inner `None` at its end.
 pub(super) fn parameter<'a>(
     list: &mut Cursor<'a>,
     is_little: bool,
@@ -477,12 +477,12 @@ fn sequence_number(bytes: &mut Vec<u8>, number: u64) {
     }
 }
 
-/// A datagram that is made: little-endian.
+/// An outgoing datagram, little-endian.
 #[derive(Debug, Clone)]
 pub(super) struct Datagram(Vec<u8>);
 
 impl Datagram {
-    /// RTPS 2.2 of no vendor, to this participant alone if one is named.
+    /// An RTPS 2.2 datagram without vendor id, for one participant if given.
     pub(super) fn new(from: Prefix, to: Option<Prefix>) -> Self {
         let mut bytes = b"RTPS\x02\x02\x00\x00".to_vec();
         bytes.extend(from);
@@ -503,13 +503,13 @@ impl Datagram {
         // Submessages begin at multiples of four (9.4.1).
         body.resize(body.len().next_multiple_of(4), 0);
         self.0.extend([kind, flags | LITTLE]);
-        // What does not fit is the last one, and needs no length.
+        // A body that is too long for the field is the last one, and needs no length.
         u16_le(&mut self.0, u16::try_from(body.len()).unwrap_or_default());
         self.0.append(&mut body);
         self
     }
 
-    /// When what follows was written: seconds since 1970 and parts of 2^32 of one.
+    /// Write time of the following submessages: seconds since 1970 and fractions of 2^-32 s.
     pub(super) fn timestamp(self, seconds: u32, fraction: u32) -> Self {
         self.with(INFO_TS, 0, |bytes| {
             u32_le(bytes, seconds);
@@ -524,7 +524,7 @@ impl Datagram {
         })
     }
 
-    /// Word that what has this key is no more.
+    /// Adds a notice that the entity with this key was removed.
     pub(super) fn disposal(self, ends: Ends, number: u64, key: (Guid, &[u8])) -> Self {
         let (guid, payload) = key;
         self.with(DATA, INLINE_QOS | HAS_KEY, |bytes| {
@@ -555,7 +555,7 @@ impl Datagram {
         })
     }
 
-    /// Asks for what is missing.
+    /// Adds an acknowledgement with a request for missing messages.
     pub(super) fn acknack(self, ends: Ends, request: &Request) -> Self {
         let flags = if request.wants_heartbeat { 0 } else { FINAL };
         self.with(ACKNACK, flags, |bytes| {
@@ -565,7 +565,7 @@ impl Datagram {
         })
     }
 
-    /// These will not come: from the start up to the base of the set, and those in it.
+    /// Adds numbers that will not come: from the start up to the base of the set, and those in it.
     pub(super) fn gap(self, ends: Ends, start: u64, set: &NumberSet) -> Self {
         self.with(GAP, 0, |bytes| {
             ends_le(bytes, ends);

@@ -1,15 +1,15 @@
-//! Why a text is no endpoint, in words for the user who wrote it. Reads no text.
+//! Errors for texts that are not an endpoint, with messages for the user who wrote them. Parses nothing.
 
 use std::fmt;
 
-/// What a value must be.
+/// Permitted form of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Want {
     /// A whole number.
     Whole,
     /// A whole number in this range, both ends included.
     Between(u32, u32),
-    /// A speed in bits a second in this range.
+    /// A speed in bits per second in this range.
     Speed(u32, u32),
     /// One of these, as a list in words.
     OneOf(&'static str),
@@ -26,7 +26,7 @@ impl fmt::Display for Want {
     }
 }
 
-/// Why a text is no endpoint.
+/// Reason why a text is not an endpoint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum EndpointError {
     /// The part before the colon is unknown or missing.
@@ -34,39 +34,39 @@ pub enum EndpointError {
         "'{text}' names no kind of link: write sim:, rs485:PORT, rtu:PORT, rtu+tcp:HOST:PORT, tcp:HOST, can:INTERFACE, slcan:PORT or usbcan:PORT"
     )]
     Kind {
-        /// What was given.
+        /// The given text.
         text: String,
     },
     /// The part after the colon is missing.
     #[error("'{text}' is incomplete: write for example {example}")]
     Place {
-        /// What was given.
+        /// The given text.
         text: String,
         /// The kind of link.
         kind: &'static str,
-        /// A right one.
+        /// A valid example.
         example: &'static str,
     },
-    /// A key that this kind does not have.
+    /// A key that this kind of link does not have.
     #[error("'{key}' is not a setting of '{kind}:'; the settings are {known}")]
     Key {
-        /// What was given.
+        /// The given key.
         key: String,
         /// The kind of link.
         kind: &'static str,
         /// The keys it has.
         known: &'static str,
     },
-    /// A key that is given twice: which of both is meant, nobody knows.
+    /// A duplicate key: it would be ambiguous.
     #[error("'{key}' stands there twice; write it once")]
     Twice { key: String },
     /// A value that does not fit its key.
     #[error("{key}={value} is not possible: {key} is {want}")]
     Value {
         key: String,
-        /// What was given.
+        /// The given value.
         value: String,
-        /// What it must be.
+        /// The permitted form.
         want: Want,
     },
 }

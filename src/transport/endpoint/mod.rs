@@ -1,4 +1,4 @@
-//! Endpoints: where a hand is, in one spelling for command line, config, window and files. Opens nothing.
+//! Endpoints: the address of a hand, in one spelling for command line, config, window and files. Opens nothing.
 pub mod error;
 mod parse;
 pub mod route;
@@ -8,19 +8,19 @@ use crate::hand::register::BytePacking;
 pub use crate::transport::endpoint::error::EndpointError;
 use std::fmt;
 
-/// Serial speed of a hand as delivered (manual 2.2).
+/// Default baud rate of a hand (manual 2.2).
 pub const DEFAULT_BAUD: u32 = 115_200;
 /// Port of the hand's Modbus TCP server (manual 1.3.2).
 pub const DEFAULT_TCP_PORT: u16 = 6000;
 /// Unit id that the manual prints for Modbus TCP (2.5).
 pub const DEFAULT_UNIT: u8 = 255;
-/// CAN bit rate as delivered (manual 2.3).
+/// Default CAN bit rate (manual 2.3).
 pub const DEFAULT_BITRATE: u32 = 1_000_000;
-/// Bus id of a hand as delivered (manual 2.6.1).
+/// Default bus id of a hand (manual 2.6.1).
 pub const DEFAULT_ID: u8 = 1;
 /// Scenario of the built-in hand when none is named.
 pub const DEFAULT_SCENARIO: &str = "idle";
-/// What the built-in hand may be found doing.
+/// Scenarios of the built-in hand.
 pub const SCENARIOS: [&str; 9] = [
     DEFAULT_SCENARIO,
     "free",
@@ -33,7 +33,7 @@ pub const SCENARIOS: [&str; 9] = [
     "frozen",
 ];
 
-/// Where a hand is and how it is spoken to. The spelling is that of [`fmt::Display`] and `FromStr`.
+/// Address and protocol of a hand. The spelling is that of [`fmt::Display`] and `FromStr`.
 ///
 /// ```
 /// use handscope_core::transport::Endpoint;
@@ -47,19 +47,19 @@ pub const SCENARIOS: [&str; 9] = [
 pub enum Endpoint {
     /// `sim:?seed=7&scenario=grasp&body=worn.toml`: the built-in hand, in this process.
     Sim {
-        /// Seed of everything random in it.
+        /// Seed of its random numbers.
         seed: u64,
-        /// What it does.
+        /// Its scenario.
         scenario: String,
-        /// The file of its body; `None` for the body of its own.
+        /// File of its body; `None` for the default body.
         body: Option<String>,
     },
     /// `rs485:/dev/ttyUSB0?baud=115200&id=1`: private framing.
     Rs485(SerialLine),
     /// `rtu:/dev/ttyUSB0?baud=115200&id=1`: Modbus RTU.
     Rtu(SerialLine),
-    /// `rtu+tcp:192.168.11.7:4001?baud=115200&id=1`: Modbus RTU through a serial device server, whose address and TCP port stand in
-    /// place of the port.
+    /// `rtu+tcp:192.168.11.7:4001?baud=115200&id=1`: Modbus RTU through a serial device server, whose address and TCP
+    /// port replace the serial port.
     RtuTcp(SerialLine),
     /// `tcp:192.168.11.210:6000?unit=255`: Modbus TCP.
     Tcp {
@@ -69,7 +69,7 @@ pub enum Endpoint {
         port: u16,
         /// Modbus unit id.
         unit: u8,
-        /// How single bytes stand in words, where the user says so; else the link finds out.
+        /// Packing of single bytes in words; `None` if the link should detect it.
         packing: Option<BytePacking>,
     },
     /// `can:can0?id=1`: SocketCAN.
@@ -92,7 +92,7 @@ pub enum Endpoint {
     UsbCan {
         /// Serial port of the adapter.
         port: String,
-        /// Bits a second on its serial side. Its bit rate on CAN is its own affair.
+        /// Bits per second on its serial side. Its bit rate on CAN is configured in the adapter.
         baud: u32,
         /// Hand id, 1..=16383.
         id: u16,
@@ -104,7 +104,7 @@ pub enum Endpoint {
 pub struct SerialLine {
     /// Path or name of the port.
     pub port: String,
-    /// Bits a second.
+    /// Bits per second.
     pub baud: u32,
     /// Hand id, 1..=254.
     pub id: u8,
@@ -127,7 +127,7 @@ impl Endpoint {
         matches!(self, Self::Sim { .. })
     }
 
-    /// Where and whom, for files kept by hand: the endpoint without the id, and the id or unit.
+    /// Place and id for persistent files: the endpoint without the id, and the id or unit.
     pub fn place_and_id(&self) -> (String, u16) {
         let place = format!("{}:{}", self.kind(), self.place());
         match self {
@@ -144,7 +144,7 @@ impl Endpoint {
         }
     }
 
-    /// The same as a file name that no other hand has, without its ending.
+    /// The same as a file name that is unique to the hand, without extension.
     pub fn file_stem(&self) -> String {
         let (place, id) = self.place_and_id();
         let plain = |letter: char| match letter {
@@ -163,7 +163,7 @@ impl Endpoint {
         )
     }
 
-    /// What the user looks at when it fails: the port, the address, the interface.
+    /// The place for the user to check when it fails: the port, the address, the interface.
     pub fn place(&self) -> String {
         match self {
             Self::Sim { .. } => "the simulated hand".into(),
@@ -175,7 +175,7 @@ impl Endpoint {
         }
     }
 
-    /// The serial port it is reached through, if it is.
+    /// The serial port; `None` if it has none.
     pub fn port(&self) -> Option<&str> {
         match self {
             Self::Rs485(line) | Self::Rtu(line) => Some(&line.port),
@@ -184,7 +184,7 @@ impl Endpoint {
         }
     }
 
-    /// The same hand through another serial port. Endpoints without one stay as they are.
+    /// The same hand through another serial port. Endpoints without one are unchanged.
     pub fn through(&self, path: &str) -> Self {
         let mut moved = self.clone();
         match &mut moved {
@@ -195,7 +195,7 @@ impl Endpoint {
         moved
     }
 
-    /// Host and TCP port, where it is reached through a network.
+    /// Host and TCP port; `None` if it is not on a network.
     pub fn host(&self) -> Option<(&str, u16)> {
         match self {
             Self::Tcp { host, port, .. } => Some((host, *port)),

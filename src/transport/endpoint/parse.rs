@@ -1,4 +1,4 @@
-//! How the text of an endpoint is read. Opens nothing.
+//! Parses the text of an endpoint. Opens nothing.
 
 use crate::hand::register::BytePacking;
 use crate::transport::endpoint::error::{EndpointError, Want};
@@ -18,7 +18,7 @@ const SLCAN_WANT: Want =
 /// [`SCENARIOS`] in words.
 const SCENARIO_WANT: Want =
     Want::OneOf("idle, free, rigid, fragile, grasp, touched, faults, extremes or frozen");
-/// What a body is.
+/// Permitted values of `body`.
 const BODY_WANT: Want =
     Want::OneOf("the file of a body; 'handscope sim --print-body' writes one to start from");
 /// Largest id on a CAN bus (manual 2.3).
@@ -66,7 +66,7 @@ impl Query<'_> {
             .map(|pair| pair.split_once('=').unwrap_or((pair, "")))
     }
 
-    /// No key may stand there twice.
+    /// Rejects duplicate keys.
     fn are_single(&self) -> Result<(), EndpointError> {
         let earlier = |nth: usize, key: &str| self.pairs().take(nth).any(|(own, _)| own == key);
         let mut all = self.pairs().enumerate();
@@ -136,7 +136,7 @@ impl Query<'_> {
         Ok(line)
     }
 
-    /// Serial device servers have no usual port, so it is named always.
+    /// Serial device servers have no default port, so it is required.
     fn rtu_tcp(&self) -> Result<Endpoint, EndpointError> {
         let (kind, example) = ("rtu+tcp", "rtu+tcp:192.168.11.7:4001");
         let mut line = self.serial(kind, example)?;

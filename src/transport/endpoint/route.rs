@@ -1,25 +1,25 @@
-//! Which address of this computer a host would be reached from, and whether both are in one network. Sends nothing.
+//! Finds the local address from which a host would be reached, and whether both are in one network. Sends nothing.
 
 use serde::Serialize;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use tokio::net::UdpSocket;
 
-/// The way to a host.
+/// The route to a host.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Route {
     /// The host.
     pub to: IpAddr,
-    /// The address of this computer that would be used.
+    /// The local address that would be used.
     pub from: IpAddr,
-    /// The network interface with that address, where the system tells.
+    /// The network interface with that address; `None` if the system does not report it.
     pub interface: Option<String>,
-    /// Bits of the network part of that address, where the system tells.
+    /// Prefix length of that address; `None` if the system does not report it.
     pub prefix: Option<u32>,
 }
 
 impl Route {
-    /// Whether the host is in the same network, so that no router stands between; `None` if the prefix is not known.
+    /// True if the host is in the same network, without a router in between; `None` if the prefix is unknown.
     pub fn is_direct(&self) -> Option<bool> {
         let prefix = self.prefix?;
         match (self.to, self.from) {
@@ -40,10 +40,10 @@ fn network(address: Ipv4Addr, prefix: u32) -> u32 {
     u32::from(address) & mask
 }
 
-/// Asks the system which way it would take. Naming a peer to a datagram socket sends nothing.
+/// Queries the system for the route. Connecting a datagram socket sends nothing.
 ///
 /// # Errors
-/// A name without address, or no way there at all.
+/// A name without address, or no route.
 pub async fn route(host: &str, port: u16) -> io::Result<Route> {
     let mut found = tokio::net::lookup_host((host, port)).await?;
     let to = found.next().ok_or(io::ErrorKind::NotFound)?;
@@ -63,7 +63,7 @@ pub async fn route(host: &str, port: u16) -> io::Result<Route> {
     })
 }
 
-/// The interface that has this address, with the bits of its network.
+/// The interface that has this address, with its prefix length.
 #[cfg(unix)]
 fn interface_of(address: IpAddr) -> Option<(String, Option<u32>)> {
     let all = nix::ifaddrs::getifaddrs().ok()?;

@@ -1,4 +1,4 @@
-//! An address as the user types it, with or without the kind of link before it. Opens nothing, asks nobody.
+//! Recognises an address as typed by the user, with or without the kind of link before it. Opens and sends nothing.
 
 use crate::transport::endpoint::{Endpoint, EndpointError};
 use crate::transport::found::PortFound;
@@ -9,27 +9,27 @@ const KINDS: [&str; 8] = [
     "sim", "rs485", "rtu", "rtu+tcp", "tcp", "can", "slcan", "usbcan",
 ];
 
-/// Why a typed text leads to no hand.
+/// Reason why a typed text is not a valid address.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum TypedError {
-    /// Digits and dots that are no address.
+    /// Digits and dots that are not an address.
     #[error("'{text}' is no IP address: four numbers from 0 to 255, such as 192.168.11.210")]
     Ip {
-        /// What was typed.
+        /// The typed text.
         text: String,
     },
     /// Neither a host nor a port nor an interface.
     #[error("'{text}' is no address: type for example 192.168.11.210, /dev/ttyUSB0, COM3 or can0")]
     Unknown {
-        /// What was typed.
+        /// The typed text.
         text: String,
     },
-    /// The kind of link is known and something behind it is wrong.
+    /// The kind of link is known but the rest is wrong.
     #[error(transparent)]
     Endpoint(#[from] EndpointError),
 }
 
-/// What a typed text most likely means; `ports` are those that the system lists.
+/// Returns the most likely endpoint of a typed text; `ports` are those that the system lists.
 ///
 /// ```
 /// use handscope_core::transport::endpoint::typed::recognise;
@@ -40,12 +40,12 @@ pub enum TypedError {
 /// ```
 ///
 /// # Errors
-/// [`TypedError`] says what is wrong, with a right one.
+/// [`TypedError`] describes what is wrong, with a valid example.
 pub fn recognise(typed: &str, ports: &[PortFound]) -> Result<Endpoint, TypedError> {
     Ok(spell(typed, ports)?.parse()?)
 }
 
-/// The same in the spelling of endpoints, of which something may still be wrong behind the kind of link.
+/// The same in the spelling of endpoints; the part after the kind of link may still be invalid.
 ///
 /// # Errors
 /// [`TypedError::Ip`] or [`TypedError::Unknown`].
@@ -76,7 +76,7 @@ pub fn spell(typed: &str, ports: &[PortFound]) -> Result<String, TypedError> {
     host(text)
 }
 
-/// The other kind of link that a serial port may be: nobody sees from outside which one a hand speaks.
+/// The alternative kind of link of a serial port: the protocol of a hand is not visible from outside.
 pub fn other_kind(endpoint: &Endpoint) -> Option<&'static str> {
     match endpoint {
         Endpoint::Rs485(_) => Some("rtu"),
@@ -99,12 +99,12 @@ pub fn shortest(endpoint: &Endpoint, ports: &[PortFound]) -> String {
     short.unwrap_or_else(|| endpoint.to_string())
 }
 
-/// What stands before the settings.
+/// The part before the settings.
 fn path_of(text: &str) -> &str {
     text.split_once('?').map_or(text, |(path, _)| path)
 }
 
-/// The serial port that is meant, with its folder, if one is.
+/// The serial port that the text means, with its folder, if any.
 fn serial_port(text: &str, ports: &[PortFound]) -> Option<String> {
     let place = path_of(text);
     let is_com = place

@@ -1,34 +1,34 @@
-//! A USB serial adapter by what stays the same when it is plugged in again: its serial number, else its place. Lists and
-//! opens nothing.
+//! Identifies a USB serial adapter by what is unchanged when it is plugged in again: its serial number, else its place.
+//! Lists and opens nothing.
 
 use crate::transport::found::{PortFound, UsbFound};
 use std::path::{Path, PathBuf};
 
-/// What an adapter is known again by.
+/// Identity of an adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adapter(UsbFound);
 
-/// Where an adapter is now.
+/// Present place of an adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Whereabouts {
-    /// There, and it can be no other.
+    /// At this port, unambiguously.
     At(String),
-    /// One of its kind is at each of these, and which is meant cannot be told.
+    /// Adapters of its kind at each of these ports, indistinguishable.
     Alike(Vec<String>),
     /// Not plugged in.
     Gone,
 }
 
 impl Adapter {
-    /// The adapter at this port; none if the port is not on USB or not listed.
+    /// The adapter at this port; `None` if the port is not on USB or not listed.
     pub fn at(port: &str, ports: &[PortFound]) -> Option<Self> {
         let real = real(port);
         let found = ports.iter().find(|found| Path::new(&found.path) == real)?;
         found.usb.clone().map(Self)
     }
 
-    /// Looks for the adapter among the ports of now. By serial number wherever it is plugged in; without one only
-    /// in the same USB port, because another of its kind would look the same elsewhere.
+    /// Finds the adapter among the present ports: by serial number wherever it is plugged in; without one only in the
+    /// same USB port, because another of its kind would look the same elsewhere.
     pub fn find(&self, ports: &[PortFound]) -> Whereabouts {
         let Self(mine) = self;
         let alike = ports_where(ports, |usb| {
@@ -40,7 +40,7 @@ impl Adapter {
         });
         let by_serial = match alike.as_slice() {
             [(path, _)] if mine.serial.is_some() => Some(*path),
-            // An adapter with several ports has one serial number; the interface tells them apart.
+            // An adapter with several ports has one serial number; the interface distinguishes them.
             _ if mine.serial.is_some() => only(&alike, |usb| {
                 interface(usb).is_some() && interface(usb) == interface(mine)
             }),
@@ -54,7 +54,7 @@ impl Adapter {
     }
 }
 
-/// Whether a port's name means the device at `path`: names under `/dev/serial/by-id` are links.
+/// True if a port's name refers to the device at `path`: names under `/dev/serial/by-id` are links.
 pub fn is_same_port(port: &str, path: &str) -> bool {
     port == path || real(port) == real(path)
 }
@@ -73,7 +73,7 @@ fn ports_where(ports: &[PortFound], fits: impl Fn(&UsbFound) -> bool) -> Alike<'
         .collect()
 }
 
-/// The one that fits, if no other does.
+/// The only one that fits; `None` if several do.
 fn only<'a>(alike: &Alike<'a>, fits: impl Fn(&UsbFound) -> bool) -> Option<&'a str> {
     let mut fitting = alike.iter().filter(|(_, usb)| fits(usb));
     let (path, _) = fitting.next()?;

@@ -1,9 +1,9 @@
-//! Which program holds a port, where the system tells. Opens nothing.
+//! Finds the program that holds a port, where the system reports it. Opens nothing.
 
 #[cfg(target_os = "linux")]
 pub(crate) use linux::find;
 
-/// Other systems do not tell.
+/// Other systems do not report it.
 #[cfg(not(target_os = "linux"))]
 pub(crate) fn find(_place: &std::path::Path) -> Option<String> {
     None
@@ -15,9 +15,9 @@ mod linux {
     use std::os::linux::fs::MetadataExt as _;
     use std::path::Path;
 
-    /// Processes looked at, so that a busy machine does not hold up the answer.
+    /// Maximum processes inspected, so that a busy machine does not delay the answer.
     const PROCESSES_MAX: usize = 4096;
-    /// What the maker of a pseudo-terminal has open.
+    /// Devices that the creator of a pseudo-terminal has open.
     const MASTERS: [&str; 2] = ["/dev/ptmx", "/dev/pts/ptmx"];
 
     /// Name and id of another program that has this port open or locked.
@@ -28,7 +28,7 @@ mod linux {
         Some(format!("{} (process {id})", name.trim()))
     }
 
-    /// A process of this person's that has it open. Other people's processes do not show their files.
+    /// A process of this user that has it open. Processes of other users do not show their files.
     fn opener(real: &Path) -> Option<u32> {
         let mut processes = fs::read_dir("/proc").ok()?.flatten().take(PROCESSES_MAX);
         processes.find_map(|process| {
@@ -38,7 +38,7 @@ mod linux {
                 .flatten()
                 .filter_map(|file| fs::read_link(file.path()).ok())
                 .collect();
-            // The maker of a pseudo-terminal keeps its other end open too, and is not the one meant.
+            // The creator of a pseudo-terminal keeps its other end open too, and is not the holder.
             let is_maker = real.starts_with("/dev/pts")
                 && files
                     .iter()
@@ -48,7 +48,7 @@ mod linux {
         })
     }
 
-    /// Whoever has locked it: anybody may read the list of locks.
+    /// The process that has locked it: the list of locks is readable by all users.
     fn locker(real: &Path) -> Option<u32> {
         let inode = fs::metadata(real).ok()?.st_ino();
         let locks = fs::read_to_string("/proc/locks").ok()?;

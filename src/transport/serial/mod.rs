@@ -1,4 +1,4 @@
-//! Serial ports: which there are, and how one is opened. What is said over them is not known here.
+//! Serial ports: lists and opens them. Independent of the protocol.
 pub mod adapter;
 pub(crate) mod holder;
 pub mod port_facts;
@@ -18,14 +18,14 @@ use tokio_serial::{
     SerialPortBuilderExt as _, SerialPortType, SerialStream, StopBits,
 };
 
-/// The ports that the system lists, by path; empty if it cannot tell. Pseudo-terminals and some platform ports
-/// are never listed, so a path typed by hand must be possible too.
+/// The ports that the system lists, by path; empty if it cannot. Pseudo-terminals and some platform ports are never
+/// listed, so typed paths must be possible too.
 pub fn ports() -> Vec<PortFound> {
     ports_by(&Sysfs::default())
 }
 
 fn ports_by(sysfs: &Sysfs) -> Vec<PortFound> {
-    // On Linux serialport looks there, and panics where it cannot.
+    // On Linux serialport reads that folder, and panics if it cannot.
     if cfg!(target_os = "linux") && !sysfs.has_ports() {
         return Vec::new();
     }
@@ -52,14 +52,14 @@ fn ports_by(sysfs: &Sysfs) -> Vec<PortFound> {
     ports
 }
 
-/// Opens a port with 8 data bits, no parity, 1 stop bit (manual 2.2), for this program alone, with old input thrown away.
+/// Opens a port with 8 data bits, no parity, 1 stop bit (manual 2.2), exclusively, and discards old input.
 ///
-/// The stream passes on what the system says: a read of 0 bytes, `EIO` or `BrokenPipe` means that the adapter was
-/// unplugged or the other side hung up, and nothing will come any more. Modem lines are not touched after opening;
-/// a port without them opens as well. Must be called within a tokio runtime.
+/// The stream forwards the system's results: a read of 0 bytes, `EIO` or `BrokenPipe` means that the adapter was
+/// unplugged or the other side hung up, and that nothing further will come. Modem lines are unchanged after opening; a
+/// port without them opens as well. Must be called within a tokio runtime.
 ///
 /// # Errors
-/// `Missing`, `NotAPort`, `Permission`, `Busy`, or `Io` with the system's words.
+/// `Missing`, `NotAPort`, `Permission`, `Busy`, or `Io` with the system's message.
 pub fn open(line: &SerialLine) -> Result<SerialStream, TransportError> {
     let place = line.port.as_str();
     refuse_what_is_no_port(place)?;
@@ -98,7 +98,7 @@ fn refuse_what_is_no_port(_place: &str) -> Result<(), TransportError> {
     Ok(())
 }
 
-/// False if it opens and is no terminal, as `/dev/null`.
+/// False if it opens but is not a terminal, such as `/dev/null`.
 #[cfg(unix)]
 fn may_be_port(place: &str) -> bool {
     use nix::fcntl::OFlag;
@@ -115,13 +115,13 @@ const fn may_be_port(_place: &str) -> bool {
     true
 }
 
-/// A pseudo-terminal stays marked exclusive until its master closes, so that nobody but root could open it a second time:
-/// there the mark is taken off again. The file lock stays (as a shared one, which still keeps exclusive openers out).
+/// A pseudo-terminal remains marked exclusive until its master closes, so that only root could open it a second time:
+/// the mark is removed there. The file lock remains (as a shared one, which still excludes exclusive openers).
 #[cfg(unix)]
 fn free_for_reopening(stream: &mut SerialStream, place: &str) {
     let real = std::fs::canonicalize(place);
     if real.is_ok_and(|path| path.starts_with("/dev/pts")) {
-        // The port works all the same if this fails; only a second opening may be refused.
+        // The port works even if this fails; only a second opening may be refused.
         drop(stream.set_exclusive(false));
     }
 }
@@ -133,19 +133,19 @@ fn open_error(place: &str, error: &tokio_serial::Error) -> TransportError {
     use std::io::ErrorKind::{NotFound, PermissionDenied};
     let text = || place.to_owned();
     match error.kind {
-        // The port was seen to exist, so "no device" means that a lock could not be had.
+        // The port exists, so "no device" means that the lock was not available.
         ErrorKind::NoDevice if cfg!(unix) => TransportError::Busy {
             place: text(),
             holder: holder::find(Path::new(place)),
         },
         ErrorKind::NoDevice | ErrorKind::Io(NotFound) => TransportError::Missing { place: text() },
-        // Windows says "access denied" for a port in use.
+        // Windows reports "access denied" for a port in use.
         ErrorKind::Io(PermissionDenied) if cfg!(windows) => TransportError::Busy {
             place: text(),
             holder: None,
         },
         ErrorKind::Io(PermissionDenied) => denied(text()),
-        // What the system says is lost in serialport but for its words.
+        // serialport preserves only the message of the system's error.
         ErrorKind::Unknown if !may_be_port(place) => TransportError::NotAPort { place: text() },
         kind => io_error(
             place,

@@ -1,4 +1,4 @@
-//! What can be told of a serial port without opening it: adapter, driver, rights, who holds it. Opens and changes nothing.
+//! Facts about a serial port without opening it: adapter, driver, permissions, holder. Opens and changes nothing.
 
 use crate::transport::found::UsbFound;
 use crate::transport::serial::adapter::is_same_port;
@@ -8,24 +8,24 @@ use crate::transport::serial::sysfs::Sysfs;
 use serde::Serialize;
 use std::path::Path;
 
-/// A serial port as it lies there. What the system does not tell is `None`.
+/// A serial port. A fact that the system does not report is `None`.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct PortFacts {
-    /// The device behind a link such as those under `/dev/serial/by-id`; none if it is not there.
+    /// The device behind a link such as those under `/dev/serial/by-id`; `None` if it does not exist.
     pub device: Option<String>,
     /// The USB adapter.
     #[serde(rename = "adapter")]
     pub usb: Option<UsbFound>,
     /// The kernel's driver.
     pub driver: Option<String>,
-    /// Rights, owner and group, such as `crw-rw---- root dialout`.
+    /// Permissions, owner and group, such as `crw-rw---- root dialout`.
     pub rights: Option<String>,
     /// Another program that has it open, with its process id.
     #[serde(rename = "held_by")]
     pub holder: Option<String>,
 }
 
-/// Looks a port up. Takes a few milliseconds on some systems.
+/// Looks up a port. Takes a few milliseconds on some systems.
 pub fn port_facts(port: &str, sysfs: &Sysfs) -> PortFacts {
     let device = std::fs::canonicalize(port).ok();
     let listed = ports()

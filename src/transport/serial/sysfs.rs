@@ -1,10 +1,10 @@
-//! What Linux tells of a serial port under `/sys`: its place on USB, its driver, its latency timer. Opens no port; other
-//! systems tell nothing.
+//! Facts that Linux reports about a serial port under `/sys`: its USB position, its driver, its latency timer. Opens no
+//! port; other systems report nothing.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The tree that Linux keeps of its devices; a test gives one of its own.
+/// Linux's tree of devices; a test provides its own.
 #[derive(Debug, Clone)]
 pub struct Sysfs {
     root: PathBuf,
@@ -22,12 +22,12 @@ impl Sysfs {
         Self { root: root.into() }
     }
 
-    /// True if the system's ports can be looked up here: not so in a container without `/sys`.
+    /// True if the system's ports can be looked up here; false in a container without `/sys`.
     pub fn has_ports(&self) -> bool {
         fs::read_dir(self.root.join("class/tty")).is_ok()
     }
 
-    /// Bus, port path and interface on USB, such as `1-2.3:1.0`; none for ports that are not on USB.
+    /// Bus, port path and interface on USB, such as `1-2.3:1.0`; `None` for ports that are not on USB.
     pub fn usb_location(&self, port: &str) -> Option<String> {
         let device = fs::canonicalize(self.tty(port)?.join("device")).ok()?;
         let parts = device.components().rev();
@@ -41,7 +41,7 @@ impl Sysfs {
         Some(driver.file_name()?.to_str()?.to_owned())
     }
 
-    /// How long the adapter may keep what it got, in milliseconds, where its driver tells.
+    /// Latency timer of the adapter in milliseconds; `None` if its driver does not report it.
     pub fn latency_timer_ms(&self, port: &str) -> Option<u16> {
         let name = device_name(port)?;
         let file = self.root.join("bus/usb-serial/devices").join(name);
@@ -54,7 +54,7 @@ impl Sysfs {
     }
 }
 
-/// `ttyUSB0`, also where a link such as those under `/dev/serial/by-id` was named.
+/// Device name such as `ttyUSB0`, also for a link such as those under `/dev/serial/by-id`.
 fn device_name(port: &str) -> Option<String> {
     let real = fs::canonicalize(port).unwrap_or_else(|_not_there| PathBuf::from(port));
     Some(Path::new(&real).file_name()?.to_str()?.to_owned())

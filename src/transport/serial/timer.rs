@@ -1,10 +1,10 @@
-//! Waiting for a moment to a fraction of a millisecond, for what has to keep the time of a serial line. The runtime's
-//! own timers come up to two milliseconds late.
+//! Waits with a resolution below a millisecond, for the timing of a serial line. The runtime's own timers are up to two
+//! milliseconds late.
 
 use tokio::time::{Instant, sleep_until};
 
-/// Waits for one moment after the other. On Linux through a timer of the system; elsewhere, and where the runtime's
-/// clock is a test's, through the runtime.
+/// Waits for one moment after another: on Linux through a system timer; elsewhere, and if the runtime's clock is a
+/// test's, through the runtime.
 #[derive(Debug, Default)]
 pub struct Timer {
     #[cfg(target_os = "linux")]
@@ -12,11 +12,11 @@ pub struct Timer {
 }
 
 impl Timer {
-    /// Waits until this moment; at once if it is past.
+    /// Waits until this moment; returns at once if it has passed.
     pub async fn until(&mut self, at: Instant) {
         #[cfg(target_os = "linux")]
         self.exact.until(at).await;
-        // Never before the moment, by whichever clock the runtime counts.
+        // Never before the moment by the runtime's clock.
         if Instant::now() < at {
             sleep_until(at).await;
         }
@@ -26,11 +26,11 @@ impl Timer {
 #[cfg(target_os = "linux")]
 #[derive(Debug, Default)]
 enum Exact {
-    /// Not asked for yet.
+    /// Not created yet.
     #[default]
     Unknown,
     Ready(tokio::io::unix::AsyncFd<Fd>),
-    /// The runtime's clock stands still by itself, or the system gives no timer.
+    /// The runtime's clock is paused, or the system provides no timer.
     Absent,
 }
 
@@ -67,7 +67,7 @@ impl Exact {
         {
             return;
         }
-        // A wait that was given up may have left word of its end behind: it is no news for this one.
+        // A cancelled wait may have left a stale readiness, which does not count for this one.
         while Instant::now() < at
             && let Ok(mut ready) = timer.readable().await
         {
@@ -93,7 +93,7 @@ impl Exact {
     }
 }
 
-/// True if the runtime's clock does not go on by itself, as in tests that pause it.
+/// True if the runtime's clock does not advance by itself, as in tests that pause it.
 #[cfg(target_os = "linux")]
 fn stands_still() -> bool {
     let (real, runtime) = (std::time::Instant::now(), Instant::now());

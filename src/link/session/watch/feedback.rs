@@ -1,7 +1,8 @@
-//! Whether feedback lives, and where the joints must be if it does not. Pure; what follows from it is the session's.
+//! Detects frozen feedback, and estimates the joint positions in that case. Pure; the session acts on it.
 //!
-//! Each joint is judged by itself: where it must have moved visibly by what it was told, its drive does not say why it could not,
-//! and its own angle is unchanged, frames may be valid and the angle old all the same, whatever else in the hand changes.
+//! Each joint is judged by itself: if its commands must have moved it visibly, its drive reports no reason for staying,
+//! and its own angle is unchanged, the frames may be valid and the angle old all the same, whatever else in the hand
+//! changes.
 
 use crate::hand::{Angle, AngleReading, Dof, Finger, Group, Groups, HandSample, Moment, PerDof};
 use crate::hand::{RegisterWrite, Speed, Status, Target, register};
@@ -9,43 +10,43 @@ use crate::record::SetpointRegister;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// An angle that is unchanged for this long, counted from where motion should have been seen, is in doubt: about half a second from
-/// the last change or the command.
+/// An angle that is unchanged for this long, counted from when motion should have been seen, is doubted: about half a
+/// second from the last change or the command.
 pub(crate) const FREEZE_TIMEOUT: Duration = Duration::from_millis(450);
-/// Readings of the angles in this time at least: a pause in reading says nothing.
+/// Minimum readings of the angles in this time: a pause in polling proves nothing.
 const READINGS_MIN: u32 = 5;
-/// Without readings for so long, a joint that is seen where it was may have gone and come back.
+/// After a pause in readings of this length, a joint that reads the same may have moved and returned.
 const PAUSE: Duration = Duration::from_millis(250);
-/// Readings after which a stop already relies on nothing that this joint reports …
+/// Readings after which a stop already ignores all that this joint reports …
 const SUSPECT_READINGS: u32 = 2;
-/// … over this time: a hand that acts later than most is not frozen.
+/// … over this time: a hand that reacts later than most is not frozen.
 const SUSPECT_DELAY: Duration = Duration::from_millis(30);
-/// So many counts of ANGLE_ACT are a visible move: more than noise, and more than a joint may rest beside its target.
+/// Counts of ANGLE_ACT that are a visible move: more than noise, and more than a joint's steady-state error.
 const VISIBLE: f64 = 25.0;
-/// A drive that reports that it arrived may rest this many counts beside its target: some joints end before the range does.
+/// Counts by which a joint may miss its target though its drive reports arrival: some joints end before the range does.
 const ARRIVED_TOLERANCE: f64 = 50.0;
-/// A stop waits no longer than this for joints to come back.
+/// Longest time that a stop waits for joints to return.
 const WAY_BACK_MAX: Duration = Duration::from_secs(1);
-/// A joint that goes so many counts away from its target is moved by something else …
+/// A joint that moves this many counts away from its target is moved by something else …
 const AWAY: f64 = 5.0;
-/// … if it was told so long ago: the dead time, and as much for a late frame.
+/// … if the command is this old: the dead time, and as much for a late frame.
 const TURN_TIMEOUT: Duration = Duration::from_millis(130);
-/// From a command to the motion (measured: 64 +- 8 ms).
+/// Time from a command to the motion (measured: 64 +- 8 ms).
 const DEAD_TIME: Duration = Duration::from_millis(64);
-/// Commands that are remembered: more than setpoint rounds fit into the time after which feedback is in doubt.
+/// Maximum commands kept: more than setpoint rounds fit into the time after which feedback is doubted.
 const COMMANDS_MAX: usize = 512;
 
-/// What the joints were told, from one moment on.
+/// Targets and speeds of the joints, in effect from one moment on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Command {
     at: Moment,
     targets: PerDof<Option<i16>>,
     speeds: PerDof<Option<i16>>,
-    /// A gesture moves the joints without a target, nobody knows where to.
+    /// A gesture moves the joints to unknown positions.
     gesture: bool,
 }
 
-/// Where a joint was told to go, when, and where it was seen then.
+/// A target of a joint, the time of its command, and the joint's reading at that time.
 #[derive(Debug, Clone, Copy)]
 struct Aim {
     target: i16,
@@ -53,35 +54,35 @@ struct Aim {
     from: i16,
 }
 
-/// Readings of one joint that should have shown motion and did not.
+/// Unchanged readings of one joint that should have shown motion.
 #[derive(Debug, Clone, Copy)]
 struct Unchanged {
     since: Moment,
     last: Moment,
     readings: u32,
-    /// Something else that the hand reports changed meanwhile.
+    /// Another value that the hand reports changed meanwhile.
     hand_lives: bool,
 }
 
-/// One joint: where it was seen, and where it must be.
+/// One joint: its last reading and its estimated position.
 #[derive(Debug, Clone, Copy)]
 struct Joint {
     seen: i16,
-    /// The reading before.
+    /// The previous reading.
     before: Option<(i16, Moment)>,
-    /// Where it must be at `at`, by what it was told since it was last seen to live.
+    /// Its estimated position at `at`, from its commands since its last live reading.
     estimate: f64,
     at: Moment,
     unchanged: Option<Unchanged>,
-    /// It moved, or its drive reported that it does, since it was last at rest where it belongs.
+    /// It moved, or its drive reported motion, since it was last at rest at its estimated position.
     began: bool,
-    /// What is read of it counts for nothing until its angle changes.
+    /// Its readings are ignored until its angle changes.
     doubted: bool,
-    /// Should its angle and its status be old, it is back where it was seen by then.
+    /// Time by which it is back at its last reading, should its angle and its status be old.
     back_at: Moment,
 }
 
-/// Watches feedback of one conversation.
+/// Watches the feedback of one session.
 #[derive(Debug, Default)]
 pub(crate) struct FeedbackWatch {
     last: HandSample,
@@ -89,14 +90,14 @@ pub(crate) struct FeedbackWatch {
     /// Oldest first.
     commands: VecDeque<Command>,
     speeds_written: Option<Moment>,
-    /// Whether this joint goes where it was told is not known: the newest write to it was not acknowledged, or it was seen to go
-    /// elsewhere.
+    /// It is unknown whether this joint follows its command: the newest write to it was not acknowledged, or it was
+    /// seen to move elsewhere.
     unsure: PerDof<bool>,
     aims: PerDof<Option<Aim>>,
 }
 
 impl FeedbackWatch {
-    /// We write this, or may have. A joint that is not written goes where it was told before.
+    /// Records a write that was sent, or may have been. A joint that it does not cover keeps its last target.
     pub(crate) fn wrote(&mut self, write: &RegisterWrite, now: Moment) {
         self.forget_unsure(write);
         self.mark(write, true);
@@ -111,7 +112,7 @@ impl FeedbackWatch {
             let speeds = write.shorts(&register::SPEED_SET);
             self.tell(now, |command| put(&mut command.speeds, &speeds));
         } else if write.is_motion() {
-            // A gesture: the hand may go anywhere.
+            // A gesture: the hand may move anywhere.
             self.tell(now, |command| {
                 command.targets = PerDof::splat(None);
                 command.gesture = true;
@@ -120,7 +121,7 @@ impl FeedbackWatch {
         }
     }
 
-    /// The hand acknowledged this write.
+    /// Records that the hand acknowledged this write.
     pub(crate) fn acknowledged(&mut self, write: &RegisterWrite) {
         self.mark(write, false);
     }
@@ -143,7 +144,7 @@ impl FeedbackWatch {
         }
     }
 
-    /// What a joint was told before it went elsewhere is no reason for it to move: it is told anew.
+    /// Drops the earlier targets of a joint that moved elsewhere: only the new command counts.
     fn forget_unsure(&mut self, write: &RegisterWrite) {
         for (dof, is_written) in written(write).iter() {
             if *is_written && self.unsure[dof] {
@@ -174,7 +175,7 @@ impl FeedbackWatch {
         self.commands.push_back(command);
     }
 
-    /// Applies what was read.
+    /// Applies a reading.
     pub(crate) fn take(&mut self, sample: &HandSample, fresh: Groups) {
         self.take_speeds(sample, fresh);
         let before = std::mem::replace(&mut self.last, *sample);
@@ -197,7 +198,7 @@ impl FeedbackWatch {
         };
         for dof in Dof::ALL {
             self.unsure[dof] |= self.goes_elsewhere(dof, angle.value[dof], angle.asked);
-            // An angle that makes no sense says nothing of where the joint is.
+            // An implausible angle does not show the joint's position.
             if angle.value[dof].hold().is_some() {
                 self.joints[dof] = Some(self.judged(dof, angle.value[dof], angle.asked));
             }
@@ -205,8 +206,8 @@ impl FeedbackWatch {
         self.forget_old(angle.asked);
     }
 
-    /// True if the hand holds another target now than it did, and none that was written here: another set it, or the hand limits what
-    /// it takes.
+    /// True if the hand's target changed to one that this program did not write: another controller set it, or the hand
+    /// limits its targets.
     fn is_sent_elsewhere(&self, dof: Dof, before: &HandSample, now: &HandSample) -> bool {
         let target = |sample: &HandSample| match sample.angle_set?.value[dof] {
             Some(Target::Go(angle)) => Some(angle.get()),
@@ -222,7 +223,7 @@ impl FeedbackWatch {
         last.is_some() && !self.commands.iter().any(is_ours)
     }
 
-    /// True if a joint moves away from where it was told to go, or is farther from it than its own speed can have carried it.
+    /// True if a joint moves away from its target, or is farther from it than its own speed allows.
     fn goes_elsewhere(&self, dof: Dof, angle: AngleReading, asked: Moment) -> bool {
         let (Some(joint), Some(aim)) = (self.joints[dof], self.aims[dof]) else {
             return false;
@@ -235,7 +236,7 @@ impl FeedbackWatch {
         goes_away && asked.since(aim.at) >= TURN_TIMEOUT || way(angle.raw()) > farthest
     }
 
-    /// A joint after this reading of its angle.
+    /// The state of a joint after this reading of its angle.
     fn judged(&self, dof: Dof, angle: AngleReading, asked: Moment) -> Joint {
         let seen = angle.raw();
         let status = self.last.status.map(|status| status.value[dof]);
@@ -259,10 +260,10 @@ impl FeedbackWatch {
         joint.at = asked;
         let way = joint.estimate - f64::from(seen);
         let is_unsure = self.unsure[dof] || self.is_led_by_gesture(dof);
-        // Where it was told to stay it is seen.
+        // It is seen at its commanded position.
         joint.doubted &= is_unsure || way.abs() >= VISIBLE;
         joint.unchanged = joint.unchanged.filter(|_| !paused);
-        // One in doubt goes on by what it was told: an acknowledgement that is missing makes no old angle new.
+        // A doubted joint follows its commands: a missing acknowledgement does not refresh an old angle.
         let goes_by_sight = is_unsure && !joint.doubted || self.is_led_by_gesture(dof);
         if goes_by_sight || self.has_reason(dof, &joint) {
             let back = self.back_from(dof, way);
@@ -275,7 +276,8 @@ impl FeedbackWatch {
         let is_visible = way.abs() >= VISIBLE;
         joint.began |= status.is_some_and(Status::is_moving);
         joint.began &= is_visible || !is_stopped;
-        // Back where it is seen, it may have been there all the time, unless nothing in the hand changes.
+        // With the estimate back at its reading, the joint may have been there all the time, unless nothing in the hand
+        // changes.
         if !is_visible
             && joint
                 .unchanged
@@ -296,13 +298,13 @@ impl FeedbackWatch {
         joint
     }
 
-    /// True if a gesture moves this joint, nobody knows where to.
+    /// True if a gesture moves this joint to an unknown position.
     fn is_led_by_gesture(&self, dof: Dof) -> bool {
         let told = self.commands.back();
         told.is_some_and(|told| told.gesture && told.targets[dof].is_none())
     }
 
-    /// True if the drive itself reports why the joint does not go further the way it was told.
+    /// True if the drive itself reports why the joint does not move further as commanded.
     fn has_reason(&self, dof: Dof, joint: &Joint) -> bool {
         let Some(status) = self.last.status.map(|status| status.value[dof]) else {
             return false;
@@ -311,7 +313,7 @@ impl FeedbackWatch {
         match status {
             Status::ForceReached => joint.estimate < f64::from(joint.seen),
             Status::CurrentProtection | Status::Stalled | Status::DriveFault => true,
-            // One in doubt was told to stay where it must be: that it arrived there says nothing of where it is seen.
+            // A doubted joint was commanded to its estimated position: its arrival there does not confirm its reading.
             Status::PositionReached => target.is_some_and(|target| {
                 let way = (f64::from(target) - f64::from(joint.seen)).abs();
                 !joint.doubted && way <= ARRIVED_TOLERANCE
@@ -320,7 +322,7 @@ impl FeedbackWatch {
         }
     }
 
-    /// Speeds that somebody else set, or that were never written here.
+    /// Applies speeds that another controller set, or that this program never wrote.
     fn take_speeds(&mut self, sample: &HandSample, fresh: Groups) {
         let Some(speeds) = sample.speed_set.filter(|_| fresh.contains(Group::SpeedSet)) else {
             return;
@@ -332,7 +334,7 @@ impl FeedbackWatch {
         }
     }
 
-    /// Forgets commands that others have replaced in every estimate.
+    /// Drops commands that later ones have replaced in every estimate.
     fn forget_old(&mut self, asked: Moment) {
         let at = self
             .joints
@@ -352,9 +354,9 @@ impl FeedbackWatch {
         joints.filter_map(|joint| Some((joint, joint.unchanged.as_ref()?)))
     }
 
-    /// True if a joint was told to move, and its angle is unchanged for so long that it must be taken for frozen. A joint that never
-    /// began and whose drive reports that it rests is a dead drive as likely, while the rest of the hand lives: that is no reason to
-    /// end what goes on.
+    /// True if a joint was commanded to move, and its angle is unchanged for long enough to count as frozen. A joint
+    /// that never began to move and whose drive reports rest may as well be a dead drive, while the rest of the hand is
+    /// live: that is no reason to end the motion.
     pub(crate) fn is_frozen(&self) -> bool {
         let is_stopped = |(dof, _): &(Dof, Joint)| {
             let status = self.last.status.map(|status| status.value[*dof]);
@@ -374,13 +376,14 @@ impl FeedbackWatch {
         })
     }
 
-    /// True if motion should have been seen in a joint and was not: no proof yet, but a stop must not rely on what is read.
+    /// True if a joint should have shown motion and did not: no proof yet, but a stop must not rely on its readings.
     pub(crate) fn is_suspect(&self) -> bool {
         self.unchanged()
             .any(|(_, unchanged)| unchanged.is_suspect())
     }
 
-    /// True if a stop that goes on must not rely on what is read either: nothing in the hand changes, or a joint does not for long.
+    /// True if a stop in progress must not rely on the readings either: nothing in the hand changes, or a joint has not
+    /// for long.
     pub(crate) fn is_suspect_in_stop(&self) -> bool {
         let is_new = |joint: &Joint| !joint.doubted;
         self.unchanged().any(|(joint, unchanged)| {
@@ -389,7 +392,7 @@ impl FeedbackWatch {
         })
     }
 
-    /// From now on, until their angles change, what is read of the suspect joints counts for nothing.
+    /// Ignores the readings of the suspect joints until their angles change.
     pub(crate) fn doubt(&mut self) {
         for joint in self
             .joints
@@ -402,7 +405,7 @@ impl FeedbackWatch {
         }
     }
 
-    /// What a link that is back must know for a stop that waited for it: the suspect joints, and what they were told.
+    /// The state that a reconnected link needs for a pending stop: the suspect joints and their commands.
     pub(crate) fn after_loss(mut self) -> Self {
         self.doubt();
         let doubted = self.doubted();
@@ -423,24 +426,24 @@ impl FeedbackWatch {
         }
     }
 
-    /// True if any joint is in doubt.
+    /// True if any joint is doubted.
     pub(crate) fn is_doubted(&self) -> bool {
         self.doubted().iter().any(|(_, doubted)| *doubted)
     }
 
-    /// The joints in doubt.
+    /// The doubted joints.
     pub(crate) fn doubted(&self) -> PerDof<bool> {
         self.joints
             .map(|joint| joint.is_some_and(|joint| joint.doubted))
     }
 
-    /// Where a joint in doubt must be at this time; `None` for one that is not in doubt.
+    /// Estimated position of a doubted joint at this time; `None` for other joints.
     pub(crate) fn hold_target(&self, dof: Dof, now: Moment) -> Option<Target> {
         let is_doubted = self.joints[dof].is_some_and(|joint| joint.doubted);
         self.expected(dof, now).filter(|_| is_doubted)
     }
 
-    /// Where a joint must be at this time; `None` for one that was never read, or that a gesture may have moved since.
+    /// Estimated position of a joint at this time; `None` if it was never read, or a gesture may have moved it since.
     pub(crate) fn expected(&self, dof: Dof, now: Moment) -> Option<Target> {
         let joint = self.joints[dof]?;
         let ends = self.commands.iter().skip(1).map(|next| next.at);
@@ -456,8 +459,8 @@ impl FeedbackWatch {
         Some(Target::Go(nearest(self.estimate(dof, &joint, now))))
     }
 
-    /// How far a joint is by now at least that was seen to be on its way, if it went on as fast; never beyond its target. `None` for
-    /// one that stays where it is seen, or may. When the hand took a reading is not known: at the latest as it came.
+    /// Extrapolated position of a joint that was seen moving, at its measured speed; never beyond its target. `None`
+    /// for a joint that is at rest or may be. The hand sampled the reading at the latest when it was received.
     pub(crate) fn gone_on(&self, dof: Dof, now: Moment) -> Option<Target> {
         let (joint, aim) = (self.joints[dof]?, self.aims[dof]?);
         let (from, since) = joint.before?;
@@ -476,8 +479,8 @@ impl FeedbackWatch {
         Some(Target::Go(nearest(seen + gone)))
     }
 
-    /// How long the joints need from where they must be by now to where they were seen last, dead time included; nothing where that
-    /// way is too short to be seen.
+    /// Time that the joints need from their estimated positions to their last readings, dead time included; zero if
+    /// that distance is too short to be visible.
     pub(crate) fn way_back(&self, now: Moment) -> Duration {
         let own = self.joints.iter().filter_map(|(dof, joint)| {
             let joint = joint.as_ref()?;
@@ -487,7 +490,7 @@ impl FeedbackWatch {
         own.max().unwrap_or_default()
     }
 
-    /// How long a joint needs for this way, counts; nothing where it is too short to be seen.
+    /// Time that a joint needs for this distance, in counts; zero if it is too short to be visible.
     fn back_from(&self, dof: Dof, way: f64) -> Duration {
         let speed = self.commands.back().and_then(|told| told.speeds[dof]);
         let counts_per_s = f64::from(speed.unwrap_or_default()) * Speed::ANGLE_PER_UNIT;
@@ -498,7 +501,8 @@ impl FeedbackWatch {
         (back + DEAD_TIME).min(WAY_BACK_MAX)
     }
 
-    /// Where a joint must be: from where it was on to what it was told, as fast as it was told, and never beyond.
+    /// Estimated position of a joint: from its previous estimate towards its commanded targets at the commanded speeds,
+    /// and never beyond.
     fn estimate(&self, dof: Dof, joint: &Joint, now: Moment) -> f64 {
         let mut angle = joint.estimate;
         let begins = self
@@ -518,7 +522,7 @@ impl FeedbackWatch {
     }
 }
 
-/// The joints whose targets or speeds this writes.
+/// The joints whose targets or speeds this write sets.
 fn written(write: &RegisterWrite) -> PerDof<bool> {
     let rows = [&register::ANGLE_SET, &register::SPEED_SET];
     let row = rows.into_iter().find(|row| row.span().covers(write.span()));
@@ -554,7 +558,7 @@ fn keep<T>(all: &mut PerDof<Option<T>>, kept: &PerDof<bool>) {
     }
 }
 
-/// True if any measured value differs from the one before, or is the first.
+/// True if any measured value differs from the previous one, or is the first.
 fn has_changed(before: &HandSample, now: &HandSample, fresh: Groups) -> bool {
     let differs = |group: Group| fresh.contains(group) && before.memory(group) != now.memory(group);
     let measured = [Group::Angle, Group::Force, Group::Current].into_iter();
@@ -578,7 +582,7 @@ mod tests {
         Moment::from_micros(ms * 1000)
     }
 
-    /// A hand without any noise: what it tells at a time.
+    /// Noise-free feedback of a hand at one time.
     #[derive(Clone, Copy)]
     struct Told {
         angle: i16,
@@ -586,7 +590,7 @@ mod tests {
         status: u8,
     }
 
-    /// What a hand is told, what it tells, and when that is in doubt, ms from the command.
+    /// Command to a hand, its feedback, and the time of doubt, in ms from the command.
     struct Case {
         name: &'static str,
         speed: i16,
@@ -636,7 +640,7 @@ mod tests {
         watch
     }
 
-    /// It is written and acknowledged.
+    /// Writes a command and acknowledges it.
     fn tell(watch: &mut FeedbackWatch, command: &HandCommand, at: Moment) {
         let writes = command.writes();
         watch.wrote(&writes[0], at);
@@ -647,7 +651,7 @@ mod tests {
         Target::Go(Angle::nearest(angle))
     }
 
-    /// Where a joint is at speed 250, in thousandths of a second.
+    /// Position of a joint at speed 250, `t` in milliseconds.
     fn moving(t: u64) -> i16 {
         let way = i16::try_from(t.saturating_sub(64) * 400 / 1000).unwrap();
         (1000 - way).max(0)
@@ -704,7 +708,8 @@ mod tests {
         // 120 counts in 300 ms, and the dead time.
         assert_eq!(watch.way_back(ms(364)).as_millis(), 364);
         assert_eq!(watch.way_back(ms(3000)), WAY_BACK_MAX);
-        // It is sent back to where it is seen: at rest there it is only once it had the time to come back, whatever its drive reports.
+        // It is sent back to its reading: it counts as at rest there only once it had the time to return, whatever its
+        // drive reports.
         let back = HandCommand::Angles(PerDof::splat(Some(go(1000))));
         tell(&mut watch, &back, ms(300));
         let (frozen, fresh) = sample(at(1000, 2), ms(400));
@@ -880,13 +885,13 @@ mod tests {
             go(nearest(watch.estimate(Dof::Index, &joint, ms(t))).get())
         };
         assert_eq!(held(&watch, 64), go(1000));
-        // 760 counts a second after the dead time.
+        // 760 counts per second after the dead time.
         assert_eq!(held(&watch, 564), go(620));
         assert_eq!(held(&watch, 3000), go(200));
         let (seen, fresh) = sample(at(900, 1), ms(200));
         watch.take(&seen, fresh);
         assert_eq!(held(&watch, 300), go(824));
-        // The hold acts late too.
+        // The hold takes effect late too.
         let hold = HandCommand::Angles(PerDof::splat(Some(go(824))));
         tell(&mut watch, &hold, ms(300));
         assert_eq!(held(&watch, 364), go(775));

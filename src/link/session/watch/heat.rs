@@ -1,33 +1,34 @@
-//! Notices drives that are too hot, or whose temperature is unknown, while the hand may move: the one rule for whatever moves it. Pure.
+//! Detects drives that are too hot, or whose temperature is unknown, while the hand may move: the one rule for every
+//! controller. Pure.
 
 use crate::hand::heat::{HOT, MAX_AGE};
 use crate::hand::{Dof, Group, Groups, HandSample, Moment};
 use crate::link::lease::Owner;
 use crate::record::Disarmed;
 
-/// So many implausible readings in a row count: one may be a reply whose fault its checksum let through.
+/// Consecutive implausible readings that count: one may be a corrupt reply that passed its checksum.
 const IMPLAUSIBLE_MAX: u8 = 2;
 
-/// What was seen of the temperatures under the arming in force.
+/// Temperature state of the current arming.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct HeatWatch {
     armed_at: Moment,
-    /// The user at this program armed a hand that is not cool, and watches over it: to open it, say. Until it is cool.
+    /// The local user armed a hand that is not cool, and supervises it, for example to open it. Valid until it is cool.
     accepted: bool,
-    /// Implausible readings in a row.
+    /// Consecutive implausible readings.
     implausible: u8,
 }
 
 impl HeatWatch {
-    /// The hand is armed now, by this one.
+    /// Starts watching a hand that is armed now by this owner.
     pub(crate) fn arm(&mut self, sample: &HandSample, owner: Option<Owner>, now: Moment) {
         self.armed_at = now;
-        // An exhibition opens the hand and lets it rest, by a stricter rule of its own.
+        // An exhibition opens the hand and rests it, by a stricter rule of its own.
         let may_open = matches!(owner, Some(Owner::Person | Owner::Exhibition));
         self.accepted = may_open && !is_cool(sample, now);
     }
 
-    /// Takes what was read.
+    /// Applies a reading.
     pub(crate) fn take(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         if !fresh.contains(Group::Temperature) {
             return;
@@ -40,7 +41,7 @@ impl HeatWatch {
         self.accepted &= !is_cool(sample, now);
     }
 
-    /// Why an armed hand is to be held now, if it is.
+    /// Reason why an armed hand must be held now, if any.
     pub(crate) fn reason(&self, sample: &HandSample, now: Moment) -> Option<Disarmed> {
         if self.accepted {
             return None;
@@ -81,7 +82,7 @@ mod tests {
         Moment::from_duration(Duration::from_secs_f64(seconds))
     }
 
-    /// A hand that is armed at 1 s, after these temperatures were read from 0.8 s on, five times a second.
+    /// A hand that is armed at 1 s, after these temperatures were read from 0.8 s on, five times per second.
     struct Armed {
         watch: HeatWatch,
         sample: HandSample,
@@ -178,7 +179,7 @@ mod tests {
             assert_eq!(armed.reason().is_none(), may, "{owner:?}");
             assert_eq!(armed.reads(76).is_none(), may, "{owner:?}");
             assert_eq!(armed.reads(65), None, "{owner:?}");
-            // Once cool, the rule is the same for all.
+            // Once cool, the same rule applies to all owners.
             assert_eq!(armed.reads(70), Some(Disarmed::Hot), "{owner:?}");
         }
     }

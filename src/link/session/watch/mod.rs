@@ -1,4 +1,4 @@
-//! What the feedback tells beside its values: that it stands still, that another writes, what was asked for and what was kept.
+//! Checks of the feedback: frozen values, another controller, heat, setpoints and SAVE results.
 
 pub(crate) mod feedback;
 pub(crate) mod heat;

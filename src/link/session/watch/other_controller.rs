@@ -1,5 +1,5 @@
-//! Another controller on the same hand: requests that are not ours, and setpoints that change though nobody here wrote
-//! them. Only judges; what follows from it is the session's.
+//! Detects another controller on the same hand: requests that are not ours, and setpoints that change though this
+//! program did not write them. Judges only; the session acts on it.
 
 use crate::hand::feedback::sample::SET_OUT_OF_RANGE;
 use crate::hand::{AngleReading, Force, RegisterWrite, Speed, Target};
@@ -9,14 +9,14 @@ use crate::record::{SetpointConflict, SetpointRegister};
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// So many foreign requests …
+/// This many foreign requests …
 const REQUESTS: usize = 3;
-/// … within this time are another controller; fewer may be noise that happens to look like one.
+/// … within this time indicate another controller; fewer may be noise that happens to look like one.
 const WITHIN: Duration = Duration::from_secs(2);
-/// It counts as gone when it was not noticed for this long: setpoints are read back twice a second.
+/// The other controller counts as gone when it was not detected for this long: setpoints are read back twice per second.
 const GONE_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// What was noticed of another controller.
+/// Evidence of another controller.
 #[derive(Debug)]
 pub(crate) struct OtherController {
     counted: u64,
@@ -25,13 +25,13 @@ pub(crate) struct OtherController {
     angles: SetpointWatch,
     forces: SetpointWatch,
     speeds: SetpointWatch,
-    /// The last reading of angles, forces, speeds proved nothing.
+    /// The last reading of angles, forces, speeds was inconclusive.
     doubted: [bool; 3],
-    /// Setpoints that changed though nobody here wrote them.
+    /// Number of setpoint changes that this program did not write.
     pub(crate) changes: u64,
-    /// The last such setpoint.
+    /// The last changed setpoint.
     pub(crate) foreign: Option<SetpointConflict>,
-    /// A setpoint that the hand did not take, while nobody else was seen to write.
+    /// A setpoint that the hand did not accept, without any sign of another writer.
     pub(crate) not_taken: Option<SetpointConflict>,
 }
 
@@ -53,8 +53,8 @@ impl Default for OtherController {
 }
 
 impl OtherController {
-    /// A fresh conversation with the hand: what it held before does not count. What was noticed does, and what we wrote
-    /// through the wire before may still act.
+    /// Starts a fresh session with the hand: the setpoints it held before are forgotten. The evidence is kept, and our
+    /// writes through the previous wire may still take effect.
     pub(crate) fn begin(&mut self) {
         self.angles.begin();
         self.forces.begin();
@@ -63,7 +63,7 @@ impl OtherController {
         self.not_taken = None;
     }
 
-    /// The wire has counted this many foreign requests in all.
+    /// Applies the total count of foreign requests on the wire.
     pub(crate) fn overheard(&mut self, total: u64, now: Moment) {
         for _ in self.counted..total.min(self.counted.saturating_add(REQUESTS as u64)) {
             if self.requests.is_full() {
@@ -80,7 +80,7 @@ impl OtherController {
         }
     }
 
-    /// We write this, or may have.
+    /// Records a write that was sent, or may have been.
     pub(crate) fn wrote(&mut self, write: &RegisterWrite, now: Moment) {
         let within = |row: &register::Register| row.span().covers(write.span());
         if within(&register::ANGLE_SET) {
@@ -90,14 +90,14 @@ impl OtherController {
         } else if within(&register::SPEED_SET) {
             self.speeds.wrote(values(write, &register::SPEED_SET), now);
         } else {
-            // A gesture, a cleared fault: the hand may set its own setpoints then.
+            // A gesture or a cleared fault: the hand may set its own setpoints.
             self.angles.hand_decides(now);
             self.forces.hand_decides(now);
             self.speeds.hand_decides(now);
         }
     }
 
-    /// The setpoints that the hand holds were read. True if they should be read again soon, for one reading proves nothing.
+    /// Applies setpoints read from the hand. True if they should be read again soon, because one reading proves nothing.
     pub(crate) fn read(&mut self, sample: &HandSample, fresh: Groups) -> bool {
         let fresh = |group| fresh.contains(group);
         let angles = sample.angle.map(|angle| angle.value.map(AngleReading::raw));
@@ -142,18 +142,18 @@ impl OtherController {
         again
     }
 
-    /// True if the last reading of a group showed what nobody here wrote, which one reading does not prove.
+    /// True if the last reading of a group showed a value that this program did not write, which one reading does not prove.
     pub(crate) fn is_doubted(&self) -> bool {
         self.doubted.contains(&true)
     }
 
-    /// True while another controller is at work.
+    /// True while another controller is active.
     pub(crate) fn is_active(&self, now: Moment) -> bool {
         self.noticed.is_some_and(|at| now.since(at) < GONE_TIMEOUT)
     }
 }
 
-/// What a write within a group says of each joint.
+/// The values that a write within a group has for each joint.
 fn values(write: &RegisterWrite, row: &register::Register) -> PerDof<Wrote> {
     let is_angle = row.address == register::ANGLE_SET.address;
     write.shorts(row).map(|value| match value {
@@ -172,7 +172,7 @@ mod tests {
         Moment::from_micros(ms * 1000)
     }
 
-    /// Reads speeds of all joints as the hand would give them.
+    /// Reads the speeds of all joints as the hand would return them.
     fn read(other: &mut OtherController, speed: u8, ms: u64) {
         let mut sample = HandSample::default();
         let bytes = [speed, 0].repeat(6);
@@ -210,7 +210,7 @@ mod tests {
         read(&mut other, 100, 1000);
         let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::nearest(250))));
         other.wrote(&speeds.writes()[0], at(1200));
-        // It acts late, after a reading that still shows the old values.
+        // It takes effect late, after a reading that still shows the old values.
         for (ms, speed) in [
             (1500, 100),
             (2000, 100),
@@ -221,7 +221,7 @@ mod tests {
             read(&mut other, speed, ms);
         }
         assert_eq!(other.changes, 0);
-        // On a line that is busy with other things it may be long until it is read again.
+        // On a busy line the next reading may come much later.
         other.wrote(&speeds.writes()[0], at(4200));
         for (ms, speed) in [(8000, 99), (8500, 99)] {
             read(&mut other, speed, ms);

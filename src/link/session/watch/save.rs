@@ -1,5 +1,5 @@
-//! One SAVE at a time, and what is known of it: which late frame is whose, how long is listened, when the next may go out.
-//! Pure: moments and frames come in, the next step and a verdict go out.
+//! State of a SAVE: which late frame belongs to it, how long to listen, and when the next may be sent. Pure: moments
+//! and frames in, the next step and a verdict out.
 
 use crate::codec::rs485::SaveResult;
 use crate::hand::{Moment, Refusal};
@@ -7,14 +7,14 @@ use crate::link::bus::ResultFrame;
 use crate::record::{SaveDoubt, Saved};
 use std::time::Duration;
 
-/// From SAVE until its result is given up (manual 2.2.2 says about one second; protocol choice 8).
+/// Time from a SAVE until its result is given up (manual 2.2.2 gives about one second; protocol choice 8).
 pub(crate) const RESULT_TIMEOUT: Duration = Duration::from_secs(3);
-/// Where no result frame exists: time in which the hand writes its flash and is not asked anything.
+/// Time in which the hand writes its flash and is not polled, where no result frame exists.
 pub(crate) const FLASH_TAKES: Duration = Duration::from_millis(1200);
-/// A result frame up to this long after a SAVE is that one's, or its double. Only then the next may go out.
+/// A result frame up to this long after a SAVE belongs to it, or duplicates its result. The next may be sent only after that.
 pub(crate) const CLAIM_DURATION: Duration = Duration::from_secs(6);
 
-/// How the write of SAVE itself ended.
+/// Result of the SAVE write itself.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Ack {
     Acknowledged,
@@ -22,18 +22,18 @@ pub(crate) enum Ack {
     Refused { reason: Refusal },
 }
 
-/// What is to be done now.
+/// The next step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Next {
-    /// Leave the line to the hand until then.
+    /// Send nothing until then.
     Listen { until: Moment },
     /// Read the parameters and compare.
     ReadBack,
-    /// It is over.
+    /// The SAVE is over.
     Done(Saved),
 }
 
-/// The SAVE under way, or the last one.
+/// The SAVE in progress, or the last one.
 #[derive(Debug, Default)]
 pub(crate) struct SaveWatch {
     sent: Option<Moment>,
@@ -49,7 +49,10 @@ struct OpenSave {
 }
 
 impl SaveWatch {
-    /// Whether a SAVE may go out now; else how long it has to wait.
+    /// Checks whether a SAVE may be sent now.
+    ///
+    /// # Errors
+    /// The time to wait otherwise.
     pub(crate) fn may_send(&self, now: Moment) -> Result<(), Duration> {
         let claimed = self.sent.map(|sent| sent.plus(CLAIM_DURATION));
         match claimed.filter(|until| *until > now) {
@@ -63,7 +66,7 @@ impl SaveWatch {
         self.may_send(now).is_err()
     }
 
-    /// SAVE goes out now.
+    /// Records that a SAVE is sent now.
     pub(crate) fn send(&mut self, now: Moment, frame: ResultFrame) {
         self.sent = Some(now);
         self.open = Some(OpenSave {
@@ -74,7 +77,7 @@ impl SaveWatch {
         });
     }
 
-    /// How the write ended.
+    /// Records the result of the write.
     pub(crate) fn written(&mut self, ack: Ack) {
         let Some(open) = &mut self.open else {
             return;
@@ -85,7 +88,7 @@ impl SaveWatch {
         open.ack = ack;
     }
 
-    /// A result frame came. Without a SAVE under way it is nobody's.
+    /// Applies a result frame, which is ignored if no SAVE is in progress.
     pub(crate) fn result(&mut self, result: SaveResult) {
         let Some(open) = &mut self.open else {
             return;
@@ -100,7 +103,7 @@ impl SaveWatch {
         });
     }
 
-    /// The parameters were read back: the same as before, or not.
+    /// Records that the parameters were read back, the same as before or not.
     pub(crate) fn read_back(&mut self, same: bool) {
         let Some(open) = &mut self.open else {
             return;
@@ -118,14 +121,14 @@ impl SaveWatch {
             });
     }
 
-    /// The link was lost; what is known then, if a SAVE was under way.
+    /// Ends a SAVE on a lost link; returns what is known of it, if one was in progress.
     pub(crate) fn lost(&mut self) -> Option<Saved> {
         let open = self.open.take()?;
         let why = SaveDoubt::LinkLost;
         Some(open.end.unwrap_or(Saved::Unknown { why }))
     }
 
-    /// What is to be done now. Over means over: later frames are nobody's.
+    /// The next step. Frames after the end are ignored.
     pub(crate) fn next(&mut self, now: Moment) -> Next {
         let Some(open) = &mut self.open else {
             let why = SaveDoubt::LinkLost;

@@ -1,9 +1,8 @@
-//! One group of setpoints as it is read back, against what was written: whose the values are. Pure; what follows from it is
-//! decided elsewhere.
+//! Compares one group of setpoints, as read back, with what was written, to attribute the values. Pure; others act on it.
 //!
-//! A joint may hold what it held before, what was written last, or what was written before that within the time that a write may
-//! take, in this order. Anything else came from elsewhere, unless it looks like the hand's own way to take a value: rounded a
-//! little, or limited. A value that is overwritten before it is read cannot be seen.
+//! A joint may hold its previous value, the last write, or an earlier write within the time that a write may take, in
+//! this order. Any other value is foreign, unless it looks like the hand's own rounding or limiting. A value that is
+//! overwritten before it is read cannot be detected.
 
 use crate::hand::feedback::sample::SET_OUT_OF_RANGE;
 use crate::hand::{Dof, Moment, PerDof};
@@ -13,27 +12,27 @@ use arrayvec::ArrayVec;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// So many readings that hold a stranger's value …
+/// This many readings of a foreign value …
 const MISSES: usize = 3;
-/// … within this time are another controller's, while writes of our own go on. One may be wrong.
+/// … within this time indicate another controller while this program keeps writing. One may be wrong.
 const WITHIN: Duration = Duration::from_secs(1);
-/// Writes that are remembered: as many as setpoint rounds fit into the time that a write may take.
+/// Maximum writes kept: as many as setpoint rounds fit into the time that a write may take.
 const WRITES_MAX: usize = 512;
 /// "No action" (manual 2.6.11).
 const LEAVE: i16 = -1;
-/// What some hands take it for.
+/// The value that some hands clamp it to.
 const CLAMPED_LEAVE: i16 = 1000;
-/// Where a joint is that was left alone, as far as readings of a moving one tell.
+/// Tolerance, counts, for the position of a joint left alone, given that readings of a moving joint lag.
 const LEFT_TOLERANCE: i16 = 50;
 
-/// What one write says of one joint.
+/// The value that one write has for one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wrote {
     /// The write does not cover the joint.
     Nothing,
-    /// Leave the joint alone: the hand decides what it holds then.
+    /// Leave the joint unchanged: the hand decides the value it then holds.
     Leave,
-    /// This value.
+    /// A target value.
     Value(i16),
 }
 
@@ -46,22 +45,22 @@ struct OwnWrite {
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Joint {
-    /// What it held when that was understood last.
+    /// The last value held that was explained.
     held: Option<i16>,
-    /// Writes before this number cannot come any more.
+    /// Writes before this number can no longer take effect.
     open_from: u64,
-    /// The newest write that must have acted by now, if it was not seen to.
+    /// The newest write that must have taken effect by now, if it was not seen to.
     due: Option<(u64, Wrote)>,
-    /// The newest write through a wire that is gone, if it must have acted by now: nobody knows when.
+    /// The newest write through a previous wire that must have taken effect by now, at an unknown time.
     stale: Option<Wrote>,
-    /// The least and the largest value that it was seen to hold: a hand that limits what it takes holds none beyond.
+    /// The minimum and maximum value seen: a hand that limits values holds none beyond.
     held_within: Option<(i16, i16)>,
-    /// What we wrote last.
+    /// The last value this program wrote.
     wrote: Option<i16>,
 }
 
 impl Joint {
-    /// It was seen to hold this.
+    /// Records a value that the joint was seen to hold.
     fn saw(&mut self, value: i16) {
         if value != LEAVE && value != SET_OUT_OF_RANGE {
             let (least, most) = self.held_within.unwrap_or((value, value));
@@ -69,7 +68,7 @@ impl Joint {
         }
     }
 
-    /// True if a hand that limits what it takes would show this: it never held a value beyond.
+    /// True if a hand that limits values could show this value: it never held a value beyond.
     fn limits(&self, wrote: Wrote, read: i16) -> bool {
         let Wrote::Value(wrote) = wrote else {
             return false;
@@ -87,42 +86,42 @@ impl Joint {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Verdict {
     Ours,
-    /// Nobody here wrote it, and nothing of ours is under way.
+    /// Not written by this program, and no write of ours is pending.
     Changed,
-    /// Nobody here wrote it, while something of ours may still act.
+    /// Not written by this program, while a write of ours may still take effect.
     Strange,
-    /// The hand took our value in its own way, or not at all.
+    /// The hand altered or ignored our value.
     NotTaken,
 }
 
-/// What a reading shows.
+/// Result of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Seen {
     /// Nothing unusual.
     Usual,
-    /// Something that one reading alone does not prove: to be read again soon.
+    /// Not proven by one reading: read again soon.
     Doubtful,
     /// Another controller's value.
     Foreign(SetpointConflict),
-    /// The hand holds another value than it was given, and nobody else was seen to write.
+    /// The hand holds another value than it was sent, without any sign of another writer.
     NotTaken(SetpointConflict),
 }
 
-/// Watches one group of six.
+/// Watches one group of six setpoints.
 #[derive(Debug)]
 pub(crate) struct SetpointWatch {
     register: SetpointRegister,
     writes: VecDeque<OwnWrite>,
     next: u64,
-    /// Writes before this number left through a wire that is gone: they may act late in any order.
+    /// Writes before this number were sent through a previous wire: they may take effect late, in any order.
     reopened: u64,
     joints: PerDof<Joint>,
-    /// The reading before held a value that nobody wrote.
+    /// The previous reading had an unexplained value.
     doubted: bool,
     misses: ArrayVec<Moment, MISSES>,
-    /// Until then the hand may set its own values.
+    /// The hand may set its own values until then.
     hand_decides_until: Option<Moment>,
-    /// This hand was not seen to keep a -1 as it is.
+    /// This hand was never seen to store a -1 unchanged.
     clamps_leave: bool,
 }
 
@@ -141,7 +140,7 @@ impl SetpointWatch {
         }
     }
 
-    /// A fresh conversation: what the hand held before does not count, and what we wrote may still act.
+    /// Starts a fresh session: the values held before are forgotten, and our writes may still take effect.
     pub(crate) fn begin(&mut self) {
         self.reopened = self.next;
         for (_, joint) in self.joints.iter_mut() {
@@ -154,7 +153,7 @@ impl SetpointWatch {
         self.misses.clear();
     }
 
-    /// We write this, or may have.
+    /// Records a write that was sent, or may have been.
     pub(crate) fn wrote(&mut self, values: PerDof<Wrote>, now: Moment) {
         for (dof, value) in values.iter() {
             if let Wrote::Value(value) = value {
@@ -177,7 +176,7 @@ impl SetpointWatch {
         self.next += 1;
     }
 
-    /// From now on, for as long as a write may take, the hand sets its own values.
+    /// Accepts any value from now on, for as long as a write may take.
     pub(crate) fn hand_decides(&mut self, now: Moment) {
         self.hand_decides_until = Some(now.plus(LATE_HORIZON));
     }
@@ -207,7 +206,7 @@ impl SetpointWatch {
         }
     }
 
-    /// What this reading shows; `angles` is where the joints were read to be.
+    /// Judges a reading; `angles` are the joint positions read last.
     pub(crate) fn read(
         &mut self,
         values: &PerDof<i16>,
@@ -259,7 +258,7 @@ impl SetpointWatch {
         }
     }
 
-    /// What is held now is understood, whoever wrote it.
+    /// Marks the values held now as explained, whoever wrote them.
     fn accept(&mut self, values: &PerDof<i16>) {
         for (dof, value) in values.iter() {
             let joint = &mut self.joints[dof];
@@ -282,7 +281,7 @@ impl SetpointWatch {
             let says_this =
                 |value| matches!(value, Wrote::Value(_)) && self.may_be(value, read, angle);
             let is_late = |(_, value)| matches!(value, Wrote::Value(_)) && !says_this(value);
-            // What was held before may be what was written since.
+            // The value held before may equal a later write.
             let is_newer = || self.writes.iter().any(|write| says_this(write.values[dof]));
             return if joint.due.is_some_and(is_late) && !is_newer() {
                 Verdict::NotTaken
@@ -293,7 +292,7 @@ impl SetpointWatch {
         let is_this = |(_, value): &&(u64, Wrote)| self.may_be(*value, read, angle);
         if let Some((number, value)) = open.iter().find(is_this).copied() {
             self.clamps_leave &= !(value == Wrote::Leave && read == LEAVE);
-            // A value near ours may be one from before it, which acts yet.
+            // A value near ours may come from an earlier write that still takes effect.
             let is_rounded = matches!(value, Wrote::Value(value) if value != read);
             self.settle(dof, read, number + u64::from(!is_rounded));
             if matches!(value, Wrote::Value(_)) {
@@ -323,7 +322,7 @@ impl SetpointWatch {
         }
     }
 
-    /// What may still come of a joint's writes, in order, with their numbers.
+    /// A joint's writes that may still take effect, in order, with their numbers.
     fn open(&self, dof: Dof) -> Vec<(u64, Wrote)> {
         let joint = self.joints[dof];
         let under_way = self.writes.iter();
@@ -333,7 +332,7 @@ impl SetpointWatch {
         all.filter(|(_, value)| *value != Wrote::Nothing).collect()
     }
 
-    /// Writes before this number acted, or cannot any more.
+    /// Writes before this number have taken effect, or no longer can.
     fn settle(&mut self, dof: Dof, read: i16, open_from: u64) {
         let joint = &mut self.joints[dof];
         joint.held = Some(read);
@@ -342,7 +341,7 @@ impl SetpointWatch {
         joint.stale = None;
     }
 
-    /// True if a hand that was told this may show that.
+    /// True if a hand that received this write may show this value.
     fn may_be(&self, wrote: Wrote, read: i16, angle: Option<i16>) -> bool {
         let near = |value: i16, within: i16| value.abs_diff(read) <= within.unsigned_abs();
         match wrote {
@@ -361,7 +360,7 @@ impl SetpointWatch {
 mod tests {
     use super::*;
 
-    /// How a hand takes a value, given what it holds.
+    /// The value that a hand holds after a write, given the value before.
     type Takes = fn(told: Wrote, holds: i16) -> i16;
 
     fn value(told: Wrote, holds: i16) -> i16 {
@@ -375,7 +374,7 @@ mod tests {
         Moment::from_micros(ms * 1000)
     }
 
-    /// Streams to a hand for 20 s, at 50 or 1 a second, and reads ten times a second; what was seen besides the usual.
+    /// Streams to a hand for 20 s, at 50 or 1 per second, and reads ten times per second; returns all unusual results.
     fn streamed(takes: Takes, tells: fn(u64) -> Wrote, late_ms: u64) -> Vec<Seen> {
         let mut all = Vec::new();
         for every in [20, 1000] {
@@ -479,7 +478,7 @@ mod tests {
         }
     }
 
-    /// Another's value comes before ours is read back.
+    /// A foreign value arrives before ours is read back.
     #[test]
     fn a_value_beyond_what_the_hand_held_or_to_a_joint_that_stays_is_no_limit_of_the_hand() {
         for (held, told, foreign) in [
@@ -517,14 +516,14 @@ mod tests {
         for (nth, value) in (0..200).map(|nth| (nth, 900 - 4 * i16::try_from(nth).unwrap())) {
             write(&mut watch, value, 100 + 20 * nth);
             if nth % 5 == 0 {
-                // Once in a while a reading is wrong.
+                // Some readings are wrong.
                 let seen = if nth % 100 == 50 { 7 } else { value };
                 let said = read(&mut watch, seen, 105 + 20 * nth);
                 assert_eq!(said == Seen::Usual, seen == value, "{nth}");
                 assert!(!matches!(said, Seen::Foreign(_)), "{nth}");
             }
         }
-        // Another streams as well: every other reading shows its values.
+        // Another controller streams as well: every other reading shows its values.
         let foreign = (0..20).find_map(|nth| {
             let t = 5000 + 100 * nth;
             write(&mut watch, 300, t);
