@@ -1,24 +1,24 @@
-//! The places of the window, and the views in them.
+//! Tabs of the window, and the views in them.
 
 use crate::ui::text::{Text, checkup, inputs, main, recordings, window};
 
-/// One of the five places between which the header switches.
+/// One of the five tabs that the header switches between.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Place {
     /// The hand, its joints and its plots.
     Live,
     /// Grasp trials: plan, series and results.
     Tune,
-    /// What was recorded.
+    /// Recorded sessions.
     Recordings,
-    /// The hand as a device: its link, what it keeps, what goes over the wire.
+    /// The hand as a device: link, parameters, check-up and wire traffic.
     Hand,
-    /// Who else may see or move it.
+    /// Other inputs and controllers that may see or move the hand.
     Share,
 }
 
 impl Place {
-    /// All, in the order of the header.
+    /// All tabs, in header order.
     pub const ALL: [Self; 5] = [
         Self::Live,
         Self::Tune,
@@ -37,7 +37,7 @@ impl Place {
         }
     }
 
-    /// Its views; the first is the one it opens with.
+    /// Views of this tab, the first being its default.
     pub const fn views(self) -> &'static [View] {
         match self {
             Self::Live => &[View::Live, View::Touch, View::Poses, View::Faults],
@@ -49,38 +49,38 @@ impl Place {
     }
 }
 
-/// The parts of the window that can be looked at.
+/// A view: one screen of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum View {
     /// Joints, the hand, and plots.
     #[default]
     Live,
-    /// A fingertip in detail in place of the plots.
+    /// Fingertip details in place of the plots.
     Touch,
-    /// The plan of grasp trials beside what they came to.
+    /// The plan of grasp trials beside their results.
     Tune,
-    /// What they came to, alone.
+    /// Trial results alone.
     Compare,
     /// Faults, statuses and messages, in place of the plots.
     Faults,
     /// The user's poses, sequences of them, and the gestures in the hand, in place of the plots.
     Poses,
-    /// What the hand keeps: live, staged, saved; its flash.
+    /// Parameters of the hand (live, staged, saved) and its flash.
     Device,
-    /// A check-up of the hand, and what the last one came to.
+    /// Check-up of the hand, and the results of the last one.
     Checkup,
     /// The link and its settings.
     Connection,
-    /// What besides the window may move the hand, and who uses it.
+    /// Inputs besides the window that may move the hand, and the current user of each.
     Inputs,
-    /// What goes over the wire, frame by frame.
+    /// Wire traffic, frame by frame.
     Traffic,
-    /// What was recorded.
+    /// Recorded sessions.
     Recordings,
 }
 
 impl View {
-    /// All; the order in which they are listed and drawn.
+    /// All views, in the order in which they are listed and drawn.
     pub const ALL: [Self; 12] = [
         Self::Live,
         Self::Touch,
@@ -122,7 +122,7 @@ impl View {
         }
     }
 
-    /// Where it is.
+    /// Returns the tab that contains this view.
     pub const fn place(self) -> Place {
         match self {
             Self::Live | Self::Touch | Self::Poses | Self::Faults => Place::Live,
@@ -133,9 +133,9 @@ impl View {
         }
     }
 
-    /// The view with this name.
+    /// Finds a view by its stable name.
     pub fn by_name(name: &str) -> Option<Self> {
-        // What this view was called before poses were added.
+        // The poses view was called "gestures" before poses were added.
         let name = if name == "gestures" { "poses" } else { name };
         Self::ALL.into_iter().find(|view| view.name() == name)
     }

@@ -1,5 +1,5 @@
-//! The check-up of the hand: what is asked before it and how far it is at the left, what the last one came to beside it. Keeps
-//! ticks only; every change is an action.
+//! The check-up of the hand: preconditions and progress at the left, results of the last one beside them. Stores check boxes
+//! only; every change is an action.
 
 mod report;
 mod table;
@@ -15,7 +15,7 @@ use crate::ui::text::{checkup, tune, words};
 use crate::ui::theme;
 use egui::{Panel, Ui};
 
-/// What the view needs between frames.
+/// View state.
 #[derive(Debug, Default)]
 pub(crate) struct CheckupView {
     is_empty: bool,
@@ -25,7 +25,6 @@ pub(crate) struct CheckupView {
 }
 
 impl CheckupView {
-    /// Draws the view.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let width = (ui.available_width() * 0.22).clamp(232.0, 300.0);
@@ -35,7 +34,7 @@ impl CheckupView {
                 kit::head_ui(ui, look, look.say(checkup::TITLE), |_| ());
                 match &pane.hand().checkup.run {
                     Some(run) => {
-                        // What was said of this one does not hold for the next.
+                        // The user's confirmation does not apply to the next check-up.
                         self.is_empty = false;
                         if progress_ui(ui, pane, run) {
                             pane.actions.push(Action::Stop);
@@ -73,7 +72,7 @@ impl CheckupView {
     }
 }
 
-/// How far it is; true where it is to end.
+/// Draws the progress. True if the user ends the check-up.
 fn progress_ui(ui: &mut Ui, pane: &Pane<'_>, run: &CheckupRun) -> bool {
     let (look, palette) = (pane.look, pane.look.palette);
     let view = run.view;
@@ -95,7 +94,7 @@ fn progress_ui(ui: &mut Ui, pane: &Pane<'_>, run: &CheckupRun) -> bool {
     kit::pressed(ui, &response)
 }
 
-/// What moves now, or is to be pressed.
+/// The joint that moves now, or the fingertip to press.
 fn doing(look: Look, run: &CheckupRun) -> &'static str {
     let joint = run.view.joint.map(words::dof);
     let finger = run.view.press.map(words::finger);

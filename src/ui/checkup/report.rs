@@ -1,4 +1,4 @@
-//! What the last check-up came to.
+//! Results of the last check-up.
 
 use crate::app::action::Action;
 use crate::app::checkup::ShownCheckup;
@@ -12,15 +12,15 @@ use crate::ui::text::{checkup, tune};
 use crate::ui::theme;
 use egui::Ui;
 
-/// What is shown of it.
+/// View state of the report.
 #[derive(Debug, Default)]
 pub(super) struct ReportView {
-    /// Only what is not fine.
+    /// Only values that are not fine.
     only: bool,
 }
 
 impl ReportView {
-    /// Draws it over all of `ui`.
+    /// Draws the report over all of `ui`.
     pub(super) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let (look, state) = (pane.look, pane.state);
         let own = &state.hand().checkup;
@@ -82,7 +82,7 @@ impl ReportView {
     }
 }
 
-/// Day and time as they are read, of a time as it stands in files.
+/// Formats a timestamp from a file as day and time.
 fn moment(at: &str) -> String {
     let time = at.split_once('T').and_then(|(_, time)| time.get(..5));
     match time {

@@ -1,4 +1,4 @@
-//! The figures of a check-up: measured, good, first, last, their trend, and what to do.
+//! The values of a check-up: measured, good, first, last, their trend, and advice.
 
 use crate::checkup::check::Check;
 use crate::checkup::report::CheckupReport;
@@ -11,15 +11,15 @@ use egui::{Color32, Response, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use egui_extras::{Column, TableRow};
 
 const ROW: f32 = 22.0;
-/// Widths of the columns: part, what, numbers, and the line of a trend.
+/// Widths of the columns: part, quantity, numbers, and the curve of a trend.
 const PART: f32 = 80.0;
 const WHAT: f32 = 272.0;
 const NUMBER: f32 = 104.0;
 const TREND: f32 = 72.0;
-/// The least room for what to do.
+/// Minimum width of the advice.
 const ADVICE: f32 = 160.0;
 
-/// The colour of a light.
+/// Colour of a grade.
 pub(super) const fn color(pane: &Pane<'_>, light: Light) -> Color32 {
     let palette = pane.look.palette;
     match light {
@@ -30,7 +30,7 @@ pub(super) const fn color(pane: &Pane<'_>, light: Light) -> Color32 {
     }
 }
 
-/// Draws the figures, or those that are not fine.
+/// Draws the values, or only those that are not fine.
 pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, report: &CheckupReport, only: bool) {
     let look = pane.look;
     let is_told = |own: &&Check| !only || own.light != Light::Fine || own.drift().is_some();
@@ -117,7 +117,7 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, check: &Check) {
     });
 }
 
-/// The figure over the last check-ups, where there are two of them.
+/// Draws the value over the last check-ups; `None` with fewer than two of them.
 fn trend_ui(ui: &mut Ui, pane: &Pane<'_>, check: &Check) -> Option<Response> {
     let points = &check.trend.points;
     let (least, most) = check.trend.range().filter(|_| points.len() >= 2)?;
@@ -125,7 +125,7 @@ fn trend_ui(ui: &mut Ui, pane: &Pane<'_>, check: &Check) -> Option<Response> {
     let place = rect.shrink2(vec2(1.0, theme::STEP));
     let places = points.iter().enumerate().map(|(nth, point)| {
         let x = egui::lerp(place.x_range(), kit::share(nth, points.len() - 1));
-        // What does not change lies in the middle.
+        // A constant value is drawn in the middle.
         let part = if most > least {
             (point.value - least) / (most - least)
         } else {

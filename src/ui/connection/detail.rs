@@ -1,4 +1,4 @@
-//! The settings of a link, each as a field of its own: other views of the one text that says where the hand is.
+//! Settings of a link, one field each: another view of the address text of a hand.
 
 use crate::app::action::Action;
 use crate::hand::SerialSpeed;
@@ -12,8 +12,8 @@ use crate::ui::text::{panels, scan};
 use egui::{CollapsingHeader, Ui};
 use std::collections::BTreeMap;
 
-/// Kinds of links as endpoints spell them, with their settings as the hand is delivered (manual 1.3.2, 2.2, 2.3, 2.6.1), and
-/// the keys of the settings, the place first where there is one.
+/// Kinds of links as written in endpoints, with their settings as delivered (manual 1.3.2, 2.2, 2.3, 2.6.1), and the keys of
+/// the settings, the address first if there is one.
 pub(super) const KINDS: [(&str, &[&str]); 8] = [
     ("rs485:?baud=115200&id=1", &["port", "baud", "id"]),
     (
@@ -30,12 +30,12 @@ pub(super) const KINDS: [(&str, &[&str]); 8] = [
     ("usbcan:?baud=115200&id=1", &["port", "baud", "id"]),
     ("sim:?seed=1&scenario=idle", &["scenario", "seed"]),
 ];
-/// Fields that say where the hand is.
+/// Keys of addresses.
 const PLACES: [&str; 3] = ["port", "host", "interface"];
-/// Fields that hardly anybody needs.
+/// Keys of rarely used settings.
 const RARE: [&str; 2] = ["seed", "packing"];
 
-/// The parts of a spelled endpoint, right or wrong, by their keys.
+/// Parts of an endpoint's text, valid or not, by their keys.
 #[derive(Debug)]
 pub(super) struct LinkFields {
     kind: String,
@@ -44,7 +44,7 @@ pub(super) struct LinkFields {
 }
 
 impl LinkFields {
-    /// Takes it apart; what it does not say is as delivered. `None` for a kind of link that does not exist.
+    /// Splits an endpoint's text; missing settings are as delivered. `None` for an unknown kind of link.
     pub(super) fn of(spelled: &str) -> Option<Self> {
         let kind = spelled.split(':').next().unwrap_or_default();
         let mut kinds = KINDS.into_iter();
@@ -73,7 +73,7 @@ impl LinkFields {
         }
     }
 
-    /// The field that says where the hand is.
+    /// Key of the address.
     fn place(&self) -> Option<&'static str> {
         let first = self.keys.first().copied();
         first.filter(|key| PLACES.contains(key))
@@ -83,18 +83,18 @@ impl LinkFields {
         self.values.get(key).map_or("", |text| text.trim())
     }
 
-    /// The endpoint in the one spelling that is used everywhere.
+    /// The endpoint in its canonical text form.
     pub(super) fn spelled(&self) -> String {
         let place = self.place().map_or("", |key| self.value(key));
         let keys = self.keys.iter().filter(|key| !PLACES.contains(key));
         let keys = keys.map(|key| (key, self.value(key)));
-        // Nothing said of the packing is a choice, too.
+        // An unspecified packing is a choice, too.
         let keys = keys.filter(|(key, value)| **key != "packing" || !value.is_empty());
         let keys: Vec<String> = keys.map(|(key, value)| format!("{key}={value}")).collect();
         format!("{}:{place}?{}", self.kind, keys.join("&"))
     }
 
-    /// The same place and settings over another kind of link.
+    /// The same address and settings over another kind of link.
     pub(super) fn over(mut self, kind: &str) -> Self {
         if let Some(fields) = Self::of(&format!("{kind}:")) {
             let before = std::mem::replace(&mut self, fields);
@@ -106,7 +106,7 @@ impl LinkFields {
         self
     }
 
-    /// Draws a row for each. True if Enter was pressed in one.
+    /// Draws a row for each setting. True if Enter was pressed in one.
     pub(super) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
         let mut entered = false;
         for key in self.keys {
@@ -120,7 +120,7 @@ impl LinkFields {
         entered
     }
 
-    /// One field: typed, or chosen where there are few; what is in force is among the choices. True if Enter was pressed in it.
+    /// Draws one setting: a text field, or a list that includes the value in force. True if Enter was pressed in it.
     fn key_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, key: &'static str) -> bool {
         let look = pane.look;
         let mut all = choices(look, key);
@@ -150,7 +150,7 @@ impl LinkFields {
         entered
     }
 
-    /// The serial ports that the system lists.
+    /// Draws the serial ports listed by the system.
     fn ports_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         row_ui(ui, look, "", |ui| {
@@ -177,7 +177,7 @@ impl LinkFields {
     }
 }
 
-/// The values of a setting that has few, and how each is called.
+/// Values of a setting with a fixed choice, each with its label; empty for others.
 fn choices(look: Look, key: &str) -> Vec<(String, String)> {
     let plain = |number: u32| (number.to_string(), number.to_string());
     let said = |key: &str, text| (key.to_owned(), look.say(text).to_owned());
@@ -195,7 +195,7 @@ fn choices(look: Look, key: &str) -> Vec<(String, String)> {
     }
 }
 
-/// A caption, and what stands beside it.
+/// Draws a caption with content beside it.
 pub(super) fn row_ui<R>(
     ui: &mut Ui,
     look: Look,

@@ -1,4 +1,4 @@
-//! How the link goes: state, rates, round trips, counts, and what the line's time goes to.
+//! Link statistics: state, rates, round trips, counts, and the use of the line's time.
 
 use crate::app::action::Action;
 use crate::hand::RateClass;
@@ -11,14 +11,14 @@ use crate::ui::text::{Text, errors, notices, panels, scan};
 use crate::ui::theme;
 use egui::{Align, CollapsingHeader, Color32, Layout, Ui, vec2};
 
-/// What the use of the line is told in, from the right, and how wide it is.
+/// Columns of the line's use from right to left, with their widths.
 const BUDGET: [(Text, f32); 3] = [
     (panels::BUDGET_COULD, 80.0),
     (panels::BUDGET_SHARE, 80.0),
     (notices::NOW, 72.0),
 ];
 
-/// Draws where the link stands and how fast it goes, and a drawer with every figure.
+/// Draws state and rates of the link, and a collapsible section with all figures.
 pub(crate) fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::head_ui(ui, look, look.say(panels::LINK_NOW), |_| ());
@@ -29,7 +29,7 @@ pub(crate) fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let groups = [vec![hand, rates, counts], vec![troubles]];
         ui.columns(2, |columns| {
             for (column, groups) in columns.iter_mut().zip(groups) {
-                // The columns of egui are justified, which spreads the words of a text.
+                // The columns of egui are justified, which would spread the words of a text.
                 column.vertical(|ui| {
                     for group in groups {
                         group_ui(ui, pane, group);
@@ -42,7 +42,7 @@ pub(crate) fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// Where the link stands, since when, and what was read of it lately.
+/// Draws the state of the link, its duration, and recent reads.
 fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let connection = &pane.hand().connection;
@@ -162,7 +162,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
     ]
 }
 
-/// Draws what the line is used for: each group of reads, what it gets and what the wire could give.
+/// Draws the use of the line: for each group of reads, its rate and the rate that the wire could provide.
 fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let line = &pane.hand().connection.stats.line;
@@ -207,7 +207,7 @@ fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     pane.actions.extend(first.map(Action::ReadFirst));
 }
 
-/// What is read first while something moves; another choice, if one was made.
+/// Draws the choice of values read first during motion. Returns the new choice, if the user made one.
 fn first_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<PollPriority> {
     let look = pane.look;
     let mut first = pane.state.settings.read_first;
@@ -227,7 +227,7 @@ fn first_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<PollPriority> {
     chosen.inner.then_some(first)
 }
 
-/// A caption, and values from the right end.
+/// Draws a caption, and values from the right end.
 fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, caption: &str, add: impl FnOnce(&mut Ui)) {
     ui.scope(|ui| {
         ui.spacing_mut().interact_size.y = theme::FIGURE_ROW;
@@ -249,7 +249,7 @@ fn cell_ui<R>(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
     cell.inner
 }
 
-/// A rate, with a digit more where it is slow, and as wide as its column where a built-in hand answers at once.
+/// Formats a rate: one more digit if it is slow, and within its column for a built-in hand that answers at once.
 fn rate(hz: f64) -> String {
     if hz >= 9_999.5 {
         return format!("{:.0} kHz", hz / 1e3);
@@ -260,7 +260,7 @@ fn rate(hz: f64) -> String {
     format::hertz(hz)
 }
 
-/// A share in percent.
+/// Formats a share in percent.
 fn percent(share: f64) -> String {
     let percent = share * 100.0;
     if percent > 0.0 && percent < 9.95 {

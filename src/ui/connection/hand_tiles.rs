@@ -1,4 +1,4 @@
-//! Hands that one can connect to, each as a tile with the hand drawn: one click connects.
+//! Hands to connect to, each as a tile with a drawn hand: one click connects.
 
 use crate::app::action::Action;
 use crate::hand::PerDof;
@@ -11,27 +11,27 @@ use crate::ui::text::{Text, panels, scan};
 use crate::ui::theme;
 use egui::{Align, Color32, Id, Layout, Rect, Ui, UiBuilder, Vec2, vec2};
 
-/// The least width of a tile, and its height.
+/// Minimum width of a tile, and its height.
 const TILE: Vec2 = vec2(288.0, 88.0);
 /// Width of the drawn hand.
 const HAND: f32 = 56.0;
 
 /// A hand to connect to.
 pub(super) struct HandTile {
-    /// `None` where nothing leads to it.
+    /// `None` if it is unreachable.
     pub(super) endpoint: Option<Endpoint>,
-    /// What it is called for a screen reader.
+    /// Accessible name.
     pub(super) name: String,
     pub(super) side: Side,
     pub(super) title: String,
     pub(super) place: String,
-    /// What is known of it now, and in which colour.
+    /// Current state, with its colour.
     pub(super) state: (String, Color32),
-    /// Why it cannot be connected to.
+    /// Reason why it cannot be connected to.
     pub(super) refusal: Option<Text>,
 }
 
-/// Hands of before and those that answered a scan, each once.
+/// Previously used hands and those found by a scan, each once.
 pub(super) fn known_hands(pane: &Pane<'_>) -> Vec<HandTile> {
     let (settings, found) = (&pane.state.settings, &pane.state.scan.found);
     let recent = settings.recent.iter().filter_map(|text| text.parse().ok());
@@ -99,7 +99,6 @@ fn tile(pane: &Pane<'_>, endpoint: Endpoint, found: Option<&FoundHand>) -> HandT
     }
 }
 
-/// Left or right.
 pub(super) const fn side_words(side: Side) -> Text {
     match side {
         Side::Left => panels::LEFT_HAND,
@@ -151,7 +150,7 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, (id, place): (Id, Rect), tile: &Han
     small(state, color).ui(&mut words);
 }
 
-/// Places of one size side by side, in rows that fill the width; `least` is the least width and the height.
+/// Draws items of one size side by side, in rows that fill the width; `least` is the minimum width and the height.
 pub(super) fn tiles_ui<T>(
     ui: &mut Ui,
     least: Vec2,
@@ -176,7 +175,7 @@ pub(super) fn tiles_ui<T>(
     });
 }
 
-/// What stands in a tile, from its top.
+/// A child `Ui` for the content of a tile, from its top.
 pub(super) fn inside(ui: &mut Ui, place: Rect) -> Ui {
     inside_of(ui, place.shrink(theme::PAD))
 }

@@ -1,4 +1,4 @@
-//! Where the link stands, in a word and a colour.
+//! State of the link as a word and a colour.
 
 use crate::app::hands::Hand;
 use crate::link::Dialling;
@@ -7,16 +7,16 @@ use crate::ui::kit::{Look, Pane};
 use crate::ui::text::{Text, main};
 use egui::Color32;
 
-/// The word and the colour for where the link of the shown hand stands.
+/// Word and colour of the shown hand's link state.
 pub(crate) fn link_words(pane: &Pane<'_>) -> (Text, Color32) {
     link_words_of(pane.look, pane.hand())
 }
 
-/// The same of any hand.
+/// Same as [`link_words`], for any hand.
 pub(crate) fn link_words_of(look: Look, hand: &Hand) -> (Text, Color32) {
     let (palette, link) = (look.palette, &hand.connection.status);
     match link.state {
-        // A hand that never answered is not reached yet; only one that did can be lost.
+        // A hand that never answered counts as not yet reached; only one that answered can be lost.
         LinkState::Offline if link.trouble.is_some() && hand.readings.sample.angle.is_some() => {
             (main::STATE_LOST, palette.bad)
         }
@@ -27,7 +27,7 @@ pub(crate) fn link_words_of(look: Look, hand: &Hand) -> (Text, Color32) {
     }
 }
 
-/// The colour for where a link stands.
+/// Colour of a link state.
 pub(crate) const fn state_color(look: Look, state: LinkState) -> Color32 {
     let palette = look.palette;
     match state {

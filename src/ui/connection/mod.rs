@@ -1,4 +1,4 @@
-//! The connection: which hand, over what, and how well it goes. Asks to connect and to scan; opens nothing.
+//! The connection: address, link and its statistics. Requests connections and scans; opens nothing.
 mod detail;
 pub(crate) mod figures;
 mod hand_tiles;
@@ -23,13 +23,13 @@ use crate::ui::theme;
 use egui::{Key, ScrollArea, Ui, Vec2, vec2};
 use std::net::Ipv4Addr;
 
-/// The least width of the tile of a kind of link, and its height.
+/// Minimum width of a link kind's tile, and its height.
 const WAY: Vec2 = vec2(296.0, 128.0);
 
-/// What a text that was typed means.
+/// Result of parsing the typed text.
 type Meaning = Result<Endpoint, TypedError>;
 
-/// The text that says where a hand is, and what is unfolded.
+/// Text of a hand's address, and expanded sections.
 #[derive(Debug, Default)]
 pub(crate) struct ConnectionForm {
     typed: String,
@@ -37,16 +37,16 @@ pub(crate) struct ConnectionForm {
     is_unfolded: bool,
     scan: ScanPanel,
     shared: SharedPanel,
-    /// The endpoint that the text was taken from, so that a new one takes its place.
+    /// Endpoint that the text was filled from, so that a new one replaces the text.
     filled_from: Option<Endpoint>,
-    /// Serial ports were looked for.
+    /// Serial ports were listed.
     has_looked: bool,
-    /// The keyboard is to go to the text.
+    /// Focus the text field in this frame.
     wants_focus: bool,
 }
 
 impl ConnectionForm {
-    /// Draws the address, how the link goes, and hands to connect to.
+    /// Draws the address, the link's statistics, and hands to connect to.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let ports = &pane.state.ports;
         let hands = &pane.state.hands;
@@ -55,7 +55,7 @@ impl ConnectionForm {
             let mut all = hands.iter();
             all.any(|hand| hand.connection.endpoint.as_ref() == Some(it))
         };
-        // The address of another hand that is open is none to offer.
+        // The address of another open hand is not offered.
         if endpoint.is_none()
             && let Some(filled) = self.filled_from.take_if(|it| is_open(it))
             && self.typed == shortest(&filled, ports)
@@ -141,7 +141,7 @@ impl ConnectionForm {
         name_ui(ui, pane);
     }
 
-    /// What the text was recognised as, or once it is not typed any more what is wrong with it; for a port, the other kind.
+    /// Draws the recognised endpoint, or, once typing has ended, the error; for a port, also the other kind of link.
     fn meaning_ui(&mut self, ui: &mut Ui, look: Look, meaning: &Meaning, wrong: Option<&str>) {
         let palette = look.palette;
         let (words, color) = match (meaning, wrong) {
@@ -166,7 +166,7 @@ impl ConnectionForm {
         });
     }
 
-    /// Why the text is nothing to connect to.
+    /// Reason why the text cannot be connected to; `None` if it can.
     fn wrong(&self, look: Look, meaning: &Meaning) -> Option<String> {
         let error = meaning.as_ref().err()?;
         Some(match self.range() {
@@ -176,7 +176,7 @@ impl ConnectionForm {
         })
     }
 
-    /// The addresses that a range names, if one was typed.
+    /// Addresses of the typed range, if it is one.
     fn range(&self) -> Option<Result<Hosts, HostsError>> {
         let (first, _) = self.typed.trim().split_once('/')?;
         first.parse::<Ipv4Addr>().ok()?;
@@ -208,7 +208,7 @@ impl ConnectionForm {
         }
     }
 
-    /// What a scan of the place that was typed looks at.
+    /// Scan target of the typed address; `None` if it cannot be scanned.
     fn scan_target(&self, endpoint: Option<&Endpoint>) -> Option<ScanTarget> {
         let ids = self.scan.ids;
         match endpoint {
@@ -224,7 +224,7 @@ impl ConnectionForm {
         }
     }
 
-    /// Each kind of link with what is to be known of it; a click begins an address of it.
+    /// Draws each kind of link with a hint; a click begins an address of that kind.
     fn kinds_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let ports = &pane.state.ports;
@@ -253,12 +253,12 @@ impl ConnectionForm {
     }
 }
 
-/// True if the shown hand is connected to just this endpoint.
+/// True if the shown hand is connected to exactly this endpoint.
 fn is_connected_to(pane: &Pane<'_>, endpoint: &Endpoint) -> bool {
     pane.hand().connection.endpoint.as_ref() == Some(endpoint)
 }
 
-/// Another hand in the window, and away with this one of several.
+/// Draws the buttons that add a hand to the window, and that remove this one of several.
 fn slots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, hands) = (pane.look, &pane.state.hands);
     let full = (!hands.has_room()).then(|| look.say(window::ADD_HAND_FULL));
@@ -271,7 +271,7 @@ fn slots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// Of several hands, the name of this one.
+/// Draws the name of this hand, if there are several.
 fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     let hand = state.hand();

@@ -1,4 +1,4 @@
-//! Looking for hands: what to scan, how far it is, what was found. Asks for scans and connections; opens nothing.
+//! Scanning for hands: targets, progress, results. Requests scans and connections; opens nothing.
 
 use crate::app::action::Action;
 use crate::app::scan::{IdRange, ScanTarget};
@@ -9,22 +9,22 @@ use crate::ui::text::{Text, scan};
 use crate::ui::theme;
 use egui::{ProgressBar, Ui};
 
-/// Addresses that hands were delivered with: the manual's (1.3.2), and two seen in the field. None is asked unasked.
+/// Factory addresses of hands: the manual's (1.3.2), and two seen in the field. None is polled without a request.
 const PRESETS: [(&str, Text); 3] = [
     ("192.168.11.210:6000", scan::PRESET_MAKER),
     ("192.168.123.210:6000", scan::PRESET_FIELD),
     ("192.168.123.211:6000", scan::PRESET_FIELD),
 ];
 
-/// What was chosen.
+/// View state of the scan.
 #[derive(Debug, Default)]
 pub(crate) struct ScanPanel {
-    /// Ids that are asked on every bus.
+    /// Ids polled on every bus.
     pub(crate) ids: IdRange,
 }
 
 impl ScanPanel {
-    /// Draws it and the hands that are known; the address that was chosen, if one was.
+    /// Draws the scan and the known hands. Returns the address that the user chose.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<String> {
         let look = pane.look;
         kit::card_ui(ui, look, |ui| {
@@ -60,7 +60,7 @@ impl ScanPanel {
     }
 }
 
-/// Addresses that hands were delivered with; the one that was chosen.
+/// Draws the factory addresses. Returns the one that the user chose.
 fn presets_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<String> {
     let look = pane.look;
     let mut chosen = None;
@@ -76,7 +76,7 @@ fn presets_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<String> {
     chosen
 }
 
-/// A button that starts a scan, if none runs; true if one is wanted.
+/// Draws a button that starts a scan, disabled while one runs. True if it was clicked.
 pub(crate) fn start_ui(ui: &mut Ui, pane: &Pane<'_>, button: Button<'_>) -> bool {
     let running = pane.state.scan.is_running().then_some(scan::RUNNING);
     let reason = running.map(|reason| pane.look.say(reason));
@@ -84,7 +84,7 @@ pub(crate) fn start_ui(ui: &mut Ui, pane: &Pane<'_>, button: Button<'_>) -> bool
     button.disabled(reason).ui(ui, pane.look).clicked()
 }
 
-/// How far the scan is, or how it ended.
+/// Draws the progress of the scan, or its outcome.
 fn stage_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (look, state) = (pane.look, &pane.state.scan);
     if !state.is_running() {
@@ -102,7 +102,7 @@ fn stage_ui(ui: &mut Ui, pane: &Pane<'_>) {
     ui.add(ProgressBar::new(part).desired_height(theme::STEP));
 }
 
-/// What else a scan has to say than hands.
+/// Draws the remarks of a scan other than hands.
 fn remarks_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     for remark in &state.scan.remarks {

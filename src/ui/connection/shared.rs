@@ -1,4 +1,4 @@
-//! Hands that other Handscopes share: where to look for them, which are there, and the tile that watches one.
+//! Hands shared by other Handscopes: the interface to listen on, the hands found, and a tile to connect to each.
 
 use crate::app::action::Action;
 use crate::share::fleet::{FleetHand, reachable};
@@ -8,14 +8,14 @@ use crate::ui::kit::{self, Button, Label, Look, Pane};
 use crate::ui::text::{Text, errors, inputs, main, scan};
 use egui::Ui;
 
-/// What was typed.
+/// Text in progress.
 #[derive(Debug)]
 pub(crate) struct SharedPanel {
     interface: String,
 }
 
 impl Default for SharedPanel {
-    /// This computer only, unless the user says otherwise.
+    /// Loopback by default; other interfaces are the user's choice.
     fn default() -> Self {
         Self {
             interface: "127.0.0.1".into(),
@@ -24,7 +24,6 @@ impl Default for SharedPanel {
 }
 
 impl SharedPanel {
-    /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         kit::card_ui(ui, look, |ui| {
@@ -68,7 +67,7 @@ impl SharedPanel {
     }
 }
 
-/// A hand that leads to its gateway.
+/// Tile of a hand that connects to its gateway.
 fn tile(pane: &Pane<'_>, hand: &FleetHand) -> HandTile {
     let (look, card) = (pane.look, &hand.card);
     let state = look.say(main::link_state(hand.state)).to_owned();
@@ -83,7 +82,7 @@ fn tile(pane: &Pane<'_>, hand: &FleetHand) -> HandTile {
     }
 }
 
-/// Which hand it is, who moves it or may, and where.
+/// Name of a hand, its owner or that it is free, and its address.
 fn about(look: Look, hand: &FleetHand) -> Vec<String> {
     let card = &hand.card;
     let owner = match hand.owner {
@@ -101,7 +100,7 @@ fn about(look: Look, hand: &FleetHand) -> Vec<String> {
     all.into_iter().flatten().collect()
 }
 
-/// Why this hand cannot be connected to.
+/// Reason why this hand cannot be connected to; `None` if it can.
 fn refusal(pane: &Pane<'_>, hand: &FleetHand) -> Option<Text> {
     let Some(at) = hand.card.at else {
         return Some(scan::SHARED_UNREACHABLE);

@@ -1,4 +1,4 @@
-//! The drawn hand, large, and what its five fingertips feel.
+//! The drawn hand, large, with the load on its five fingertips.
 
 use crate::hand::{Finger, PerFinger};
 use crate::ui::exhibit::large::Page;
@@ -10,12 +10,11 @@ use crate::ui::text::{Text, exhibit, main, words};
 use crate::ui::touch::heat;
 use egui::{Align2, Color32, Rect, Ui, vec2};
 
-/// The hand as it was drawn last.
+/// The last drawn hand.
 #[derive(Debug, Default)]
 pub(crate) struct HandCard(StillHand);
 
 impl HandCard {
-    /// Draws the card.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, page: Page<'_>) {
         let (unit, rect) = (page.places.unit, page.places.hand);
         let tips = heat::tips(pane);
@@ -23,7 +22,7 @@ impl HandCard {
         let inner = rect.shrink(20.0 * unit);
         let below = (inner.height() * 0.34).min(300.0 * unit);
         let (hand, feels) = above(inner, inner.height() - below, 14.0 * unit);
-        // A little to the right: the badge stands before the little finger.
+        // Slightly to the right: the badge would cover the little finger.
         let hand = hand.with_min_x(hand.left() + 64.0 * unit);
         let shown = picture(pane.hand(), &tips, pane.state.now);
         self.0.ui(ui, hand, page.look, &shown);
@@ -49,16 +48,16 @@ impl HandCard {
     }
 }
 
-/// A word about the hand on a coloured ground.
+/// A short text about the hand on a coloured background.
 struct Badge {
     text: Text,
     fill: Color32,
-    /// Where in its row it stands.
+    /// Alignment within its row.
     side: Align2,
 }
 
 impl Badge {
-    /// Draws it as high as a row and no wider than it.
+    /// Draws it as high as a row and at most as wide.
     fn ui(&self, ui: &mut Ui, page: Page<'_>, row: Rect) {
         let (text, palette) = (page.look.say(self.text), page.look.palette);
         let font = page.font(28.0);
@@ -72,7 +71,7 @@ impl Badge {
     }
 }
 
-/// The five fingertips beside each other, under what they are.
+/// Draws the five fingertips side by side, below a caption.
 fn feels_ui(ui: &mut Ui, page: Page<'_>, rect: Rect, tips: &PerFinger<Option<Tip>>) {
     let (look, unit) = (page.look, page.places.unit);
     let (caption, row) = rect.split_top_bottom_at_y(rect.top() + 40.0 * unit);

@@ -1,4 +1,4 @@
-//! The pad on which a PIN is typed. It never shows a digit of it.
+//! Keypad for entering a PIN. It never shows the digits.
 
 use crate::exhibit::pin::DIGITS;
 use crate::ui::exhibit::large::{LargeButton, Page};
@@ -7,22 +7,22 @@ use crate::ui::text::exhibit;
 use crate::ui::theme;
 use egui::{Key, Rect, Role, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 
-/// The digits as they stand on a telephone; the last row has the other keys beside its own.
+/// Digits as on a telephone; the last row has the other keys beside its own.
 const ROWS: [[char; 3]; 3] = [['1', '2', '3'], ['4', '5', '6'], ['7', '8', '9']];
 
-/// What was typed so far.
+/// Digits typed so far.
 #[derive(Debug, Default)]
 pub(crate) struct Keypad {
     typed: String,
 }
 
 impl Keypad {
-    /// Forgets what was typed.
+    /// Clears the digits.
     pub(crate) fn clear(&mut self) {
         self.typed.clear();
     }
 
-    /// Takes a key of a real keyboard; what was typed, if that was Enter.
+    /// Handles a key of a real keyboard. Returns the PIN on Enter.
     pub(crate) fn key(&mut self, key: Key) -> Option<String> {
         match key {
             Key::Backspace => self.typed.truncate(self.typed.len().saturating_sub(1)),
@@ -47,7 +47,7 @@ impl Keypad {
         (self.typed.len() >= *DIGITS.start()).then(|| std::mem::take(&mut self.typed))
     }
 
-    /// Draws dots for what was typed, and the keys; what was typed, once it is entered.
+    /// Draws dots for the digits typed, and the keys. Returns the PIN once it is entered.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
@@ -99,7 +99,7 @@ impl Keypad {
         }
     }
 
-    /// A dot for each digit, and the places that a PIN has at least.
+    /// Draws a dot for each digit, and placeholders up to the minimum length of a PIN.
     fn dots_ui(&self, ui: &mut Ui, page: Page<'_>, rect: Rect) {
         let (palette, unit) = (page.look.palette, page.places.unit);
         let response = ui.allocate_rect(rect, Sense::hover());

@@ -1,4 +1,4 @@
-//! Texts and buttons that are read from two metres away: as large as the screen allows.
+//! Texts and buttons readable from two metres: as large as the screen allows.
 
 use crate::app::exhibit::ExhibitState;
 use crate::ui::exhibit::places::PagePlaces;
@@ -8,17 +8,17 @@ use egui::{
     Align2, Color32, FontId, Id, Rect, Role, Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, vec2,
 };
 
-/// No text is smaller, points.
+/// Minimum font size in points.
 const FONT_LEAST: f32 = 14.0;
-/// A text that does not fit is made smaller down to this part, and only then cut.
+/// A text that does not fit shrinks to no less than this share of its size; beyond that it is truncated.
 const SHRINK_TO: f32 = 0.6;
 
-/// Size of what stands below the words of a button, in units.
+/// Size of the note below a button's text, in units.
 const NOTE: f32 = 28.0;
-/// Height of a line, in sizes of its font.
+/// Line height as a multiple of the font size.
 const LINE: f32 = 1.22;
 
-/// One frame of the exhibition's page: how it looks, where its parts stand, and the state that it shows.
+/// One frame of the exhibition page: appearance, layout, and the state to show.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Page<'a> {
     /// Colours and language.
@@ -27,7 +27,7 @@ pub(crate) struct Page<'a> {
     pub(crate) exhibit: &'a ExhibitState,
 }
 
-/// Words in a colour; their size is in units of the page.
+/// A coloured text, with its size in units of the page.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LargeText<'a> {
     words: &'a str,
@@ -42,16 +42,16 @@ impl<'a> LargeText<'a> {
 }
 
 impl Page<'_> {
-    /// A font of this size in units.
+    /// Font of this size in units.
     pub(crate) fn font(self, size: f32) -> FontId {
         FontId::proportional((size * self.places.unit).max(FONT_LEAST))
     }
 
-    /// The largest font up to this size in which a text fits.
+    /// Largest font up to this size in which a text fits.
     fn fit(self, ui: &Ui, text: &str, size: f32, width: f32) -> FontId {
         let font = self.font(size);
         let wide = kit::text_width(ui, text, font.clone());
-        // A little less, for widths that are rounded.
+        // Slightly smaller, because widths are rounded.
         let part = ((width - 1.0) / wide.max(1.0)).clamp(SHRINK_TO, 1.0);
         FontId::proportional((font.size * part).max(FONT_LEAST))
     }
@@ -63,13 +63,13 @@ impl Page<'_> {
         label.center().paint(ui, rect);
     }
 
-    /// A text on one line, from the left.
+    /// Draws a left-aligned text on one line.
     pub(crate) fn line(self, ui: &mut Ui, rect: Rect, text: LargeText<'_>) {
         let font = self.fit(ui, text.words, text.size, rect.width());
         Label::new(text.words, text.color).font(font).put(ui, rect);
     }
 
-    /// A text over as many lines as it needs, from the top.
+    /// Draws a text from the top, on as many lines as it needs.
     pub(crate) fn lines(self, ui: &mut Ui, rect: Rect, text: LargeText<'_>) {
         let builder = UiBuilder::new().max_rect(rect);
         ui.scope_builder(builder, |ui| {
@@ -78,7 +78,7 @@ impl Page<'_> {
         });
     }
 
-    /// The ground of a part of the page.
+    /// Paints the background of a part of the page.
     pub(crate) fn card(self, ui: &Ui, rect: Rect) {
         let palette = self.look.palette;
         let edge = Stroke::new(1.0, palette.edge);
@@ -90,22 +90,21 @@ impl Page<'_> {
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LargeButton<'a> {
-    /// What it says.
+    /// Text.
     pub(crate) words: &'a str,
-    /// What it says below in smaller letters.
+    /// Note below it in smaller letters.
     pub(crate) note: &'a str,
-    /// A sign in place of the words, which stay its name.
+    /// An icon in place of the text, which stays the accessible name.
     pub(crate) icon: Option<Icon>,
-    /// Size of its words in units.
+    /// Font size of the text in units.
     pub(crate) size: f32,
-    /// How it looks.
     pub(crate) weight: Weight,
-    /// Why it cannot be pressed now.
+    /// Reason why it is disabled now.
     pub(crate) disabled: Option<&'a str>,
 }
 
 impl<'a> LargeButton<'a> {
-    /// An ordinary one.
+    /// An ordinary button.
     pub(crate) const fn new(words: &'a str) -> Self {
         Self {
             words,
@@ -141,7 +140,7 @@ impl<'a> LargeButton<'a> {
             }
             (None, "") => page.paint(ui, inner, LargeText::new(self.words, self.size, color)),
             (None, note) => {
-                // Both together in the middle.
+                // Text and note together, centred.
                 let [upper, lower] = [self.size, NOTE].map(|size| page.font(size).size * LINE);
                 let size = vec2(inner.width(), (upper + lower).min(inner.height()));
                 let both = Rect::from_center_size(inner.center(), size);
@@ -153,7 +152,7 @@ impl<'a> LargeButton<'a> {
         self.disabled.is_none() && kit::pressed(ui, &response)
     }
 
-    /// Ground, edge and words.
+    /// Colours of background, edge and text.
     fn colors(self, look: Look, is_down: bool) -> (Color32, Color32, Color32) {
         let palette = look.palette;
         let ground = if is_down {

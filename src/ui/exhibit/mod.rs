@@ -1,5 +1,5 @@
-//! The page that visitors see in place of the window: the hand, the tiles, what the fingertips feel, STOP. Nothing leads from it to
-//! anything else but the PIN of staff.
+//! The page that visitors see in place of the window: hand, tiles, fingertips, STOP. Only the PIN of staff leads from it to
+//! anything else.
 
 mod hand_card;
 mod keypad;
@@ -27,17 +27,17 @@ use egui::{
 };
 use std::time::Duration;
 
-/// How often bars and countdowns are drawn while they go on.
+/// Repaint interval of running bars and countdowns.
 const FRAME: Duration = Duration::from_millis(50);
 
-/// What the page remembers between frames.
+/// View state of the page.
 #[derive(Default)]
 pub(crate) struct ExhibitPage {
     begun: bool,
     logo: Option<TextureHandle>,
     hand: HandCard,
     staff: StaffView,
-    /// A tile was pressed, and not let go.
+    /// A tile is pressed and not yet released.
     is_held: bool,
 }
 
@@ -47,16 +47,16 @@ impl std::fmt::Debug for ExhibitPage {
     }
 }
 
-/// What fingers and the pointer did in this frame.
+/// Touches and pointer presses of this frame.
 #[derive(Default)]
 struct Touches {
     went_down: bool,
-    /// Nothing touches any more at its end.
+    /// Nothing touches the screen at the end of the frame.
     ends_up: bool,
 }
 
 impl ExhibitPage {
-    /// Draws the page over all of `ui` and returns what was asked for, stop first.
+    /// Draws the page over all of `ui`. Returns the requested actions, stop first.
     pub(crate) fn ui(&mut self, ui: &mut Ui, state: &State, exhibit: &ExhibitState) -> Vec<Action> {
         let keys = take_keys(ui);
         self.begin(ui.ctx(), exhibit);
@@ -80,7 +80,7 @@ impl ExhibitPage {
         let is_free = exhibit.staff == StaffPanel::Closed;
         let taken = ui.scope(|ui| {
             if !is_free {
-                // What staff see has a veil of its own.
+                // The staff panel has a veil of its own.
                 ui.visuals_mut().disabled_alpha = 1.0;
                 ui.disable();
             }
@@ -102,7 +102,7 @@ impl ExhibitPage {
         stop_first(actions, &keys)
     }
 
-    /// What visitors see. True if a tile was pressed, or the way of staff.
+    /// Draws the visitors' part. True if a tile or the lock was pressed.
     fn page_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, page: Page<'_>) -> bool {
         self.title_ui(ui, page);
         let lock = LargeButton {
@@ -141,7 +141,7 @@ impl ExhibitPage {
         page.line(ui, rest, title);
     }
 
-    /// Once: what belongs to the window goes, and the logo is loaded.
+    /// Drops the focus; on the first frame also resets zoom and popups, and loads the logo.
     fn begin(&mut self, ctx: &Context, exhibit: &ExhibitState) {
         if let Some(focused) = ctx.memory(egui::Memory::focused) {
             ctx.memory_mut(|memory| memory.surrender_focus(focused));
@@ -156,7 +156,7 @@ impl ExhibitPage {
     }
 }
 
-/// Gives the window back what it had before the page.
+/// Restores the window's zoom settings after the page.
 pub(crate) fn leave(ctx: &Context, zoom: Zoom) {
     ctx.options_mut(|options| options.zoom_with_keyboard = true);
     ctx.set_zoom_factor(zoom.into());
@@ -177,7 +177,7 @@ const fn wish(wish: ExhibitWish) -> Action {
     Action::Exhibit(ExhibitAction::Wish(wish))
 }
 
-/// STOP, over all else.
+/// Draws STOP, above everything else.
 fn stop_ui(ui: &Ui, pane: &mut Pane<'_>, page: Page<'_>) {
     let stop = LargeButton {
         note: page.look.say(exhibit::STOP_NOTE),
@@ -190,7 +190,7 @@ fn stop_ui(ui: &Ui, pane: &mut Pane<'_>, page: Page<'_>) {
     }
 }
 
-/// The other language, in its own words.
+/// Draws the button for the other language, labelled in that language.
 fn language_ui(ui: &Ui, pane: &mut Pane<'_>, page: Page<'_>) {
     let words = match page.look.language {
         Language::En => "中文",
@@ -233,7 +233,7 @@ impl Touches {
     }
 }
 
-/// Takes everything of the keyboard out of the input before anything sees it; the keys that went down.
+/// Removes all keyboard events from the input before any widget sees them. Returns the keys that went down.
 fn take_keys(ui: &Ui) -> Vec<Key> {
     let mut keys = Vec::new();
     ui.input_mut(|input| {
@@ -256,7 +256,7 @@ fn take_keys(ui: &Ui) -> Vec<Key> {
     keys
 }
 
-/// Bars and countdowns go on by themselves.
+/// Repaints while bars and countdowns run.
 fn repaint(ui: &Ui, exhibit: &ExhibitState) {
     let goes_on = exhibit.view.held.is_some()
         || exhibit.staff != StaffPanel::Closed
@@ -269,7 +269,7 @@ fn repaint(ui: &Ui, exhibit: &ExhibitState) {
     }
 }
 
-/// A stop goes before all else, and nothing else passes with it but that a tile was let go.
+/// Puts a stop before everything else; only the release of a tile passes with it.
 fn stop_first(mut actions: Vec<Action>, keys: &[Key]) -> Vec<Action> {
     let is_stop = |key: &Key| matches!(key, Key::Space | Key::Escape);
     if keys.iter().any(is_stop) || actions.contains(&Action::Stop) {

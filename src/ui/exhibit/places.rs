@@ -1,36 +1,36 @@
-//! Where everything of the page stands, by the size of the screen.
+//! Layout of the page for a screen size.
 
 use egui::{Rect, pos2, vec2};
 
-/// What is touched is at least so large, points.
+/// Minimum size of anything touched, in points.
 const TOUCHED_LEAST: f32 = 48.0;
-/// A tile is at least so high and wide, points.
+/// Minimum height and width of a tile, in points.
 const TILE_LEAST: f32 = 72.0;
 /// Height of a tile's name, in units.
 pub(crate) const NAME: f32 = 52.0;
 
-/// Where everything stands.
+/// Rectangles of all parts.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PagePlaces {
-    /// Points of a unit: a screen of 1920 by 1080, or of 1080 by 1920, has as many units.
+    /// Points per unit: a screen of 1920 by 1080, or of 1080 by 1920, has that many units.
     pub(crate) unit: f32,
     pub(crate) whole: Rect,
-    /// The logo and the title.
+    /// Logo and title.
     pub(crate) title: Rect,
-    /// The other language.
+    /// Language button.
     pub(crate) language: Rect,
-    /// The way of staff.
+    /// Lock button for staff.
     pub(crate) lock: Rect,
     /// The drawn hand and its fingertips.
     pub(crate) hand: Rect,
-    /// What goes on, in words.
+    /// Text of the current stage.
     pub(crate) words: Rect,
     pub(crate) tiles: Rect,
     pub(crate) stop: Rect,
 }
 
 impl PagePlaces {
-    /// On a screen of this size.
+    /// Layout for a screen of this size.
     pub(crate) fn of(whole: Rect) -> Self {
         let is_upright = whole.height() > whole.width();
         let designed = if is_upright {
@@ -68,7 +68,7 @@ impl PagePlaces {
         }
     }
 
-    /// Where what staff see may stand: STOP is never covered.
+    /// Area for the staff panel: it never covers STOP.
     pub(crate) fn staff(&self) -> Rect {
         let room = self.whole.shrink(32.0 * self.unit);
         Rect::from_min_max(
@@ -77,7 +77,7 @@ impl PagePlaces {
         )
     }
 
-    /// Each of `count` tiles: so many in a row as make their pictures largest.
+    /// Rectangles of `count` tiles, with the number of columns that makes their pictures largest.
     pub(crate) fn tile_rects(&self, count: usize) -> Vec<Rect> {
         let (gap, room) = (16.0 * self.unit, self.tiles);
         let count = u8::try_from(count).unwrap_or(u8::MAX).max(1);
@@ -105,13 +105,13 @@ impl PagePlaces {
     }
 }
 
-/// The upper part of this height and what is left below a gap.
+/// Splits off the upper part of this height; the rest begins after a gap.
 pub(crate) fn above(rect: Rect, height: f32, gap: f32) -> (Rect, Rect) {
     let (upper, lower) = rect.split_top_bottom_at_y(rect.top() + height);
     (upper, lower.with_min_y(upper.bottom() + gap))
 }
 
-/// What is left before a gap, and the right part of this width.
+/// Splits off the right part of this width; the rest ends before a gap.
 pub(crate) fn before(rect: Rect, width: f32, gap: f32) -> (Rect, Rect) {
     let (left, right) = rect.split_left_right_at_x(rect.right() - width);
     (left.with_max_x(right.left() - gap), right)

@@ -1,4 +1,4 @@
-//! What staff see over the page: the PIN, then arming, disarming, leaving, and the day's figures.
+//! Staff panel over the page: the PIN, then arming, disarming, leaving, and the day's figures.
 
 use crate::app::action::Action;
 use crate::app::exhibit::{ExhibitAction, ExhibitState, StaffPanel};
@@ -12,22 +12,22 @@ use crate::ui::text::{Text, exhibit, notices};
 use egui::{Key, Rect, Role, Sense, Ui, Vec2, WidgetInfo, vec2};
 use std::mem::Discriminant;
 
-/// How much of the page is seen through the veil.
+/// Opacity of the veil over the page.
 const VEIL: f32 = 0.86;
 
-/// What opens under a finger that types takes no press before the finger was away for so long, seconds.
+/// Seconds without a touch before a new panel accepts presses, so that a typing finger presses nothing in it.
 const AWAY_S: f64 = 0.5;
 
-/// What was typed by staff.
+/// View state of the staff panel.
 #[derive(Debug, Default)]
 pub(crate) struct StaffView {
     keypad: Keypad,
     shown: Option<Discriminant<StaffPanel>>,
-    /// From this moment on the panel that the PIN opened takes presses.
+    /// Time from which the panel opened by the PIN accepts presses.
     takes_from: f64,
 }
 
-/// What stands above the keys of the pad.
+/// Text above the keypad.
 struct PadWords {
     title: Text,
     note: String,
@@ -36,7 +36,7 @@ struct PadWords {
 }
 
 impl StaffView {
-    /// Draws what is open; `keys` are those of a real keyboard.
+    /// Draws the open panel; `keys` are those of a real keyboard.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, page: Page<'_>, keys: &[Key]) {
         let (exhibit, places) = (page.exhibit, page.places);
         let kind = std::mem::discriminant(&exhibit.staff);
@@ -68,7 +68,7 @@ impl StaffView {
         }
     }
 
-    /// False until nothing was pressed for a while since something new is shown: who types a digit too many presses nothing.
+    /// False until nothing has been pressed for [`AWAY_S`] since a new panel is shown: a surplus digit then presses nothing.
     fn takes_presses(&mut self, ui: &Ui, is_new: bool) -> bool {
         let (now, is_down) = ui.input(|input| {
             let pointer = &input.pointer;
@@ -112,7 +112,7 @@ impl StaffView {
     }
 }
 
-/// The ground of a card of this size in units in the middle, as far as there is room; the place in it.
+/// Draws a centred card of this size in units, limited to the available space. Returns the area inside.
 fn card_ui(ui: &mut Ui, page: Page<'_>, size: Vec2, title: Text) -> Rect {
     let room = page.places.staff();
     let rect = Rect::from_center_size(room.center(), (size * page.places.unit).min(room.size()));
@@ -129,7 +129,7 @@ fn title_ui(ui: &mut Ui, page: Page<'_>, place: Rect, title: Text) {
     page.line(ui, place, title);
 }
 
-/// What the pad says; nothing once the PIN was right.
+/// Text above the keypad; `None` once the PIN was right.
 fn pad_words(pane: &Pane<'_>, exhibit: &ExhibitState) -> Option<PadWords> {
     let look = pane.look;
     let plain = |title, note: Text| PadWords {
@@ -169,7 +169,7 @@ fn pad_words(pane: &Pane<'_>, exhibit: &ExhibitState) -> Option<PadWords> {
     })
 }
 
-/// What staff do once the PIN was right.
+/// Draws the staff controls, available once the PIN was right.
 fn open_ui(ui: &mut Ui, pane: &mut Pane<'_>, page: Page<'_>) {
     let (look, unit) = (page.look, page.places.unit);
     let gap = 18.0 * unit;
@@ -210,7 +210,7 @@ fn open_ui(ui: &mut Ui, pane: &mut Pane<'_>, page: Page<'_>) {
     }
 }
 
-/// A large place over three smaller ones.
+/// Splits into a large rectangle above three smaller ones.
 fn split(rect: Rect, gap: f32) -> (Rect, [Rect; 3]) {
     let (large, rest) = above(rect, rect.height() * 0.34, gap);
     let high = (rest.height() - 2.0 * gap) / 3.0;
@@ -219,7 +219,7 @@ fn split(rect: Rect, gap: f32) -> (Rect, [Rect; 3]) {
     (large, [first, second, third])
 }
 
-/// What was counted today.
+/// Draws today's counts.
 fn figures_ui(ui: &mut Ui, page: Page<'_>, rect: Rect) {
     let (look, report) = (page.look, page.exhibit.report.today());
     let rows: [(Text, u32); 5] = [

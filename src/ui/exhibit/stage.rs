@@ -1,4 +1,4 @@
-//! What goes on, in words: for visitors in large letters, for staff below them; and why a tile does nothing now.
+//! Current stage as text, large for visitors and small for staff; and the reasons why tiles are disabled.
 
 use crate::app::exhibit::ExhibitState;
 use crate::app::notices::NoticeKind;
@@ -11,26 +11,26 @@ use crate::ui::text::{Text, exhibit, main, window};
 use egui::{Color32, CornerRadius, ProgressBar, Rect, Ui, UiBuilder, WidgetInfo};
 use std::time::Duration;
 
-/// A minute, for what is told in minutes.
+/// Unit of durations shown in minutes.
 const MINUTE: Duration = Duration::from_secs(60);
 
-/// What is said of a stage.
+/// Text of a stage.
 struct StageWords {
     title: String,
     note: &'static str,
     color: Color32,
-    /// How much of the time to play is left.
+    /// Remaining share of the time to play.
     left: Option<f32>,
 }
 
-/// Whether a tile that is held arms again now.
+/// True if holding a tile arms the hand again now.
 pub(crate) fn restarts(state: &State, exhibit: &ExhibitState) -> bool {
     matches!(exhibit.view.stage, ExhibitStage::Halted(_))
         && exhibit.plan.visitor_restart
         && state.hand().connection.status.state == LinkState::Monitoring
 }
 
-/// Why pressing a tile does nothing now.
+/// Reason why pressing a tile has no effect now; `None` if it has.
 pub(crate) fn tile_refusal(look: Look, state: &State, exhibit: &ExhibitState) -> Option<String> {
     let said = |text| Some(look.say(text).to_owned());
     match exhibit.view.stage {
@@ -44,7 +44,7 @@ pub(crate) fn tile_refusal(look: Look, state: &State, exhibit: &ExhibitState) ->
     }
 }
 
-/// The words on their card.
+/// Draws the stage's text on its card.
 pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, page: Page<'_>) {
     let (look, unit, rect) = (page.look, page.places.unit, page.places.words);
     let words = trouble(look, pane.state);
@@ -70,7 +70,7 @@ pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, page: Page<'_>) {
     }
 }
 
-/// The time to play that is left.
+/// Draws the remaining time to play.
 fn left_ui(ui: &mut Ui, page: Page<'_>, rect: Rect, left: f32) {
     let builder = UiBuilder::new().max_rect(rect);
     ui.scope_builder(builder, |ui| {
@@ -83,7 +83,7 @@ fn left_ui(ui: &mut Ui, page: Page<'_>, rect: Rect, left: f32) {
     });
 }
 
-/// A stop that did not reach the hand goes before all else.
+/// Text of a stop that was not sent or did not stop the hand, which takes precedence; `None` otherwise.
 fn trouble(look: Look, state: &State) -> Option<StageWords> {
     let told = |text: Text| StageWords {
         title: look.say(text).to_owned(),

@@ -1,4 +1,4 @@
-//! The tiles: what visitors may press. A press counts when the finger comes down.
+//! Tiles that visitors press. A press counts when the finger comes down.
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
@@ -13,12 +13,12 @@ use crate::ui::hand::tile;
 use crate::ui::kit::{self, Pane};
 use egui::{Id, Rect, Role, Stroke, StrokeKind, Ui, WidgetInfo};
 
-/// How much of the picture is hidden on a tile that does nothing.
+/// Opacity of the veil on a disabled tile.
 const VEIL: f32 = 0.62;
-/// How strong the colour is that rises in a tile that is held.
+/// Opacity of the fill that rises in a held tile.
 const RISEN: f32 = 0.35;
 
-/// Words in the language of the page.
+/// Text in the language of the page.
 pub(crate) fn words_of(words: &BothWords, language: Language) -> &str {
     match language {
         Language::En => &words.en,
@@ -26,18 +26,18 @@ pub(crate) fn words_of(words: &BothWords, language: Language) -> &str {
     }
 }
 
-/// A tile and what it shows.
+/// A tile and its content.
 struct PieceTile<'a> {
     index: usize,
     piece: &'a ExhibitPiece,
     rect: Rect,
     refusal: Option<&'a str>,
-    /// How long it was held, as a part of what is wanted, where that does something.
+    /// Share of the required hold time, where holding has an effect.
     held: Option<f32>,
     plays: bool,
 }
 
-/// All tiles. True if one was pressed.
+/// Draws all tiles. True if one was pressed.
 pub(crate) fn tiles_ui(ui: &mut Ui, pane: &mut Pane<'_>, page: Page<'_>) -> bool {
     let exhibit = page.exhibit;
     let refusal = stage::tile_refusal(pane.look, pane.state, exhibit);
@@ -110,7 +110,7 @@ impl PieceTile<'_> {
     }
 
     fn picture_ui(&self, ui: &Ui, page: Page<'_>, place: Rect) {
-        // What a pose leaves alone is drawn open.
+        // Joints that the pose leaves unchanged are drawn open.
         let share = |to: Option<Angle>| f32::from(to.unwrap_or(Angle::MAX).get()) / 1000.0;
         let shares = self.piece.shown().map(|to| Some(share(to)));
         tile::sign_ui(ui, page.look, place, &shares);
@@ -120,7 +120,7 @@ impl PieceTile<'_> {
         }
     }
 
-    /// How long it is held already: it fills from below.
+    /// Draws the hold time so far: the tile fills from below.
     fn held_ui(&self, ui: &Ui, page: Page<'_>, part: f32) {
         let (accent, round) = (page.look.palette.accent, 16.0 * page.places.unit);
         let full = self.rect;

@@ -1,4 +1,4 @@
-//! One fault as the user reads it: what, since when, why, what to do, and whether clearing errors can help. Clears nothing.
+//! One fault in the list: name, duration, cause, advice, and whether clearing errors can help. Clears nothing.
 
 use crate::app::action::Action;
 use crate::app::readings::Freshness;
@@ -12,26 +12,26 @@ use crate::ui::theme;
 use egui::{CornerRadius, Frame, Margin, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 use std::time::Duration;
 
-/// Of a fault that stays, so much is replayed.
+/// Replayed duration of a fault that persists.
 const SHOWN: Duration = Duration::from_secs(10);
-/// So much after a fault is replayed, too.
+/// Replayed time after a fault.
 const AFTER: Duration = Duration::from_secs(2);
 
-/// Indent of what stands below a line.
+/// Indent of the content below a title line.
 const INSET: Margin = Margin {
     left: 20,
     ..Margin::ZERO
 };
 
-/// How a fault is told.
+/// Emphasis of an entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Depth {
     Whole,
-    /// It stands out: it was asked for.
+    /// Highlighted: the user selected its joint.
     Chosen,
 }
 
-/// The entries of a list, which keep their places while the pointer is over it: what is new then comes last.
+/// Entries of a list. They keep their order while the pointer is over it; new ones are appended.
 pub(crate) fn steady(
     ui: &Ui,
     pane: &Pane<'_>,
@@ -55,7 +55,7 @@ pub(crate) fn steady(
     entries
 }
 
-/// Draws one entry of the list; the recording of it that is to be opened.
+/// Draws one entry of the list. Returns its recording, if the user opens it.
 pub(crate) fn entry_ui(
     ui: &mut Ui,
     pane: &mut Pane<'_>,
@@ -84,26 +84,26 @@ pub(crate) fn entry_ui(
     shown.inner
 }
 
-/// What stands below a title with a lamp.
+/// Draws content indented below a title with a lamp.
 pub(crate) fn inset_ui<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
     let frame = Frame::new().inner_margin(INSET);
     frame.show(ui, |ui| ui.vertical(add).inner).inner
 }
 
-/// A list over all the room that is left.
+/// A scrollable list over the remaining space.
 pub(crate) fn scroll_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     let scroll = ScrollArea::vertical()
         .auto_shrink(false)
         .min_scrolled_height(0.0);
     scroll.show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = theme::STEP / 2.0;
-        // The bar lies over the end of the rows.
+        // The scroll bar would cover the end of the rows.
         ui.set_max_width(ui.available_width() - theme::GAP);
         add(ui);
     });
 }
 
-/// Lamp, joint and fault; whether it lasts; the button of one who has seen it.
+/// Draws lamp, joint, fault and state, and the button that marks it as seen.
 fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
     let look = pane.look;
     let palette = look.palette;
@@ -120,7 +120,7 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
             palette.muted
         };
         Label::new(&title, ink).ui(ui);
-        // Before what changes, so that it stays where it is.
+        // Before the parts that change, so that it does not move.
         if !entry.seen {
             let text = look.say(notices::SEEN);
             let name = format!("{text}: {title}");
@@ -136,7 +136,7 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
     });
 }
 
-/// Times, and the way to the recording of it, if there is one.
+/// Draws the times, and the button that opens its recording, if there is one.
 fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<FaultRecordingId> {
     let look = pane.look;
     let text = times(pane, entry);
@@ -168,13 +168,12 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<Fault
     pressed.inner.map(|recording| recording.id)
 }
 
-/// Joint and fault.
 pub(crate) fn title(pane: &Pane<'_>, dof: Dof, what: FaultKind) -> String {
     let words = notices::fault_kind(what, pane.look.language);
     format!("{}: {}", pane.look.say(words::dof(dof)), words.title)
 }
 
-/// Whether it lasts, and the colour of that.
+/// State of a fault, active or past, with its colour.
 fn stand(pane: &Pane<'_>, entry: &FaultEntry) -> (Text, egui::Color32) {
     let palette = pane.look.palette;
     let sample = &pane.hand().readings.sample;
@@ -192,14 +191,14 @@ fn stand(pane: &Pane<'_>, entry: &FaultEntry) -> (Text, egui::Color32) {
     }
 }
 
-/// A ring: something was wrong and is not any more.
+/// Draws a ring: a past fault.
 pub(crate) fn mark(ui: &Ui, center: egui::Pos2, color: egui::Color32) {
     let stroke = egui::Stroke::new(1.6, color);
     ui.painter()
         .circle_stroke(center, theme::LAMP - 0.5, stroke);
 }
 
-/// A ring for faults of this joint that nobody has seen yet.
+/// Draws a ring if this joint has unseen faults.
 pub(crate) fn unseen_mark_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
     let mut unseen = pane.hand().readings.faults.unseen();
     let Some(first) = unseen.find(|entry| entry.dof == dof) else {
@@ -217,7 +216,7 @@ pub(crate) fn unseen_mark_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
     response.on_hover_text(format!("{tip}\n{}", pane.look.say(notices::OVER_UNSEEN)));
 }
 
-/// When it began, how long it lasted, how often it came: what the title does not say already.
+/// Start, duration and count, as far as the title does not include them.
 fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
     let look = pane.look;
     let now = pane.state.now;
@@ -234,12 +233,12 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
     parts.join(" · ")
 }
 
-/// The colour of what nobody has seen: loud while it lasts. `None` if all was seen.
+/// Colour of the unseen faults: conspicuous while one is active. `None` if all were seen.
 pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
     let palette = pane.look.palette;
     let mut unseen = pane.hand().readings.faults.unseen();
     let first = unseen.next()?;
-    // What lasts comes first.
+    // Active faults come first.
     Some(if first.is_active() {
         palette.bad
     } else {
@@ -247,7 +246,7 @@ pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
     })
 }
 
-/// Marks all as seen.
+/// Draws the button that marks all faults as seen.
 pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let none = pane.hand().readings.faults.unseen().next().is_none();

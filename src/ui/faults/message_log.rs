@@ -1,4 +1,4 @@
-//! Messages as rows, and the log of all of them: filtered by words, of which the level is one, and copied as text.
+//! Messages as rows, and the log of all of them: filtered by words, including the level, and copied as text.
 
 use crate::app::notices::Notice;
 use crate::ui::kit::{self, Button, Label, Look, Pane, format};
@@ -6,14 +6,14 @@ use crate::ui::text::notices;
 use egui::{Align, Layout, ScrollArea, Ui};
 use std::fmt::Write as _;
 
-/// Rows that are drawn: older ones are found by their words, and copied.
+/// Maximum number of rows drawn: older ones are found with the filter, and copied.
 const DRAWN_MAX: usize = 200;
 
-/// What the log needs between frames.
+/// View state of the log.
 #[derive(Debug, Default)]
 pub(crate) struct MessageLog {
     words: String,
-    /// The newest message when lines were copied last, and how many.
+    /// Newest message at the last copy, and the number of lines copied.
     copied: Option<(Option<u64>, usize)>,
 }
 
@@ -69,7 +69,7 @@ impl MessageLog {
         kit::edit_said_ui(ui, look, notices::LOG_FILTER, &mut self.words);
     }
 
-    /// The messages with these words, each with its level and words in a line, newest first.
+    /// Messages that contain the filter words, each with its level and text in a line, newest first.
     fn passing<'a>(&self, pane: &Pane<'a>) -> impl Iterator<Item = (&'a Notice, String)> + use<'a> {
         let (look, wanted) = (pane.look, self.words.trim().to_lowercase());
         let lines = pane.state.notices.log().map(move |notice| {
@@ -80,7 +80,7 @@ impl MessageLog {
     }
 }
 
-/// A message as a row: lamp, words, age, and what stands at the end of it.
+/// Draws a message as a row: lamp, text, age, and the content of `end` at the right.
 pub(crate) fn message_ui(
     ui: &mut Ui,
     pane: &mut Pane<'_>,
@@ -102,7 +102,7 @@ pub(crate) fn message_ui(
     });
 }
 
-/// A message with how often it came.
+/// Text of a message with its count.
 fn words(look: Look, notice: &Notice) -> String {
     let text = notices::notice_of(look, notice);
     match notice.count {

@@ -1,4 +1,4 @@
-//! The view that explains the hand: six drives, what is and was wrong, what to do, and the log. Clears nothing by itself.
+//! The view that explains the hand's state: six drives, present and past faults, advice, and the log. Clears nothing by itself.
 pub(crate) mod entry;
 pub(crate) mod message_log;
 pub(crate) mod recording_events;
@@ -18,17 +18,17 @@ use crate::ui::text::{main, notices, panels, words};
 use crate::ui::theme;
 use egui::{Margin, Panel, Ui};
 
-/// What the view remembers.
+/// View state.
 #[derive(Debug, Default)]
 pub(crate) struct FaultsView {
-    /// The joint that is asked about.
+    /// Joint whose faults are highlighted.
     chosen: Option<Dof>,
     section: FaultSection,
     log: MessageLog,
     recordings: FaultRecordingsView,
 }
 
-/// The list beside the faults.
+/// List beside the faults.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum FaultSection {
     #[default]
@@ -37,13 +37,12 @@ enum FaultSection {
 }
 
 impl FaultsView {
-    /// Shows what this joint says, and its faults first; of no joint, all of them alike.
+    /// Explains this joint's state and lists its faults first; `None` treats all joints alike.
     pub(crate) const fn choose(&mut self, dof: Option<Dof>) {
         self.chosen = dof;
         self.recordings.close();
     }
 
-    /// Draws it over all of `ui`.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         if let Some(recording) = self.recordings.opened(pane) {
@@ -95,7 +94,7 @@ impl FaultsView {
         });
     }
 
-    /// The messages, or the recordings.
+    /// Draws the messages, or the recordings.
     fn beside_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let recordings = match pane.hand().measured.recorder.iter().count() {
@@ -136,7 +135,7 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     button.on_click(ui, pane, Action::ClearErrors);
 }
 
-/// That nothing is wrong, or that nobody knows.
+/// Draws that there are no faults, or that this is unknown.
 fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let faults = pane.hand().readings.sample.faults;
@@ -154,7 +153,7 @@ fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
     inset_ui(ui, |ui| kit::say_ui(ui, hint, look.palette.muted));
 }
 
-/// What the chosen drive says, explained. True if it was enough of it.
+/// Explains the state of the chosen drive. True if the user closes the explanation.
 fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
     let look = pane.look;
     let palette = look.palette;
@@ -174,7 +173,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
     });
     let sample = &pane.hand().readings.sample;
     let status = sample.status.map(|group| group.value[dof]);
-    // A fault is explained by its entry below; what the status adds to it is said here.
+    // A fault is explained by its entry below; the status is added here.
     let faulty = sample
         .faults
         .is_some_and(|group| !group.value[dof].is_empty());
@@ -189,7 +188,7 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
     closed.inner
 }
 
-/// Every code and bit of the manual in words, for those who meet them for the first time.
+/// Explains every code and bit of the manual, for new users.
 fn meanings_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     ui.separator();

@@ -1,4 +1,4 @@
-//! What happened in a recording, as lines of words: what the user did, how drives changed, what the link did.
+//! Events of a recording as lines of text: actions of the user, changes of drives and of the link.
 
 use crate::app::readings::fault_recorder::{FaultEventKind, FaultRecording, PersonAct};
 use crate::hand::{Dof, Faults};
@@ -12,14 +12,14 @@ use egui::Color32;
 /// One line of the list.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct EventLine {
-    /// When, in seconds since the start of the program.
+    /// Time in seconds since the start of the program.
     pub(crate) at_s: f64,
     pub(crate) text: String,
-    /// The same as in the plots.
+    /// Same colour as in the plots.
     pub(crate) color: Color32,
 }
 
-/// Everything that happened, oldest first.
+/// All events, oldest first.
 pub(crate) fn lines(look: Look, recording: &FaultRecording) -> Vec<EventLine> {
     let events = recording.events.iter().map(|event| {
         let (text, color) = event_words(look, &event.what);
@@ -38,9 +38,9 @@ pub(crate) fn lines(look: Look, recording: &FaultRecording) -> Vec<EventLine> {
     all
 }
 
-/// A mark of the history; a fault's is told better by the drive's own words.
+/// Line of a mark. `None` for a fault, which the drive's own line describes better.
 fn mark_line(look: Look, mark: &Mark) -> Option<EventLine> {
-    // Faults are told by the drives.
+    // Faults are listed as changes of drives.
     if matches!(mark.kind, MarkKind::Fault(_)) {
         return None;
     }
@@ -73,7 +73,7 @@ fn event_words(look: Look, what: &FaultEventKind) -> (String, Color32) {
     }
 }
 
-/// The titles of all bits that are set.
+/// Titles of all set bits.
 fn fault_words(look: Look, bits: Faults) -> String {
     if bits.is_empty() {
         return look.say(notices::NO_FAULT_BITS).into();

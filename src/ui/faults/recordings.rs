@@ -1,4 +1,4 @@
-//! The recordings around faults: their list, and one of them opened with its plots and events. Plays nothing back.
+//! Recordings around faults: their list, and an opened one with its plots and events. Plays nothing back.
 
 use crate::app::action::Action;
 use crate::app::files::export::Export;
@@ -19,21 +19,21 @@ use crate::ui::theme;
 use egui::{Panel, ScrollArea, Stroke, Ui};
 use std::sync::Arc;
 
-/// Seconds shown on both sides of the fault when only its surroundings are.
+/// Seconds shown on both sides of the fault when zoomed to it.
 const NEAR_S: f64 = 5.0;
 
-/// What the recordings need between frames.
+/// View state of the recordings.
 #[derive(Debug, Default)]
 pub(crate) struct FaultRecordingsView {
     open: Option<FaultRecordingId>,
     shown: ShownPlots,
     near: bool,
     chart: ChartView,
-    /// The events of the open one, in the language they were worded in.
+    /// Events of the open recording, cached for a language and theme.
     lines: Option<((FaultRecordingId, Language, Theme), Vec<EventLine>)>,
 }
 
-/// One plot of a recording: the joints with the fault are strong and come last, over the others.
+/// One plot of a recording: joints with the fault are bold and drawn last, over the others.
 fn chart<'a>(
     look: Look,
     recording: &'a FaultRecording,
@@ -71,7 +71,7 @@ fn chart<'a>(
     }
 }
 
-/// Its first fault, and how many more.
+/// Its first fault, and the number of further ones.
 fn title(pane: &Pane<'_>, recording: &FaultRecording) -> String {
     let Some(first) = recording.fault() else {
         return format::UNKNOWN.into();
@@ -92,12 +92,12 @@ impl FaultRecordingsView {
         self.chart = ChartView::default();
     }
 
-    /// Closes the open one.
+    /// Closes the open recording.
     pub(crate) const fn close(&mut self) {
         self.open = None;
     }
 
-    /// The open one, if it is still kept.
+    /// The open recording; `None` if there is none or it was dropped.
     pub(crate) fn opened(&self, pane: &Pane<'_>) -> Option<Arc<FaultRecording>> {
         let recorder = &pane.hand().measured.recorder;
         recorder.get(self.open?).map(Arc::clone)
@@ -137,7 +137,7 @@ impl FaultRecordingsView {
         }
     }
 
-    /// Draws the open one over all the room there is.
+    /// Draws the open recording over all the available space.
     pub(crate) fn recording_ui(
         &mut self,
         ui: &mut Ui,
@@ -151,7 +151,7 @@ impl FaultRecordingsView {
         let width = (ui.available_width() * 0.3).clamp(168.0, 300.0);
         let events = kit::bare(Panel::right("events"), width, theme::GAP_LEFT);
         events.show(ui, |ui| self.events_ui(ui, pane, recording, fault_s));
-        // The history may have begun within the time before.
+        // The history may begin later than the recording.
         let from = recording.from.secs();
         let from = recording.history.first_secs().unwrap_or(from).max(from);
         let (from, to) = if self.near {
@@ -163,7 +163,7 @@ impl FaultRecordingsView {
         self.plots_ui(ui, pane.look, recording);
     }
 
-    /// The plots that are shown, as many of them as have room.
+    /// Draws the selected plots, as many as fit.
     fn plots_ui(&mut self, ui: &mut Ui, look: Look, recording: &FaultRecording) {
         let shown = PANELS.iter().filter(|panel| self.shown.shows(panel.kind));
         let mut shown: Vec<_> = shown.collect();
@@ -207,13 +207,13 @@ impl FaultRecordingsView {
         kit::say_ui(ui, &about(pane, recording), look.palette.muted);
     }
 
-    /// Which plots, and how much of the time.
+    /// Draws the choice of plots and of the time range.
     fn tools_ui(&mut self, ui: &mut Ui, look: Look) {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = theme::STEP;
             for panel in &PANELS {
                 let title = look.say(panel.title);
-                // Without its unit: that stands at the plot.
+                // Without its unit, which the plot shows.
                 let text = title.split([',', ' ']).next().unwrap_or(title);
                 let on = self.shown.shows(panel.kind);
                 let name = format!("{}: {title}", look.say(notices::RECORDING));
@@ -265,7 +265,7 @@ impl FaultRecordingsView {
     }
 }
 
-/// Of which hand, and how long ago.
+/// Hand of a recording, and its age.
 fn about(pane: &Pane<'_>, recording: &FaultRecording) -> String {
     let age = recording
         .fault()
@@ -286,7 +286,7 @@ fn event_ui(ui: &mut Ui, look: Look, line: &EventLine, fault_s: f64) {
     });
 }
 
-/// One recording of the list. True if it is to be opened.
+/// Draws one recording of the list. True if the user opens it.
 fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, recording: &FaultRecording) -> bool {
     let look = pane.look;
     let palette = look.palette;

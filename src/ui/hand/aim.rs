@@ -1,4 +1,4 @@
-//! Where the user sends a joint, with its track or on the drawn hand: one rule for both.
+//! Sets targets of joints, from a joint's track or by dragging the drawn hand: one rule for both.
 
 use crate::app::action::Action;
 use crate::hand::gap::Gap;
@@ -7,17 +7,17 @@ use crate::ui::kit::Pane;
 use crate::ui::text::main;
 use egui::{Id, Ui};
 
-/// Fingers that move together when they are linked. The thumb is apart: its way is another.
+/// Fingers that move together when they are linked. The thumb is not among them: it moves differently.
 const LINKED: [Dof; 4] = [Dof::Little, Dof::Ring, Dof::Middle, Dof::Index];
 
-/// Why this joint cannot be sent anywhere now.
+/// Reason why no target can be set for this joint now; `None` if it is possible.
 pub(crate) fn refusal(pane: &Pane<'_>, dof: Dof) -> Option<&'static str> {
     let locked = pane.hand().controls.joints[dof].locked;
     let locked = locked.then(|| pane.look.say(main::LOCKED));
     pane.unready().or(locked)
 }
 
-/// Sends a joint there. Linked fingers go as far as this one does, each from where it stands.
+/// Sets a joint's target. Linked fingers change theirs by the same amount, each from its own target.
 pub(crate) fn send(pane: &mut Pane<'_>, dof: Dof, angle: Angle, linked: bool) {
     let joints = pane.hand().controls.joints;
     pane.actions.push(Action::Target(dof, angle));
@@ -33,26 +33,26 @@ pub(crate) fn send(pane: &mut Pane<'_>, dof: Dof, angle: Angle, linked: bool) {
     }
 }
 
-/// Says that the switch which links the fingers is drawn in this frame, and on.
+/// Marks the fingers as linked for this frame. Called while the link switch is drawn and on.
 pub(crate) fn link(ui: &Ui) {
     let now = ui.ctx().cumulative_pass_nr();
     ui.data_mut(|data| data.insert_temp(Id::unique("fingers linked"), now));
 }
 
-/// Whether the user sees that the fingers are linked.
+/// True if the link switch was drawn and on in this frame or the one before.
 pub(crate) fn is_linked(ui: &Ui) -> bool {
     let now = ui.ctx().cumulative_pass_nr();
     let last = ui.data(|data| data.get_temp::<u64>(Id::unique("fingers linked")));
     last.is_some_and(|at| at + 1 >= now)
 }
 
-/// The user asks in this frame what a gap would look like.
+/// Requests a preview of a gap for this frame.
 pub(crate) fn wish(ui: &Ui, gap: Gap) {
     let now = ui.ctx().cumulative_pass_nr();
     ui.data_mut(|data| data.insert_temp(Id::unique("gap wished"), (now, gap)));
 }
 
-/// The gap that the user asks about, while the control for it is drawn.
+/// Gap to preview; `None` when its control was not drawn in this frame or the one before.
 pub(crate) fn wished(ui: &Ui) -> Option<Gap> {
     let now = ui.ctx().cumulative_pass_nr();
     let wish = ui.data(|data| data.get_temp::<(u64, Gap)>(Id::unique("gap wished")));

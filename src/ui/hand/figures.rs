@@ -1,4 +1,4 @@
-//! What stands beside the drawn hand: each finger's name, force and trouble in a place of its own, with a line to it.
+//! Labels beside the drawn hand: each finger's name, force and fault in a fixed position, with a line to the finger.
 
 use crate::app::hands::grip;
 use crate::app::readings::Freshness;
@@ -14,26 +14,26 @@ use crate::ui::text::{main, panels, poses, words};
 use crate::ui::theme;
 use egui::{Color32, FontId, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
-/// Pictures that are lower than this have no figures.
+/// Minimum height of a picture with labels, in points.
 const LEAST: f32 = 200.0;
-/// Room of a figure: its column's width, and its three lines.
+/// Size of a label: its column's width, and its three lines.
 const WIDTH: f32 = 76.0;
 const HEIGHT: f32 = 3.0 * theme::TEXT_LINE;
-/// How far apart the figures of the outer fingers are, and how far above the hand they begin: a line comes to its finger from
-/// above the others.
+/// Vertical distance between the labels of the outer fingers, and how far above the hand they begin, so that a line reaches its
+/// finger from above the others.
 const APART: f32 = HEIGHT + theme::GAP;
 const ABOVE: f32 = theme::CONTROL;
-/// Where the thumb's is, as a part of the hand's height: below it, as the index has its own above it.
+/// Position of the thumb's label, as a share of the hand's height: below the thumb, as the index has its own above it.
 const THUMB: f32 = 0.7;
-/// What is left free between the hand and its figures.
+/// Gap between the hand and its labels.
 const CLEAR: f32 = 2.0 * theme::GAP;
-/// How strong a line is, and the ring at its end; and how much a figure hides of what it stands on.
+/// Opacity of a line, radius of the ring at its end, and opacity of a label's background.
 const LINE_PART: f32 = 0.7;
 const RING: f32 = 2.5;
 const GROUND_PART: f32 = 0.6;
 
-/// Where the hand itself is drawn: beside the figures of the outer fingers. Those of index and thumb stand above and below the
-/// thumb, where no pose gets to.
+/// Area for the hand itself, beside the labels of the outer fingers. The labels of index and thumb are above and below the
+/// thumb, where no pose reaches.
 pub(crate) fn picture_place(place: Rect, side: Side) -> Rect {
     if place.height() < LEAST {
         return place;
@@ -45,7 +45,7 @@ pub(crate) fn picture_place(place: Rect, side: Side) -> Rect {
     }
 }
 
-/// Draws the figures beside what `view` drew last in the middle of a place.
+/// Draws the labels beside the hand that `view` drew last within `place`.
 pub(crate) fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, view: &HandView, place: Rect) {
     let Some(points) = view.points().filter(|_| place.height() >= LEAST) else {
         return;
@@ -55,11 +55,11 @@ pub(crate) fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, view: &HandView, place: R
     }
 }
 
-/// Where a finger's figure stands, and its line.
+/// Position of a finger's label, and its line.
 pub(super) struct Figure {
     lines: [Rect; 3],
     on_left: bool,
-    /// The line: it leaves the figure level or upright, and ends at the finger.
+    /// The line leaves the label horizontally or vertically, and ends at the finger.
     pub(super) path: [Pos2; 3],
 }
 
@@ -77,7 +77,7 @@ impl Figure {
             (_, false) => (second.left_center(), vec2(-theme::STEP, 0.0)),
         };
         let (tip, knuckle) = (points.tips[finger], points.knuckles[finger]);
-        // Lines to tips that stand side by side would cross.
+        // Lines to fingertips that are side by side would cross.
         let end = match finger {
             Finger::Ring | Finger::Little => knuckle,
             Finger::Middle if tip.y > knuckle.y => knuckle,
@@ -91,7 +91,7 @@ impl Figure {
         }
     }
 
-    /// A lock beside the finger's name.
+    /// Draws a lock beside the finger's name.
     fn lock_ui(&self, ui: &mut Ui, pane: &Pane<'_>, name: &str) {
         let [line, ..] = self.lines;
         let width = text_width(ui, name, theme::small()) + theme::SIGN_SMALL;
@@ -108,7 +108,7 @@ impl Figure {
     }
 }
 
-/// The place of a finger's figure, and whether it is at the left. It does not change while the hand moves.
+/// Rectangle of a finger's label, and true if it is on the left. It does not change while the hand moves.
 fn slot(place: Rect, points: &HandPoints, finger: Finger) -> (Rect, bool) {
     let hand = points.bounds;
     let (is_outer, down) = match finger {
@@ -170,7 +170,7 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
         return;
     }
     let state = grip(pane).fingers[finger].state;
-    // The picture shows what is open.
+    // The picture already shows an open grip.
     if !matches!(state, GripState::Unknown | GripState::Open) {
         let named = format!("{name} {}", look.say(panels::FINGER_GRIP));
         let words = Label::new(look.say(panels::grip(state)), grip_color(pane, state));
@@ -182,7 +182,7 @@ fn grip(pane: &Pane<'_>) -> Grip {
     grip::grip_now(pane.hand(), pane.state.now)
 }
 
-/// The size of what thumb and index hold, in words; `None` while they hold nothing alone.
+/// Size of the object between thumb and index, as text; `None` unless those two alone hold one.
 pub(crate) fn held_size(pane: &Pane<'_>) -> Option<String> {
     let hand = pane.hand();
     let gap = grip::held_gap(hand, pane.state.now)?;
@@ -195,7 +195,7 @@ pub(crate) fn held_size(pane: &Pane<'_>) -> Option<String> {
     Some(pane.look.fill(text, &[&format!("{mm:.0}")]))
 }
 
-/// What the grasp does to an object, in one line under the picture.
+/// Draws the state of the grasp, in one line under the picture.
 pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
     let state = grip(pane).grasp.state;
     let look = pane.look;
@@ -209,7 +209,7 @@ pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
     label.on_hover_text(look.tip(panels::GRIP));
 }
 
-/// Loud where the user should look.
+/// Conspicuous for the states that need the user's attention.
 fn grip_color(pane: &Pane<'_>, state: GripState) -> Color32 {
     let palette = pane.look.palette;
     match state {
@@ -222,7 +222,7 @@ fn grip_color(pane: &Pane<'_>, state: GripState) -> Color32 {
     }
 }
 
-/// The force of the drive that bends a finger, whether it is at its threshold, and how fresh it is.
+/// Force of the drive that bends a finger, true if it is at its threshold, and its freshness.
 fn force(pane: &Pane<'_>, finger: Finger) -> (String, bool, Freshness) {
     let (dof, hand) = (finger.bend(), pane.hand());
     let (force, freshness) = pane.newest(dof, hand.readings.sample.force);
@@ -234,11 +234,11 @@ fn force(pane: &Pane<'_>, finger: Finger) -> (String, bool, Freshness) {
     (force, over, freshness)
 }
 
-/// What hurts a drive now, in a word: its fault, or how warm it is. Nothing of old values.
+/// Fault of a drive, or its temperature if it is warm; `None` for old values.
 fn trouble(pane: &Pane<'_>, dof: Dof) -> Option<(String, Color32)> {
     let palette = pane.look.palette;
     let drive = DriveWords::of(pane, dof);
-    // The lamp of an old reading is faint.
+    // The lamp of an old reading is faint, so it never equals `palette.bad`.
     if drive.lamp == palette.bad {
         return Some((drive.short, palette.bad));
     }
@@ -248,7 +248,7 @@ fn trouble(pane: &Pane<'_>, dof: Dof) -> Option<(String, Color32)> {
     Some((format!("{warm} °C"), palette.warn))
 }
 
-/// A thin line from a figure to its finger, with a ring there.
+/// Draws a thin line from a label to its finger, with a ring at the finger.
 fn line_ui(ui: &Ui, [from, knee, end]: [Pos2; 3], color: Color32) {
     let stop = end + (knee - end).normalized() * RING;
     let painter = ui.painter();

@@ -1,4 +1,4 @@
-//! A finger that is dragged in the picture: which angle brings the place that was taken hold of to the pointer.
+//! Dragging a finger in the picture: finds the joint angle that brings the grabbed point to the pointer.
 
 use crate::draw::figure::camera::Camera;
 use crate::draw::figure::render::SeenPlace;
@@ -8,29 +8,29 @@ use crate::ui::hand::scene::HandPicture;
 use egui::Pos2;
 use glam::Vec3;
 
-/// Steps from bent to open in which the way of the place is looked through, and halvings of the last one.
+/// Steps from bent to open in the search along the point's path, and bisections of the last step.
 const STEPS: u8 = 40;
 const HALVINGS: u8 = 10;
-/// What is off across the way counts little: else a finger that bends towards the eye would wait, and then jump.
+/// Weight of the error across the path. It is low: else a finger that bends towards the viewer would lag, and then jump.
 const ACROSS_PART: f32 = 0.05;
-/// How much faster than the pointer the place may go along its way: where the way turns back it catches up smoothly.
+/// Maximum speed of the point along its path relative to the pointer: where the path turns back, it catches up smoothly.
 const CATCH_UP: f32 = 3.0;
 
-/// A place of a finger that the user holds.
+/// A point of a finger that the user is dragging.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FingerDrag {
-    /// The joint that is dragged.
+    /// Joint that is dragged.
     pub(crate) dof: Dof,
     segment: Segment,
-    /// The place in the frame of the segment.
+    /// The grabbed point in the segment's frame.
     at: Vec3,
-    /// Where the joint was sent last, and where the pointer was then.
+    /// Last share sent to the joint, and the pointer position at that time.
     share: f32,
     pointer: Pos2,
 }
 
 impl FingerDrag {
-    /// Takes hold of what the eye sees at this depth below the pointer. None where no joint moves it.
+    /// Grabs the point at `place` below the pointer. `None` if no joint moves it or the joint's angle is unknown.
     pub(crate) fn new(
         camera: &Camera,
         picture: &HandPicture,
@@ -49,7 +49,7 @@ impl FingerDrag {
         })
     }
 
-    /// The share of the way to open (0..=1) at which the place comes nearest to the pointer.
+    /// Returns the share of the way to open (0..=1) at which the point is nearest to the pointer.
     pub(crate) fn follow(&mut self, camera: &Camera, picture: &HandPicture, pointer: Pos2) -> f32 {
         let mut shares = picture.actual.map(|share| share.unwrap_or(1.0));
         let mut place = |share: f32| {

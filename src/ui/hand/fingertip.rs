@@ -1,38 +1,38 @@
-//! One fingertip as a picture: skin, seven pads and the eighth channel as heat, force circle, shear arrow, proximity halo.
+//! Picture of one fingertip: skin, seven pads and the eighth channel as heat, force circle, shear arrow, proximity halo.
 
 use crate::ui::kit::Look;
 use crate::ui::theme;
 use egui::{Color32, CornerRadius, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, vec2};
 
-/// Half the sensing area's width in millimetres, with the skin around it (protocol §5.2).
+/// Half the width of the sensing area with the skin around it, in millimetres (protocol §5.2).
 const HALF_WIDTH_MM: f32 = 8.0;
-/// The skin's ends in millimetres, tip first.
+/// Upper end of the skin (the tip), in millimetres.
 const TIP_MM: f32 = 13.4;
-/// The skin's lower end.
+/// Lower end of the skin, in millimetres.
 const BASE_MM: f32 = -12.6;
-/// Room around the skin for the halo.
+/// Margin around the skin for the halo.
 const MARGIN_MM: f32 = 1.0;
 /// Skin beside the sensing area, and at the tip.
 const EDGE_MM: f32 = 0.6;
 const TIP_EDGE_MM: f32 = 0.4;
-/// The shortest arrow, as a part of the longest.
+/// Length of the shortest arrow, as a share of the longest.
 const LEAST_SHEAR_PART: f32 = 0.12;
 /// Normal force that fills the finger's width (manual 1.2: 20 N grip).
 const FULL_NORMAL_N: f32 = 20.0;
-/// A reading may leave the range by this much without a doubt about it, in newtons.
+/// Tolerance beyond the documented range before a reading counts as implausible, in newtons.
 const SLACK_N: f32 = 0.5;
 /// Tangential force of the longest arrow.
 const FULL_SHEAR_N: f32 = 5.0;
-/// Its length in millimetres.
+/// Length of the longest arrow in millimetres.
 const LONGEST_MM: f32 = 9.0;
-/// Proximity at which the halo is strongest. The scale ends near 16 million; contact begins far below.
+/// Proximity at full halo strength. The scale ends near 16 million; contact begins far below.
 const FULL_PROXIMITY_COUNTS: f32 = 2_000_000.0;
 
 /// Height of a fingertip with its halo, in widths.
 pub(crate) const HEIGHT_TO_WIDTH: f32 =
     (TIP_MM - BASE_MM + 2.0 * MARGIN_MM) / (2.0 * (HALF_WIDTH_MM + MARGIN_MM));
 
-/// What is drawn of one fingertip. Everything that is `None` is not drawn.
+/// Values of one fingertip to draw; `None` values are not drawn.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Tip {
     /// Heat of the eight channels, 0..=1.
@@ -43,26 +43,26 @@ pub(crate) struct Tip {
     pub(crate) shear: Option<(f32, f32)>,
     /// Proximity counts.
     pub(crate) proximity: Option<f32>,
-    /// Draw pale: the values are old.
+    /// Draws pale: the values are old.
     pub(crate) stale: bool,
-    /// Whether its forces can be meant.
+    /// Plausibility of the forces.
     pub(crate) sense: Sense,
 }
 
-/// Whether the forces of a fingertip can be meant.
+/// Plausibility of a fingertip's forces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Sense {
-    /// In the manual's range.
+    /// Within the manual's range.
     #[default]
     Fine,
-    /// A force that is no finite number.
+    /// A force that is not finite.
     NoNumber,
-    /// A force that the sensor cannot measure.
+    /// A force outside the sensor's range.
     Beyond,
 }
 
 impl Sense {
-    /// Of normal and tangential force in newtons, as sent.
+    /// Grades normal and tangential force, in newtons, as received.
     pub(crate) fn of(normal: f32, tangential: f32) -> Self {
         let range = -SLACK_N..=FULL_NORMAL_N + SLACK_N;
         if !normal.is_finite() || !tangential.is_finite() {
@@ -76,19 +76,19 @@ impl Sense {
 }
 
 impl Tip {
-    /// How strong the proximity halo is, 0..=1.
+    /// Strength of the proximity halo, 0..=1.
     pub(crate) fn nearness(&self) -> f32 {
         let counts = self.proximity.unwrap_or(0.0);
         (counts / FULL_PROXIMITY_COUNTS).clamp(0.0, 1.0)
     }
 
-    /// How strong its colours are.
+    /// Opacity of its colours.
     fn fade(&self) -> f32 {
         if self.stale { 0.35 } else { 1.0 }
     }
 }
 
-/// Millimetres of the sensor to points on the screen.
+/// Maps millimetres of the sensor to screen points.
 struct Scale {
     center: Pos2,
     per_mm: f32,
@@ -110,12 +110,12 @@ impl Scale {
         self.center + vec2(x * self.per_mm, -y * self.per_mm)
     }
 
-    /// The middle of the pads.
+    /// Middle of the pads.
     fn middle(&self) -> Pos2 {
         self.at(0.0, 0.6)
     }
 
-    /// The end of the arrow of this force and direction in degrees, 0 towards the tip, clockwise.
+    /// End of the arrow of a force in newtons and a direction in degrees, 0 towards the tip, clockwise.
     fn end(&self, shear: f32, direction: f32) -> Pos2 {
         let length = (shear / FULL_SHEAR_N).clamp(LEAST_SHEAR_PART, 1.0) * LONGEST_MM * self.per_mm;
         self.middle() + Vec2::angled((direction - 90.0).to_radians()) * length
@@ -126,7 +126,7 @@ impl Scale {
     }
 }
 
-/// The pads 1 to 7 as polygons in millimetres. Centres as in protocol §5.2; the outlines fill the area between them.
+/// Outlines of pads 1 to 7 as polygons in millimetres. Centres as in protocol §5.2; the outlines fill the area between them.
 const PADS: [&[(f32, f32)]; 7] = [
     &[(-5.6, 6.2), (-0.7, 0.6), (-5.6, -5.2)],
     &[(-5.0, 6.7), (5.0, 6.7), (0.0, 1.0)],
@@ -224,14 +224,14 @@ fn pads(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
             crossed(painter, &pad, palette.warn.gamma_multiply(fade));
         }
     }
-    // The eighth channel belongs to no pad: a bar beside them.
+    // The eighth channel belongs to no pad: it is a bar beside them.
     let bar = Rect::from_two_pos(scale.at(6.0, 4.6), scale.at(6.8, -4.6));
     let fill = color(last.first().copied().flatten());
     let edge = Stroke::new(1.0, palette.edge);
     painter.rect(bar, 1.0, fill, edge, StrokeKind::Inside);
 }
 
-/// A cross over a pad whose channel says nothing.
+/// Draws a cross over a pad whose channel has no value.
 fn crossed(painter: &Painter, pad: &[Pos2], color: Color32) {
     let box_of = Rect::from_points(pad);
     let (center, arm) = (box_of.center(), box_of.size().min_elem() * 0.22);
@@ -241,7 +241,7 @@ fn crossed(painter: &Painter, pad: &[Pos2], color: Color32) {
     }
 }
 
-/// Draws normal force as a circle and tangential force as an arrow.
+/// Draws the normal force as a circle and the tangential force as an arrow.
 fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
     let fade = tip.fade();
     let arrow = match tip.sense {
@@ -254,7 +254,7 @@ fn forces(painter: &Painter, look: Look, scale: &Scale, tip: &Tip) {
         painter.circle_stroke(middle, radius, thin);
     }
     if let Some(normal) = tip.normal_n.filter(|normal| *normal > 0.0) {
-        // Area grows with force, so that twice the force looks twice as much.
+        // Area grows with force, so that twice the force looks twice as large.
         let part = (normal / FULL_NORMAL_N).clamp(0.0, 1.0).sqrt();
         let radius = part * (HALF_WIDTH_MM - 1.0) * scale.per_mm;
         painter.circle(middle, radius, arrow.gamma_multiply(0.14), thin);

@@ -1,8 +1,8 @@
-//! The drawn hand: a solid moved by the true kinematics, with what its fingertips feel.
+//! The drawn hand: a solid moved by the real kinematics, with the load on its fingertips.
 //!
-//! One mesh path for everything: [`solid`] builds shapes once, [`shape`] holds their lengths, [`light`] and [`render`] make
-//! one plain mesh of them as a [`camera`] sees them, so that OpenGL, the software window and pictures without a display show the same. [`scene`] says
-//! what is to be seen, [`view`] from where, [`tile`] keeps small pictures; [`panel`] alone knows the program's state.
+//! There is one mesh path: [`solid`] builds shapes once, [`shape`] holds their lengths, [`light`] and [`render`] turn them into
+//! one plain mesh as seen by a [`camera`], so that OpenGL, the software window and pictures without a display show the same.
+//! [`scene`] selects the parts to draw, [`view`] the viewpoint, [`tile`] caches small pictures; only [`panel`] knows the program's state.
 
 pub(crate) mod aim;
 pub(crate) mod figures;

@@ -1,4 +1,4 @@
-//! The drawn hand in the window: what the state says goes into the picture, and the finger that was chosen comes out.
+//! The drawn hand in the window: turns state into a picture, and returns the finger that was clicked.
 
 use crate::app::action::Action;
 use crate::app::hand::Activity;
@@ -20,13 +20,13 @@ use crate::ui::text::{main, panels, window, words};
 use crate::ui::theme;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 
-/// The drawn hand, turned as the user wants it.
+/// The drawn hand, in the orientation chosen by the user.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HandPanel(HandView);
 
 impl HandPanel {
-    /// Draws the hand over what is left of `ui`, with the figures of its fingers beside it. A finger that is dragged is sent
-    /// there. Returns the finger that was chosen.
+    /// Draws the hand over the rest of `ui`, with labels of its fingers beside it. Dragging a finger sets its joint's target.
+    /// Returns the finger that was clicked.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
@@ -66,7 +66,7 @@ impl HandPanel {
             return None;
         }
         let clicked = response.clicked();
-        // What is dragged must be seen.
+        // A tooltip would cover the finger that is dragged.
         if response.is_pointer_button_down_on() {
             return None;
         }
@@ -77,7 +77,7 @@ impl HandPanel {
     }
 }
 
-/// With the gap that the user asks about as the ghost, while nothing is sent.
+/// Adds the previewed gap as the ghost, while the hand is not armed.
 fn wished(ui: &Ui, pane: &Pane<'_>, picture: HandPicture) -> HandPicture {
     let is_armed = pane.hand().connection.is_armed();
     match aim::wished(ui).filter(|_| !is_armed) {
@@ -91,7 +91,7 @@ fn wished(ui: &Ui, pane: &Pane<'_>, picture: HandPicture) -> HandPicture {
     }
 }
 
-/// Sends a joint where its finger was dragged to, unless it is sent there already.
+/// Sets a joint's target to the dragged position, unless it is the target already.
 fn send(ui: &Ui, pane: &mut Pane<'_>, dof: Dof, share: f32) {
     #[expect(clippy::cast_possible_truncation, reason = "a share of at most 1")]
     let angle = Angle::nearest((share * f32::from(Angle::MAX.get())).round() as i16);
@@ -100,7 +100,7 @@ fn send(ui: &Ui, pane: &mut Pane<'_>, dof: Dof, share: f32) {
     }
 }
 
-/// The drawn hand that nobody turns, over a place of its own.
+/// The drawn hand in its default orientation, which the user cannot turn.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct StillHand(HandView);
 
@@ -113,14 +113,14 @@ impl StillHand {
     }
 }
 
-/// A hand as it is known now, with what its fingertips feel.
+/// Picture of a hand from its current state, with the load on its fingertips.
 pub(crate) fn picture(state: &Hand, tips: &PerFinger<Option<Tip>>, now: Moment) -> HandPicture {
     let angle = state.readings.sample.angle;
     let actual = PerDof::from_fn(|dof| {
         let raw = angle?.value[dof].documented()?;
         Some(f32::from(raw) / 1000.0)
     });
-    // What this window does not send joint by joint stands in the hand's own register.
+    // Targets that this window does not set joint by joint are read from the hand's own register.
     let told = matches!(state.activity(), Activity::Series | Activity::Following(_));
     let register = state.readings.sample.angle_set.filter(|_| told);
     let target = PerDof::from_fn(|dof| {
@@ -141,7 +141,7 @@ pub(crate) fn picture(state: &Hand, tips: &PerFinger<Option<Tip>>, now: Moment) 
     }
 }
 
-/// What hurts the drives; nothing of old values.
+/// Faults and temperatures of the drives; empty for old values.
 fn hurts(state: &Hand, now: Moment) -> PerDof<Hurt> {
     let sample = &state.readings.sample;
     let connected = state.connection.is_live();
@@ -155,7 +155,7 @@ fn hurts(state: &Hand, now: Moment) -> PerDof<Hurt> {
         let protects = status.is_some_and(|group| Status::is_protective(group.value[dof]));
         let degrees = heat.and_then(|group| group.value[dof].documented());
         let warm = degrees.and_then(|degrees| degrees.checked_sub(WARM));
-        // One step from cool: from the first warm degree on it is seen.
+        // Starts one step above cool, so that the first warm degree is visible.
         let heat = warm.map_or(0.0, |over| f32::from(over + 1) / f32::from(HOT - WARM + 1));
         Hurt {
             is_bad: has_fault || protects,
@@ -164,7 +164,7 @@ fn hurts(state: &Hand, now: Moment) -> PerDof<Hurt> {
     })
 }
 
-/// What a fingertip feels; nothing of old values.
+/// Load on a fingertip; empty for old values.
 fn load(tip: &Tip) -> TipLoad {
     if tip.stale {
         return TipLoad::default();
@@ -178,7 +178,7 @@ fn load(tip: &Tip) -> TipLoad {
     }
 }
 
-/// What waits before the built-in hand: its scenario says so. Of any other hand nobody knows.
+/// Object in front of the built-in simulated hand, known from its scenario; `None` for any other hand.
 fn held(endpoint: &Endpoint) -> Option<Held> {
     let Endpoint::Sim { scenario, .. } = endpoint else {
         return None;
@@ -191,14 +191,14 @@ fn held(endpoint: &Endpoint) -> Option<Held> {
     })
 }
 
-/// Says under the picture what a grey finger stands for.
+/// Explains grey fingers under the picture.
 fn unknown_note(ui: &mut Ui, look: Look, picture: Rect) {
     let place = picture.with_min_y(picture.bottom() - theme::PAD);
     let note = kit::Label::note(look, panels::UNKNOWN);
     note.center().put(ui, place);
 }
 
-/// Which hand is drawn, as a button that draws the other one.
+/// A button that names the side drawn and switches to the other one.
 pub(crate) fn side_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let words = look.say(match look.side {
@@ -211,7 +211,7 @@ pub(crate) fn side_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// What a joint is and does when it is dragged, or why it cannot be, with what its fingertip feels.
+/// Description of a joint and its drag, or the reason why it cannot be dragged, with the forces on its fingertip.
 fn said(pane: &Pane<'_>, dof: Dof) -> String {
     let look = pane.look;
     let name = look.say(words::dof(dof));
@@ -223,7 +223,7 @@ fn said(pane: &Pane<'_>, dof: Dof) -> String {
     format!("{}\n{}", look.pair(name, drag), felt(pane, dof.finger()))
 }
 
-/// What a fingertip feels.
+/// Forces on a fingertip, as text.
 pub(crate) fn felt(pane: &Pane<'_>, finger: Finger) -> String {
     let look = pane.look;
     let block = pane.hand().readings.sample.tactile[finger].map(|block| block.value);

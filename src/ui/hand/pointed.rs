@@ -1,18 +1,18 @@
-//! The joint under the pointer: in its row, or in the drawn hand. Each lights up the other. Lasts one frame.
+//! The joint under the pointer, in its row or in the drawn hand. Each highlights the other. Lasts one frame.
 
 use crate::hand::Dof;
 use egui::{Id, Ui};
 
-/// Where a joint is pointed at.
+/// Part of the window in which a joint is hovered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum PointedPlace {
-    /// In the rows of the joints.
+    /// The joint's row.
     Row,
-    /// In the drawn hand.
+    /// The drawn hand.
     Hand,
 }
 
-/// Says that a joint is under the pointer there.
+/// Marks a joint as hovered in this frame.
 pub(crate) fn point(ui: &Ui, place: PointedPlace, dof: Dof) {
     let now = ui.ctx().cumulative_pass_nr();
     let id = Id::unique(("pointed", place));
@@ -21,13 +21,13 @@ pub(crate) fn point(ui: &Ui, place: PointedPlace, dof: Dof) {
         data.insert_temp(id, (dof, now));
         before
     });
-    // What was drawn before this place hears of it in the next frame.
+    // Parts drawn earlier in this frame see it in the next one.
     if before.is_none_or(|(other, at)| other != dof || at + 1 < now) {
         ui.request_repaint();
     }
 }
 
-/// The joint that is under the pointer there, in this frame or in the one before.
+/// Joint hovered in that part, in this frame or the one before.
 pub(crate) fn pointed(ui: &Ui, place: PointedPlace) -> Option<Dof> {
     let now = ui.ctx().cumulative_pass_nr();
     let last = ui.data(|data| data.get_temp::<(Dof, u64)>(Id::unique(("pointed", place))));

@@ -1,4 +1,4 @@
-//! What is to be seen of the hand: where its joints are and shall be, what its fingertips feel, what it holds.
+//! Parts of the hand to draw: joint positions and targets, load on the fingertips, the object held.
 
 use crate::draw::figure::light::{Coat, Part};
 use crate::draw::figure::shape::{self, Held};
@@ -9,65 +9,65 @@ use arrayvec::ArrayVec;
 use egui::Color32;
 use glam::{Affine3, Mat3};
 
-/// A target this near to the actual angle, as a share of the way, has no ghost.
+/// A target this close to the actual angle, as a share of the way, has no ghost.
 const OFF_TARGET_PART: f32 = 0.03;
-/// Length of a force's arrow, and the least force that has one.
+/// Length of a force's arrow, and the minimum force that has one.
 const ARROW_MM_PER_N: f32 = 4.0;
 const ARROW_MAX_MM: f32 = 60.0;
 const ARROW_MIN_N: f32 = 0.1;
-/// How much a shell covers where one looks straight onto it, and what is held.
+/// Opacity of a shell seen frontally, and of the object held.
 const SHELL_PART: f32 = 0.1;
 const HELD_PART: f32 = 0.2;
 
-/// How much light covers what is pointed at, has a fault, is a little warm (twice that if hot), or matters.
+/// Strength of the glow on a hovered part, a faulty one, a slightly warm one (twice that if hot), and a marked one.
 const LIT_PART: f32 = 0.5;
 const BAD_PART: f32 = 0.65;
 const WARM_PART: f32 = 0.3;
 const MARKED_PART: f32 = 0.85;
 
-/// What one fingertip feels.
+/// Load on one fingertip.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct TipLoad {
-    /// Heat of its hottest pad, 0..=1.
+    /// Heat of the hottest pad, 0..=1.
     pub(crate) heat: Option<f32>,
-    /// Newtons out of the pad, towards the tip, and to the right of who looks onto the pad with the tip up.
+    /// Newtons out of the pad, towards the tip, and to the right as seen facing the pad with the tip up.
     pub(crate) force: Option<[f32; 3]>,
 }
 
-/// What hurts a drive.
+/// Fault and temperature of a drive.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Hurt {
-    /// It has a fault, or protects itself.
+    /// The drive has a fault, or protects itself.
     pub(crate) is_bad: bool,
     /// From not warm (0) to hot (1).
     pub(crate) heat: f32,
 }
 
-/// What is to be seen. Angles are shares of the way from bent (0) to open (1).
+/// Content of the picture. Angles are shares of the way from bent (0) to open (1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct HandPicture {
-    /// Which hand.
+    /// Side of the hand.
     pub(crate) side: Side,
-    /// Where the joints are. A finger of which one is unknown is a grey shell, open.
+    /// Actual positions. A finger with an unknown joint is an open grey shell.
     pub(crate) actual: PerDof<Option<f32>>,
-    /// Where they are to go: a ghost where they are not there.
+    /// Target positions, drawn as a ghost where they differ from the actual ones.
     pub(crate) target: PerDof<Option<f32>>,
     /// Draws everything pale: the values are old.
     pub(crate) is_stale: bool,
     /// Heat and force of the fingertips.
     pub(crate) tips: PerFinger<TipLoad>,
-    /// What the simulated hand has before it.
+    /// Object in front of the simulated hand.
     pub(crate) held: Option<Held>,
-    /// What hurts the drives.
+    /// Faults and temperatures of the drives.
     pub(crate) hurts: PerDof<Hurt>,
-    /// The fingers that the pose is about.
+    /// Fingers that characterise the pose.
     pub(crate) marked: PerFinger<bool>,
-    /// The joint that is pointed at somewhere else.
+    /// Joint hovered in another part of the window.
     pub(crate) lit: Option<Dof>,
 }
 
 impl HandPicture {
-    /// A pose and nothing else.
+    /// A pose alone, without targets or load.
     pub(crate) fn of(side: Side, shares: &PerDof<Option<f32>>) -> Self {
         Self {
             side,
@@ -82,12 +82,12 @@ impl HandPicture {
         }
     }
 
-    /// Where the segments are; what is unknown is open.
+    /// Frames of the segments; unknown joints count as open.
     pub(crate) fn pose(&self) -> SegmentFrames {
         SegmentFrames::of_shares(self.side, &self.actual.map(|share| share.unwrap_or(1.0)))
     }
 
-    /// Whether all angles of a finger are known.
+    /// True if all angles of a finger are known.
     pub(crate) fn is_known(&self, finger: Finger) -> bool {
         let mut own = Dof::ALL.into_iter().filter(|dof| dof.finger() == finger);
         own.all(|dof| self.actual[dof].is_some())
@@ -98,13 +98,13 @@ impl HandPicture {
         pair.is_some_and(|(target, actual)| (target - actual).abs() > OFF_TARGET_PART)
     }
 
-    /// Whether a segment is moved by this drive; the thumb's rotation moves all of it.
+    /// True if this drive moves the segment; the thumb's rotation moves all of its segments.
     fn follows(segment: Segment, dof: Dof) -> bool {
         let whole = dof == Dof::ThumbRotate && segment.finger() == Some(Finger::Thumb);
         whole || segment.dof() == Some(dof)
     }
 
-    /// All that is drawn, and the pose it is drawn in.
+    /// All parts to draw, and the pose of the hand.
     pub(crate) fn parts(
         &self,
         palette: &Palette,
@@ -165,14 +165,14 @@ impl HandPicture {
         let heat = self.tips[finger].heat;
         let lit = self.lit.filter(|dof| Self::follows(segment, *dof));
         Coat {
-            // What is not touched keeps the colour of the sensor.
+            // Untouched pads have the colour of the sensor.
             heat: heat.map(|heat| (palette.heat(heat), (heat * 4.0).clamp(0.0, 1.0))),
             glow: self.glow(segment, lit, palette),
             ..Coat::default()
         }
     }
 
-    /// What a segment shines with: what hurts first.
+    /// Colour and strength of a segment's glow: a fault first, then hover, temperature and mark.
     fn glow(
         &self,
         segment: Segment,
@@ -192,7 +192,7 @@ impl HandPicture {
             .or(marked)
     }
 
-    /// The force of a fingertip: out of the pad, leaning as the tangential force does.
+    /// Arrow of a fingertip's force: out of the pad, inclined by the tangential force.
     fn arrow(
         &self,
         pose: &SegmentFrames,
@@ -225,7 +225,7 @@ impl HandPicture {
     }
 }
 
-/// What is not there, but would be: only its rim is seen well.
+/// Coat of a shell, for parts that are not really there: only its rim is clearly visible.
 fn shell(color: Color32) -> Coat {
     Coat {
         glow: Some((color, 1.0)),

@@ -1,4 +1,4 @@
-//! Poses alone, for tiles: each drawn once and kept from frame to frame as long as it is the same.
+//! Pictures of poses for tiles. Each is drawn once and cached for as long as it is shown unchanged.
 
 use crate::app::settings::Theme;
 use crate::draw::figure::camera::{Camera, Turn};
@@ -18,11 +18,11 @@ use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-/// From the thumb's side, where what it touches and holds is seen.
+/// From the thumb's side, where its contacts and grip are visible.
 const THUMB_SIDE: Turn = turn(-0.85, 0.12);
-/// Nearly along the fingers' joints, where a ring of thumb and finger is seen as a ring.
+/// Nearly along the fingers' joints, where a ring of thumb and finger looks like a ring.
 const RING_SIDE: Turn = turn(-1.3, 0.08);
-/// From the side of the little finger, where fingers are seen to hook.
+/// From the side of the little finger, where hooked fingers are visible.
 const LITTLE_SIDE: Turn = turn(1.15, 0.0);
 /// A fist from the front, its thumb across it.
 const FRONT: Turn = turn(0.3, 0.1);
@@ -31,12 +31,12 @@ const THUMB_UP: Turn = Turn {
     roll: FRAC_PI_2,
     ..turn(0.25, 0.1)
 };
-/// How far open a finger is that is straight, half bent (it meets the thumb there), or bent.
+/// Share of the way to open at which a finger counts as straight, half bent (where the thumb meets it), or bent.
 const STRAIGHT: f32 = 0.8;
 const HALF: std::ops::RangeInclusive<f32> = 0.4..=0.6;
 const BENT: f32 = 0.2;
 
-/// A tile is no less than this high on the hand: a fist is not drawn much larger than an open hand.
+/// Minimum height shown in a tile, in millimetres of the hand: a fist is not drawn much larger than an open hand.
 const LEAST_MM: f32 = 145.0;
 
 const fn turn(yaw: f32, pitch: f32) -> Turn {
@@ -47,21 +47,21 @@ const fn turn(yaw: f32, pitch: f32) -> Turn {
     }
 }
 
-/// Draws a pose that changes, for dry runs and editors: the picture holds still while the hand moves in it. `shares` of the way
-/// to open; a finger with an unknown joint is a shell.
+/// Draws a changing pose, for dry runs and editors, with a fixed viewpoint. `shares` of the way to open; a finger with an unknown
+/// joint is a shell.
 pub(crate) fn pose_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
     Tile::new(ui, look, rect, shares).paint(ui, rect);
 }
 
-/// Draws a pose that is to be told from others at the size of a button: from where its fingers are seen best, those that matter
-/// in colour.
+/// Draws a pose to be recognised at the size of a button: from its best viewpoint, with the fingers that characterise it in
+/// colour.
 pub(crate) fn sign_ui(ui: &Ui, look: Look, rect: Rect, shares: &PerDof<Option<f32>>) {
     let mut tile = Tile::new(ui, look, rect, shares);
     tile.is_sign = true;
     tile.paint(ui, rect);
 }
 
-/// What stands in an empty list: a hand, opened by `share` (0 closed, 1 open), over a title. The caller centres it.
+/// Page of an empty list: a hand, opened by `share` (0 closed, 1 open), over a title. The caller centres it.
 pub(crate) fn empty_page_ui(ui: &mut Ui, look: Look, share: f32, title: Text) {
     ui.add_space(ui.available_height() * 0.2);
     let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
@@ -69,7 +69,7 @@ pub(crate) fn empty_page_ui(ui: &mut Ui, look: Look, share: f32, title: Text) {
     Label::said(look, title).title().ui(ui);
 }
 
-/// What a tile shows, and how.
+/// Cache key of a tile: its content and appearance.
 #[derive(Clone, Copy, Hash)]
 struct Tile {
     side: Side,
@@ -126,7 +126,7 @@ impl ComputerMut<Tile, Arc<Mesh>> for PoseTiles {
     }
 }
 
-/// Draws a pose as large as it is, without its wrist, in light colours.
+/// Draws a pose at its full size, without the wrist, in light colours.
 fn draw_sign(
     sketch: &mut Sketch,
     mut picture: HandPicture,
@@ -161,7 +161,7 @@ fn draw_sign(
     fade_out(&camera, mesh);
 }
 
-/// From where a pose is seen best, and which fingers it is about: those that touch, else those that are straight.
+/// Returns the best viewpoint of a pose, and the fingers that characterise it: those in contact, else the straight ones.
 fn seen_best(shares: &PerDof<Option<f32>>) -> (Turn, PerFinger<bool>) {
     let share = |dof: Dof| shares[dof].unwrap_or(1.0);
     let bend = |finger: Finger| share(finger.bend());
@@ -175,7 +175,7 @@ fn seen_best(shares: &PerDof<Option<f32>>) -> (Turn, PerFinger<bool>) {
     }
     let is_fist = others().all(|finger| bend(finger) < BENT);
     if is_fist && thumb < BENT && swing > 0.5 {
-        // The thumb lies against the side of the index.
+        // The thumb is against the side of the index.
         let marked = PerFinger::from_fn(|finger| is_thumb(finger) || finger == Finger::Index);
         return (THUMB_SIDE, marked);
     }

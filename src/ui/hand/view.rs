@@ -1,5 +1,4 @@
-//! From where the hand is looked at, and what a drag on it does: it turns the picture, or takes a finger along. Drawn again only
-//! when something of it changed.
+//! Viewpoint of the hand, and dragging on it, which turns the picture or moves a finger. Redrawn only when something changed.
 
 use crate::app::settings::Theme;
 use crate::draw::figure::camera::{Camera, REACH, Turn};
@@ -14,29 +13,28 @@ use egui::{CursorIcon, Mesh, Pos2, Rect, Response, Shape, Ui};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// From where the hand is looked at if nobody turned it: from the side of the little finger and a little below, so that
-/// bending is seen as bending, and a pinch as a ring.
+/// Default viewpoint: from the side of the little finger and slightly below, so that bending and a pinch's ring are visible.
 pub(crate) const TURN: Turn = Turn {
     yaw: 0.45,
     pitch: -0.18,
     roll: 0.0,
 };
-/// Radians of turning for a point of dragging, and how far it can be tipped.
+/// Rotation per point of dragging, and maximum pitch, in radians.
 const TURN_RAD: f32 = 0.01;
 const PITCH_MAX_RAD: f32 = 1.2;
-/// How far old values fade towards the card.
+/// Blend of old values towards the card's colour.
 const STALE_PART: f32 = 0.55;
-/// Height of a picture below which fewer triangles do.
+/// Height of a picture below which fewer triangles suffice, in points.
 const SMALL_POINTS: f32 = 110.0;
-/// Where such a picture ends below.
+/// Lower end of such a picture, in millimetres of the hand.
 pub(crate) const CUT_MM: f32 = 42.0;
-/// Over how much of the palm it fades there.
+/// Length over which the palm fades out there.
 const FADE_MM: f32 = 34.0;
 
-/// From where a hand is looked at, and what was drawn last.
+/// Viewpoint of a hand, and the last drawn picture.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HandView {
-    /// Nobody turned it where there is none.
+    /// Viewpoint set by the user; `None` = the default one.
     pub(crate) turn: Option<Turn>,
     pub(crate) drawn: Option<(HandPicture, DrawSettings)>,
     drag: HandDrag,
@@ -44,29 +42,29 @@ pub(crate) struct HandView {
     mesh: Arc<Mesh>,
 }
 
-/// What the drag of now does.
+/// Effect of the current drag.
 #[derive(Debug, Clone, Copy, Default)]
 enum HandDrag {
     /// Turns the picture.
     #[default]
     Turns,
-    /// Takes a finger along.
+    /// Moves a finger.
     Moves(FingerDrag),
-    /// Nothing: its finger could not be moved any more.
+    /// None: its finger cannot be moved any longer.
     Over,
 }
 
-/// Where and how a picture is drawn.
+/// Viewpoint, position and appearance of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct DrawSettings {
     pub(crate) turn: Turn,
     pub(crate) rect: Rect,
     pub(crate) theme: Theme,
-    /// Points of a pixel: the width of soft edges.
+    /// Points per pixel: the width of soft edges.
     pub(crate) feather: f32,
 }
 
-/// What is drawn where, and which joints a drag may move.
+/// Position and content of a picture, and the joints that a drag may move.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HandStage<'a> {
     pub(crate) rect: Rect,
@@ -75,29 +73,29 @@ pub(crate) struct HandStage<'a> {
     pub(crate) movable: PerDof<bool>,
 }
 
-/// What the user does with the picture.
+/// The user's interaction with the picture.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct HandUse {
-    /// The joint under the pointer, or the one that is dragged.
+    /// Joint under the pointer, or the dragged one.
     pub(crate) joint: Option<Dof>,
-    /// Where a joint is dragged to, as a share of the way to open.
+    /// Dragged joint with its position, as a share of the way to open.
     pub(crate) moved: Option<(Dof, f32)>,
 }
 
-/// Where the picture has what its figures belong to.
+/// Anchor points in the picture for the labels.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HandPoints {
     pub(crate) tips: PerFinger<Pos2>,
-    /// Where the fingers begin. They do not move.
+    /// Bases of the fingers, which do not move.
     pub(crate) knuckles: PerFinger<Pos2>,
-    /// What the hand fills in all poses.
+    /// Area that the hand covers over all poses.
     pub(crate) bounds: Rect,
-    /// The thumb is at the right.
+    /// The thumb is on the right.
     pub(crate) is_forward: bool,
 }
 
 impl HandView {
-    /// Draws the hand. A drag moves a joint that is movable, else it turns the picture; a double click turns it back.
+    /// Draws the hand. A drag moves a movable joint, else it turns the picture; a double click resets the viewpoint.
     pub(crate) fn ui(&mut self, ui: &Ui, response: &Response, stage: &HandStage<'_>) -> HandUse {
         if response.drag_started() {
             let origin = ui.input(|input| input.pointer.press_origin());
@@ -136,7 +134,7 @@ impl HandView {
         used
     }
 
-    /// Takes hold of what was drawn at a place.
+    /// Grabs the part drawn at a position; `None` if no joint moves it.
     fn grip(&self, at: Pos2) -> Option<FingerDrag> {
         let (picture, setting) = self.drawn.as_ref()?;
         let seen = self.sketch.segment_at(&self.mesh, at)?;
@@ -169,7 +167,7 @@ impl HandView {
         HandUse::default()
     }
 
-    /// Draws the hand as it was turned last.
+    /// Draws the hand from its current viewpoint.
     pub(crate) fn paint(&mut self, ui: &Ui, rect: Rect, palette: &Palette, picture: &HandPicture) {
         let setting = DrawSettings {
             turn: self.turn(picture.side),
@@ -187,7 +185,7 @@ impl HandView {
             .add(Shape::Mesh(Arc::clone(&self.mesh)));
     }
 
-    /// Where the picture has what its figures belong to.
+    /// Anchor points of the last drawn picture; `None` before the first one.
     pub(crate) fn points(&self) -> Option<HandPoints> {
         let (picture, setting) = self.drawn.as_ref()?;
         let (camera, pose) = (setting.camera(picture.side), picture.pose());
@@ -215,9 +213,9 @@ impl HandView {
 }
 
 impl DrawSettings {
-    /// From where this hand is seen: it never jumps while the hand moves.
+    /// Camera of this picture. It never jumps while the hand moves.
     pub(crate) fn camera(&self, side: Side) -> Camera {
-        // A small picture leaves the wrist out, for the sake of the fingers.
+        // A small picture omits the wrist to give the fingers more room.
         let least = if self.is_small() { CUT_MM } else { f32::MIN };
         let mirror = side.frame();
         let reach = REACH
@@ -255,7 +253,7 @@ pub(crate) fn draw(
     }
 }
 
-/// Lets a picture end softly at its wrist.
+/// Fades a picture out at its wrist.
 pub(crate) fn fade_out(camera: &Camera, mesh: &mut Mesh) {
     let [cut, full] = [CUT_MM, CUT_MM + FADE_MM].map(|z| camera.place(Vec3::Z * z));
     let way = full - cut;

@@ -1,4 +1,4 @@
-//! All hands side by side: of each the drawn hand, its state, and what its joints do now.
+//! All hands side by side, each with its drawn hand, state, and current measurements.
 
 use crate::app::hands::Hand;
 use crate::app::settings::PlotKind;
@@ -13,27 +13,27 @@ use crate::ui::theme;
 use egui::{Align, Layout, ScrollArea, Ui, UiBuilder, vec2};
 use std::collections::BTreeMap;
 
-/// A column is no narrower: the plots would have no room beside their numbers.
+/// Minimum column width: the plots need space beside their numbers.
 const COLUMN_LEAST: f32 = 272.0;
-/// Height of a plot, as a part of its column, and at least.
+/// Height of a plot, as a share of its column, and its minimum.
 const PLOT_PART: f32 = 0.24;
 const PLOT_LEAST: f32 = 96.0;
-/// What is drawn of each hand, from top to bottom.
+/// Plots of each hand, from top to bottom.
 const PLOTS: [PlotKind; 2] = [PlotKind::Force, PlotKind::Angle];
 
-/// What one column needs between frames.
+/// View state of one column.
 #[derive(Debug, Default)]
 struct HandColumn {
     picture: StillHand,
     charts: ChartView,
 }
 
-/// What the columns need between frames, each of its own hand.
+/// View state of the columns, by hand.
 #[derive(Debug, Default)]
 pub(crate) struct BesideView(BTreeMap<SlotId, HandColumn>);
 
 impl BesideView {
-    /// Draws a column for each hand; those for which there is no room are scrolled to.
+    /// Draws a column for each hand, with a scroll bar if they do not all fit.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let hands = &pane.state.hands;
         self.0
@@ -47,7 +47,7 @@ impl BesideView {
             ui.horizontal_top(|ui| {
                 for (at, hand) in hands.iter().enumerate() {
                     let (_, rect) = ui.allocate_space(vec2(width, height));
-                    // What is scrolled away is not computed.
+                    // Columns scrolled out of view are not computed.
                     if !ui.is_rect_visible(rect) {
                         continue;
                     }

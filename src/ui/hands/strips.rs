@@ -1,4 +1,4 @@
-//! A strip for each hand below the header, with its state and a STOP of its own. Only where there are several.
+//! A strip for each hand below the header, with its state and a STOP of its own. Shown only with several hands.
 
 use crate::app::action::Action;
 use crate::app::hands::Hand;
@@ -16,17 +16,17 @@ use egui::{Color32, Rect, Ui, pos2, vec2};
 
 /// Height of a strip.
 const STRIP: f32 = 44.0;
-/// No strip is wider; where there is no room for so much, there are two rows of them.
+/// Maximum and minimum width of a strip; if a row of minimum width does not fit, there are two rows.
 const WIDTH_MAX: f32 = 280.0;
 const WIDTH_LEAST: f32 = 140.0;
-/// Width of its STOP.
+/// Width of a strip's STOP.
 const STOP: f32 = 60.0;
-/// Room for the number of a hand.
+/// Width of a hand's number.
 const NUMBER: f32 = 18.0;
 /// Width of the switch at the right end.
 const SWITCH: f32 = 108.0;
 
-/// How the strips are laid out: so many in a row, each as wide as this.
+/// Layout of the strips: number in a row, and width of each.
 struct StripRows {
     in_row: usize,
     width: f32,
@@ -49,7 +49,7 @@ impl StripRows {
     }
 }
 
-/// Height of the strips of so many hands, with the room around them.
+/// Height of the strips of `count` hands, with the space around them.
 pub(crate) fn height(room: f32, count: usize) -> f32 {
     if StripRows::of(room, count).in_row < count {
         2.0 * STRIP + 2.0 * theme::GAP
@@ -58,21 +58,20 @@ pub(crate) fn height(room: f32, count: usize) -> f32 {
     }
 }
 
-/// What the strip and the column of a hand say of it.
+/// Texts for the strip and the column of a hand.
 pub(crate) struct HandWords {
-    /// Its number in the window, by which a key shows it.
+    /// Number in the window, which is also the key that shows it.
     pub(crate) number: usize,
-    /// What it is called.
     pub(crate) name: String,
-    /// How its link stands and whether something moves it, or that it does not stop.
+    /// State of its link and whether it is being moved, or the alarm that it does not stop.
     pub(crate) state: String,
     pub(crate) color: Color32,
-    /// Left or right, as a letter and in words.
+    /// Left or right, as a letter and as a word.
     pub(crate) side: [Text; 2],
 }
 
 impl HandWords {
-    /// Of the hand with this index.
+    /// Texts of the hand with this index.
     pub(crate) fn of(look: Look, at: usize, hand: &Hand, now: Moment) -> Self {
         let (state, color) = match hand.connection.status.hold {
             Hold::Alarm { .. } => (main::ALARM_TITLE, look.palette.bad),
@@ -101,8 +100,8 @@ impl HandWords {
     }
 }
 
-/// Draws the strips. A STOP can be pressed whatever card is open, the rest only if `is_free`. True if the switch was pressed that
-/// shows all hands side by side, which `shows_all` tells to be on.
+/// Draws the strips. A STOP is enabled whatever card is open, the rest only if `is_free`. `shows_all` is the state of the switch
+/// that shows all hands side by side. True if that switch was clicked.
 pub(crate) fn strips_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool, shows_all: bool) -> bool {
     let look = pane.look;
     let place = ui.available_rect_before_wrap();
@@ -141,7 +140,7 @@ struct HandStrip {
     slot: SlotId,
     words: HandWords,
     rect: Rect,
-    /// More than its STOP can be pressed.
+    /// Controls other than STOP are enabled.
     is_free: bool,
 }
 

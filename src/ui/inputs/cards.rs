@@ -1,4 +1,4 @@
-//! Each way in and out besides the window, a card each: its switch, where it is, how it goes, and whether it may move the hand.
+//! A card for each input and output besides the window: switch, address, state, and control of the hand.
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
@@ -15,10 +15,10 @@ use crate::ui::theme;
 use egui::Ui;
 use std::net::{IpAddr, SocketAddr};
 
-/// No card is narrower, but where the window is.
+/// Minimum width of a card, unless the window is narrower.
 const CARD_LEAST: f32 = 320.0;
 
-/// What was typed.
+/// Text in progress.
 #[derive(Debug)]
 pub(crate) struct SourceCards {
     stream: String,
@@ -29,7 +29,7 @@ pub(crate) struct SourceCards {
 }
 
 impl Default for SourceCards {
-    /// This computer only, unless the user says otherwise.
+    /// Loopback by default; other addresses are the user's choice.
     fn default() -> Self {
         Self {
             stream: "127.0.0.1:6010".into(),
@@ -41,7 +41,7 @@ impl Default for SourceCards {
     }
 }
 
-/// What a card is about.
+/// Source that a card is about.
 #[derive(Debug, Clone, Copy)]
 enum SourceCard {
     Stream,
@@ -54,7 +54,7 @@ enum SourceCard {
 }
 
 impl SourceCards {
-    /// Draws all.
+    /// Draws all cards.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         use SourceCard::{Dds, Exhibition, Gateway, Mirror, Pad, Stream, Viewers};
         let mirror = pane.state.hands.is_several().then_some(Mirror);
@@ -222,7 +222,7 @@ impl SourceCards {
     }
 }
 
-/// The page for visitors, and how it is begun.
+/// Draws the card that starts the page for visitors.
 fn exhibition_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::head_ui(ui, look, look.say(exhibit::ENTER), |_| ());
@@ -250,7 +250,7 @@ fn socket(at: SocketAddr) -> (IpAddr, String) {
     (at.ip(), at.to_string())
 }
 
-/// Where something is open, or is to be.
+/// Address at which a source is open or will be opened.
 struct PlaceField {
     look: Look,
     name: Text,
@@ -278,7 +278,7 @@ impl PlaceField {
     }
 }
 
-/// How often something happened, in small words.
+/// Draws event counts in small text.
 fn counts_ui(ui: &mut Ui, pane: &Pane<'_>, counts: impl IntoIterator<Item = (Text, u64)>) {
     let look = pane.look;
     let counts = counts.into_iter();
@@ -287,7 +287,7 @@ fn counts_ui(ui: &mut Ui, pane: &Pane<'_>, counts: impl IntoIterator<Item = (Tex
     kit::say_ui(ui, &counts.join("  ·  "), look.palette.muted);
 }
 
-/// Why nobody can be followed now, if nobody sends.
+/// Reason why there is nothing to follow: no sender. `None` if there is one.
 fn silence(pane: &Pane<'_>, owner: Option<Owner>) -> Option<&'static str> {
     let is_silent = owner.is_none();
     is_silent.then(|| pane.look.say(inputs::NOBODY_SENDS))

@@ -1,4 +1,4 @@
-//! Another hand of this window that can lead the shown one: which one, how much of it is followed, and whether it may.
+//! Another hand of this window as leader of the shown one: which hand, scale, and control.
 
 use crate::app::action::Action;
 use crate::app::inputs::HandMirror;
@@ -12,10 +12,10 @@ use crate::ui::kit::{self, Label, NumberField, Pane};
 use crate::ui::text::{Text, inputs};
 use egui::Ui;
 
-/// Width of the names.
+/// Width of the captions.
 const NAME: f32 = 100.0;
 
-/// Draws the switch, the choice, how the other hand answers, and whether it may lead.
+/// Draws the switch, the choice of leader, the state of the other hand, and the grant of control.
 pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     let mirror = state.hand().inputs.mirror.as_ref();
@@ -58,7 +58,7 @@ fn others(state: &State) -> Vec<(SlotId, String)> {
         .collect()
 }
 
-/// Which hand leads, and which share of its bends is followed.
+/// Draws the choice of the leader, and of the share of its bends that is followed.
 fn choice_ui(ui: &mut Ui, pane: &mut Pane<'_>, mirror: Option<&HandMirror>) {
     let (look, state) = (pane.look, pane.state);
     let all = others(state).into_iter();
@@ -92,7 +92,7 @@ fn choice_ui(ui: &mut Ui, pane: &mut Pane<'_>, mirror: Option<&HandMirror>) {
     }
 }
 
-/// Why the other hand may not lead the shown one now.
+/// Reason why the other hand cannot lead the shown one now; `None` if it can.
 fn missing(state: &State, mirror: Option<&HandMirror>) -> Option<Text> {
     let hand = state.hand();
     match mirror {

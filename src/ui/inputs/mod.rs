@@ -1,4 +1,4 @@
-//! What besides the window moves the hand, and who reads it.
+//! Inputs besides the window that may move the hand, and readers of its data.
 
 mod cards;
 mod mirror_card;

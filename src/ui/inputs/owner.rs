@@ -1,4 +1,4 @@
-//! Who may move the hand now, how that goes, its end, and within which limits.
+//! Current owner of the hand: its state, the button that ends its control, and the limits that apply to it.
 
 use crate::app::action::Action;
 use crate::app::inputs::InputAction;
@@ -11,7 +11,7 @@ use crate::ui::text::{inputs, words};
 use crate::ui::theme;
 use egui::Ui;
 
-/// Who may move the hand now with its end in one line, and what holds for whoever moves it.
+/// Draws the owner with its end button on one line, and the limits for any owner.
 pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {
@@ -78,7 +78,7 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// Who moves the hand from outside, with name and rate, for every view.
+/// Name and rate of the external owner, for every view.
 pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
     let look = pane.look;
     let hand = pane.hand();
@@ -118,7 +118,7 @@ pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
     }
 }
 
-/// What the hand in this slot is called, with its number; `None` without a hand.
+/// Name of the hand in this slot, with its number; `None` without a hand.
 pub(crate) fn leader_name(state: &State, slot: SlotId) -> Option<String> {
     let mut all = state.hands.iter().enumerate();
     let (at, hand) = all.find(|(_, hand)| hand.label.slot == slot)?;

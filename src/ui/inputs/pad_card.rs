@@ -1,4 +1,4 @@
-//! The gamepad: which one is there, what its controls do, and where it wants the hand.
+//! The gamepad: device, assignment of its controls, and the pose it requests.
 
 use crate::app::action::Action;
 use crate::app::inputs::{InputAction, InputKind, InputSource};
@@ -16,18 +16,18 @@ use crate::ui::text::{errors, inputs};
 use crate::ui::theme;
 use egui::{Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
-/// The drawn hand needs at least this width, and has this height.
+/// Minimum width of the drawn hand, and its height.
 const HAND_LEAST: f32 = 180.0;
 const HAND: f32 = 380.0;
 
-/// The card, and the control that was chosen.
+/// View state of the card: the selected control.
 #[derive(Debug, Default)]
 pub(crate) struct PadCard {
     chosen: Option<PadControl>,
 }
 
 impl PadCard {
-    /// Draws it, once there is a gamepad.
+    /// Draws the card, if a gamepad is connected.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let view = pane.hand().inputs.pad_view.as_ref();
@@ -60,7 +60,7 @@ impl PadCard {
     }
 }
 
-/// Draws whether gamepads are looked for, which one is there, and whether it may move the hand.
+/// Draws the switch for reading gamepads, the device found, and the grant of control.
 pub(crate) fn pad_source_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let view = pane.hand().inputs.pad_view.as_ref();
@@ -86,7 +86,7 @@ pub(crate) fn pad_source_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     grant_ui(ui, pane, InputSource::Pad, missing);
 }
 
-/// The poses that a button can have.
+/// Poses that can be assigned to a button.
 fn pose_names(state: &State, look: Look) -> Vec<PoseName> {
     let poses = state.poses.poses(&state.settings.hidden_poses);
     let named = poses.map(|pose| PoseName {
@@ -99,7 +99,7 @@ fn pose_names(state: &State, look: Look) -> Vec<PoseName> {
     named.collect()
 }
 
-/// Where the gamepad wants the hand, drawn, whether it may move it or not; joints that it leaves alone are where they are.
+/// Draws the hand in the pose that the gamepad requests, with or without control; joints it leaves unchanged are at their actual angles.
 fn dry_run_ui(ui: &mut Ui, pane: &Pane<'_>, view: &PadView) {
     let room = ui.available_width();
     if room < HAND_LEAST {

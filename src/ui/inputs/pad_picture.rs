@@ -1,5 +1,5 @@
-//! A gamepad as a picture: what is held lights up, sticks and triggers show how far they are, and beside it stands what each
-//! control does. A control that is clicked is chosen.
+//! Picture of a gamepad: held controls are highlighted, sticks and triggers show their deflection, and rows beside it show the
+//! action of each control. A click selects a control.
 
 use crate::hand::Dof;
 use crate::inputs::pad::input::FingerChoice;
@@ -14,14 +14,14 @@ use egui::{
     StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
-/// Height of a row that says what a control does.
+/// Height of a row.
 const ROW: f32 = 30.0;
-/// Width of the sign of a control in its row, and of the amount at its end.
+/// Width of a control's symbol in its row, and of the amount at the row's end.
 const BADGE: f32 = 40.0;
 const AMOUNT: f32 = 46.0;
-/// Points of a unit of the picture: never smaller than what a finger hits, and no poster.
+/// Minimum and maximum points per unit of the picture: large enough to hit with a finger, but no poster.
 const SCALE: [f32; 2] = [0.75, 1.5];
-/// The controls whose rows stand at the left, from the top; all others stand at the right.
+/// Controls with rows on the left, from the top; all others are on the right.
 const AT_LEFT: [PadControl; 9] = [
     PadControl::LeftTrigger,
     PadControl::LeftBumper,
@@ -46,32 +46,32 @@ const AT_RIGHT: [PadControl; 10] = [
     PadControl::RightStickPress,
 ];
 
-/// What a pose is called, in files and in the window's language.
+/// Name of a pose, in files and in the window's language.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct PoseName {
-    /// In files and maps.
+    /// Name in files and maps.
     pub(crate) name: String,
-    /// On screen.
+    /// Name on screen.
     pub(crate) shown: String,
 }
 
-/// What is shown of a gamepad.
+/// Content of the picture.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PadShown<'a> {
-    /// Where its controls are; `None` without a gamepad.
+    /// State of the controls; `None` without a gamepad.
     pub(crate) state: Option<&'a PadState>,
-    /// What they do.
+    /// Actions of the controls.
     pub(crate) map: &'a PadMap,
-    /// The control that is being changed.
+    /// The control being edited.
     pub(crate) chosen: Option<PadControl>,
-    /// The fingers that a trigger closes.
+    /// Fingers that a trigger closes.
     pub(crate) fingers: FingerChoice,
-    /// The poses that a button can go to.
+    /// Poses that can be assigned to a button.
     pub(crate) poses: &'a [PoseName],
 }
 
 impl PadShown<'_> {
-    /// What a control does, in words.
+    /// Action of a control as text.
     pub(crate) fn does(&self, look: Look, action: &PadAction) -> String {
         let PadAction::Pose(name) = action else {
             return look.say(inputs::action(action)).to_owned();
@@ -86,7 +86,7 @@ impl PadShown<'_> {
         self.state.is_some_and(|state| state.is_held(control))
     }
 
-    /// How far a control is from rest: 0 to 1.
+    /// Deflection of a control from rest, 0..=1.
     fn amount(&self, control: PadControl) -> f32 {
         let Some(state) = self.state else { return 0.0 };
         match control.kind() {
@@ -96,7 +96,7 @@ impl PadShown<'_> {
         }
     }
 
-    /// Where a stick is, as the screen has it: 1 is its whole way.
+    /// Deflection of a stick in screen directions, of length 1 at most.
     fn way(&self, stick: PadControl) -> Vec2 {
         let place = self.state.map(|state| state.stick(stick));
         let place = place.unwrap_or_default();
@@ -104,13 +104,13 @@ impl PadShown<'_> {
         way / way.length().max(1.0)
     }
 
-    /// Whether it is drawn as one that does something.
+    /// True if the control has an action.
     fn is_used(&self, control: PadControl) -> bool {
         *self.map.action(control) != PadAction::Nothing
     }
 }
 
-/// Draws the gamepad between what its controls do. The control that was clicked, if one was.
+/// Draws the gamepad between the rows of its controls. Returns the control that was clicked.
 pub(crate) fn pad_picture_ui(ui: &mut Ui, look: Look, shown: &PadShown<'_>) -> Option<PadControl> {
     let [left, right] = [&AT_LEFT[..], &AT_RIGHT].map(|side| PadRows::of(ui, look, shown, side));
     let [least, most] = SCALE;
@@ -125,13 +125,13 @@ pub(crate) fn pad_picture_ui(ui: &mut Ui, look: Look, shown: &PadShown<'_>) -> O
     row.inner
 }
 
-/// The controls of one side that do something, and what.
+/// Rows of the controls on one side that have an action.
 struct PadRows {
     rows: Vec<PadRow>,
     width: f32,
 }
 
-/// What one control does.
+/// Row of one control, with its action.
 struct PadRow {
     control: PadControl,
     words: String,
@@ -169,7 +169,7 @@ impl PadRows {
     }
 }
 
-/// Names a control with what it does, and explains that.
+/// Sets the accessible name and tooltip of a control from its action.
 fn named(response: &Response, look: Look, control: PadControl, shown: &PadShown<'_>) -> Response {
     let action = shown.map.action(control);
     let name = look.say(inputs::control(control));
@@ -183,7 +183,7 @@ fn named(response: &Response, look: Look, control: PadControl, shown: &PadShown<
 }
 
 impl PadRow {
-    /// Its sign as on the gamepad, words, how far it is.
+    /// Paints the control's symbol, action and deflection.
     fn paint(&self, ui: &Ui, look: Look, shown: &PadShown<'_>, response: &Response) {
         let (control, rect, palette) = (self.control, response.rect, look.palette);
         let ground = match (shown.chosen == Some(control), response.hovered()) {
@@ -221,7 +221,7 @@ impl PadRow {
     }
 }
 
-/// The sign of a control, as it stands on an Xbox pad.
+/// Symbol of a control, as printed on an Xbox pad.
 const fn sign(control: PadControl) -> &'static str {
     match control {
         PadControl::South => "A",
@@ -246,7 +246,7 @@ const fn sign(control: PadControl) -> &'static str {
     }
 }
 
-/// The colours of one control.
+/// Colours of one control.
 #[derive(Debug, Clone, Copy)]
 struct Ink {
     fill: Color32,
@@ -255,7 +255,7 @@ struct Ink {
 }
 
 impl Ink {
-    /// By what it does and whether it is held. STOP is red and the dead-man has the colour of an armed hand, always.
+    /// Depends on action and state. STOP is always red, and the dead-man always has the colour of an armed hand.
     fn of(look: Look, control: PadControl, shown: &PadShown<'_>) -> Self {
         let palette = look.palette;
         let is_held = shown.is_held(control);
@@ -293,7 +293,7 @@ fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<P
         origin: rect.min - CANVAS.min.to_vec2() * scale,
         scale,
     };
-    // What lies behind the body comes first.
+    // Parts behind the body are drawn first.
     let behind = [
         PadControl::LeftTrigger,
         PadControl::RightTrigger,
@@ -318,7 +318,7 @@ fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<P
     let mut clicked = None;
     for control in PadControl::ALL {
         let place = drawing.rect(place(control));
-        // Round controls that stand askew have corners in common.
+        // Round controls placed diagonally overlap in their corners.
         let inner = match control.kind() {
             ControlKind::Button => place.shrink(1.5),
             _ => place,
@@ -342,7 +342,7 @@ fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<P
     clicked
 }
 
-/// Where the gamepad is drawn, and with what.
+/// Position and content of the drawing.
 struct Drawing<'a> {
     ui: &'a Ui,
     look: Look,
@@ -411,7 +411,7 @@ impl Drawing<'_> {
             .text(rect.center(), center, sign(control), font, color);
     }
 
-    /// Filled from the bottom as far as it is pressed.
+    /// Draws a trigger, filled from the bottom by its deflection.
     fn trigger(&self, control: PadControl, rect: Rect, ink: Ink) {
         let palette = self.look.palette;
         self.plate(rect, 10.0, ink);
@@ -430,7 +430,7 @@ impl Drawing<'_> {
         self.sign(control, rect, ink.text);
     }
 
-    /// A cap that moves in its well.
+    /// Draws a cap that moves in its well.
     fn stick(&self, control: PadControl, rect: Rect, ink: Ink) {
         let (palette, painter) = (self.look.palette, self.ui.painter());
         let (center, radius) = (rect.center(), rect.width() / 2.0);
@@ -462,7 +462,7 @@ impl Drawing<'_> {
         self.sign(control, sign_at, text);
     }
 
-    /// Four arcs around a stick in the colours of the fingers; those that a trigger closes are strong.
+    /// Draws four arcs around a stick in the colours of the fingers; those closed by a trigger are bold.
     fn fingers(&self, center: Pos2, radius: f32) {
         let palette = self.look.palette;
         for (finger, middle) in [
@@ -488,7 +488,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Marks that a stick pushes left and right.
+    /// Draws arrows for a stick that is pushed left and right.
     fn both_ways(&self, center: Pos2, radius: f32) {
         let color = self.look.palette.dof[Dof::ThumbRotate];
         for side in [-1.0, 1.0] {
@@ -505,7 +505,7 @@ impl Drawing<'_> {
     }
 }
 
-/// A closed line filled row by row: egui fills only what is nowhere hollow. The line's own stroke hides the steps.
+/// Fills a closed outline row by row, because egui fills only convex shapes. The outline's own stroke hides the steps.
 fn filled(outline: &[Pos2], color: Color32) -> Mesh {
     let bounds = Rect::from_points(outline);
     let mut mesh = Mesh::default();
@@ -531,7 +531,7 @@ fn filled(outline: &[Pos2], color: Color32) -> Mesh {
     mesh
 }
 
-/// Thousandths as a part of one.
+/// Converts thousandths to a share of one.
 fn share(thousandths: i16) -> f32 {
     f32::from(thousandths) / f32::from(FULL)
 }

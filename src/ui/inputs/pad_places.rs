@@ -1,30 +1,30 @@
-//! Where everything is on the drawn gamepad, in units of its own: the middle of the pad is 0, and down is positive.
+//! Layout of the drawn gamepad, in its own units: the origin is the middle of the pad, and positive y is down.
 
 use crate::inputs::pad::PadControl;
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
-/// All that is drawn.
+/// Extent of the drawing.
 pub(crate) const CANVAS: Rect = Rect {
     min: pos2(-202.0, -152.0),
     max: pos2(202.0, 144.0),
 };
-/// The radius of a face button.
+/// Radius of a face button.
 pub(crate) const FACE: f32 = 14.0;
-/// The radius of a stick's well, and of its cap.
+/// Radius of a stick's well, and of its cap.
 pub(crate) const WELL: f32 = 31.0;
 pub(crate) const CAP: f32 = 15.0;
-/// How far a cap moves.
+/// Travel of a cap.
 pub(crate) const CAP_WAY: f32 = 8.0;
-/// How far a face button is from the middle of the four.
+/// Distance of a face button from the middle of the four.
 const FACE_WAY: f32 = 28.0;
 const FACES: Vec2 = vec2(106.0, -24.0);
 const CROSS: Vec2 = vec2(-50.0, 30.0);
-/// Half an arm of the cross, across.
+/// Half the width of an arm of the cross.
 const ARM: f32 = 9.0;
-/// How far an arm reaches.
+/// Length of an arm from the middle.
 const ARM_WAY: f32 = 27.0;
 
-/// Corners around the right half of the body, from the top to the bottom; they are rounded.
+/// Corners of the right half of the body, from top to bottom, before rounding.
 const HALF: [[f32; 2]; 15] = [
     [0.0, -80.0],
     [62.0, -80.0],
@@ -42,10 +42,10 @@ const HALF: [[f32; 2]; 15] = [
     [56.0, 74.0],
     [0.0, 74.0],
 ];
-/// How often corners are cut.
+/// Number of corner-cutting passes.
 const ROUNDED: u8 = 3;
 
-/// The middle and the size of a control.
+/// Bounding rectangle of a control.
 pub(crate) fn place(control: PadControl) -> Rect {
     let face = |way: Vec2| square(FACES + FACE_WAY * way, FACE);
     let (middle, size) = match control {
@@ -72,7 +72,7 @@ pub(crate) fn place(control: PadControl) -> Rect {
     Rect::from_center_size(middle.to_pos2(), size)
 }
 
-/// The middle of the cross, which moves nothing.
+/// The middle of the cross, which does not react.
 pub(crate) fn cross_middle() -> Rect {
     square(CROSS, ARM)
 }
@@ -88,11 +88,11 @@ fn arm(way: Vec2) -> Rect {
     Rect::from_points(&[(near - across).to_pos2(), (far + across).to_pos2()])
 }
 
-/// The body, round about.
+/// Outline of the body.
 pub(crate) fn outline() -> Vec<Pos2> {
     let right = HALF.iter().map(|[x, y]| pos2(*x, *y));
     let left = HALF.iter().rev().map(|[x, y]| pos2(-x, *y));
-    // The middle stands in both halves.
+    // The points on the middle line are in both halves.
     let mut corners: Vec<Pos2> = right.chain(left).collect();
     corners.dedup();
     corners.pop();

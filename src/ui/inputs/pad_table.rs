@@ -1,4 +1,4 @@
-//! What every control of a gamepad does, as a list in which the user changes it.
+//! Actions of all gamepad controls, as a list in which the user changes them.
 
 use crate::inputs::pad::{PadAction, PadControl, PadMap};
 use crate::ui::inputs::pad_picture::PadShown;
@@ -7,12 +7,12 @@ use crate::ui::text::inputs;
 use crate::ui::theme;
 use egui::Ui;
 
-/// Width of the name of a control.
+/// Width of a control's name.
 const NAME: f32 = 160.0;
-/// Width of what it does, as far as words do not need more.
+/// Minimum width of an action.
 const ACTION: f32 = 180.0;
 
-/// Draws a row for each control; the map with what was changed, if something was.
+/// Draws a row for each control. Returns the map with a change, if the user made one.
 pub(crate) fn pad_table_ui(ui: &mut Ui, look: Look, shown: &PadShown<'_>) -> Option<PadMap> {
     let mut changed = None;
     ui.spacing_mut().combo_width = ACTION;
@@ -32,7 +32,7 @@ pub(crate) fn pad_table_ui(ui: &mut Ui, look: Look, shown: &PadShown<'_>) -> Opt
     changed
 }
 
-/// What one control does; the map with another action for it, if one was chosen.
+/// Draws the action of one control. Returns the map with its new action, if the user chose one.
 fn action_ui(ui: &mut Ui, look: Look, control: PadControl, shown: &PadShown<'_>) -> Option<PadMap> {
     let before = shown.map.action(control);
     let plain = PadAction::choices(control.kind()).iter().cloned();
@@ -40,7 +40,7 @@ fn action_ui(ui: &mut Ui, look: Look, control: PadControl, shown: &PadShown<'_>)
     let poses = poses.map(|pose| PadAction::Pose(pose.name.clone()));
     let poses = poses.filter(|pose| pose.fits(control.kind()));
     let mut all: Vec<PadAction> = plain.chain(poses).collect();
-    // A pose that is not in the library any more.
+    // A pose that is no longer in the library.
     if !all.contains(before) {
         all.push(before.clone());
     }

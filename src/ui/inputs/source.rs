@@ -1,4 +1,4 @@
-//! What the cards of several sources have in common: the switch, how it goes, and whether it may move the hand.
+//! Common parts of the source cards: switch, state, and grant of control.
 
 use crate::app::action::Action;
 use crate::app::inputs::{InputAction, InputKind, InputSource};
@@ -10,19 +10,19 @@ use crate::ui::text::{Text, errors, inputs, words};
 use crate::ui::theme;
 use egui::{Color32, Ui};
 
-/// A switch at the head of a card.
+/// A switch in the heading of a card.
 pub(crate) struct Switch {
-    /// The name of the card, and what it is.
+    /// Name of the card, with its description as tip.
     pub(crate) title: Text,
-    /// What turning it on does.
+    /// Effect of turning it on.
     pub(crate) turns_on: Text,
     pub(crate) is_on: bool,
     pub(crate) action: InputAction,
-    /// Why it cannot be turned.
+    /// Reason why it cannot be turned on.
     pub(crate) wrong: Option<Text>,
 }
 
-/// The name of a card with its switch, and what it is.
+/// Draws the name of a card with its switch, and its description.
 pub(crate) fn switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, switch: Switch) {
     let look = pane.look;
     let wrong = switch.wrong.filter(|_| !switch.is_on);
@@ -43,7 +43,7 @@ pub(crate) fn switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, switch: Switch) {
     about_ui(ui, pane, switch.title);
 }
 
-/// What a card is about, in the room of two lines, so that what is below stands in one row with that of its neighbours.
+/// Draws the description of a card in the height of two lines, so that the content below aligns with that of its neighbours.
 pub(crate) fn about_ui(ui: &mut Ui, pane: &Pane<'_>, title: Text) {
     let look = pane.look;
     ui.scope(|ui| {
@@ -52,7 +52,7 @@ pub(crate) fn about_ui(ui: &mut Ui, pane: &Pane<'_>, title: Text) {
     });
 }
 
-/// How it goes in one line, or why it could not be opened.
+/// Draws the state on one line, or the reason why it could not be opened.
 pub(crate) fn state_ui(ui: &mut Ui, pane: &Pane<'_>, kind: Option<InputKind>, words: &str) {
     let look = pane.look;
     let refused = pane.hand().inputs.refused.as_ref();
@@ -64,7 +64,7 @@ pub(crate) fn state_ui(ui: &mut Ui, pane: &Pane<'_>, kind: Option<InputKind>, wo
     Label::new(&words, color).wrap().ui(ui);
 }
 
-/// Lets a source move the hand, or says that it does.
+/// Draws the button that grants a source control of the hand, or the fact that it has control.
 pub(crate) fn grant_ui(
     ui: &mut Ui,
     pane: &mut Pane<'_>,
@@ -91,7 +91,7 @@ pub(crate) fn grant_ui(
     grant.ui(ui, pane);
 }
 
-/// Lets a client of the gateway move the hand.
+/// Draws the button that grants control to a client of the gateway.
 pub(crate) fn grant_client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &GatewayClient) {
     let grant = Grant {
         name: &client.address.to_string(),
@@ -101,7 +101,7 @@ pub(crate) fn grant_client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &Gateway
     grant.ui(ui, pane);
 }
 
-/// Who is to move the hand, and why that cannot be.
+/// A grant of control, with the reason why it is not possible.
 struct Grant<'a> {
     name: &'a str,
     action: InputAction,
@@ -111,7 +111,7 @@ struct Grant<'a> {
 impl Grant<'_> {
     fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let (look, hand) = (pane.look, pane.hand());
-        // What has to be held can still be held once it may.
+        // A hold-to-run key can still be pressed after the grant.
         let refusal = hand.arm_refusal(pane.state.now);
         let refusal = refusal.filter(|reason| *reason != ArmRefusal::LetGo);
         let refusal = refusal.map(|reason| words::refusal(look, reason));
@@ -129,7 +129,7 @@ impl Grant<'_> {
     }
 }
 
-/// Why nothing can be opened without a hand.
+/// Reason why nothing can be opened: no hand. `None` if the hand is live.
 fn no_hand(pane: &Pane<'_>) -> Option<&'static str> {
     let is_live = pane.hand().connection.status.state.is_live();
     (!is_live).then(|| pane.look.say(inputs::NO_HAND))

@@ -1,4 +1,4 @@
-//! What besides the window may move the hand, and who reads it.
+//! The view of inputs that may move the hand, and of readers of its data.
 
 use crate::ui::inputs::cards::SourceCards;
 use crate::ui::inputs::owner::owner_ui;
@@ -7,7 +7,7 @@ use crate::ui::kit::Pane;
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 
-/// What was typed and chosen.
+/// View state.
 #[derive(Debug, Default)]
 pub(crate) struct InputsView {
     cards: SourceCards,
@@ -15,7 +15,6 @@ pub(crate) struct InputsView {
 }
 
 impl InputsView {
-    /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = theme::GAP;

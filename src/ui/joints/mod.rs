@@ -1,4 +1,4 @@
-//! The six joint rows: target over actual, threshold over force, speed, lamp, lock. Sends nothing by itself.
+//! The six joint rows: target over actual angle, threshold over force, speed, lamp, lock. Sends nothing by itself.
 pub(crate) mod rail;
 pub(crate) mod readings;
 pub(crate) mod row;
@@ -18,30 +18,29 @@ use crate::ui::text::{main, window};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 
-/// No line of a row grows higher than this.
+/// Maximum height of a row's line.
 const LINE_MAX: f32 = 28.0;
 
-/// The lowest line of a row: a track fits in it, and on a display that is touched a finger presses it.
+/// Minimum height of a row's line: a track fits in it, and on a touch screen a finger can hit it.
 const fn least_line(pixels_per_point: f32) -> f32 {
     if pixels_per_point >= 1.5 { 30.0 } else { 19.0 }
 }
 
-/// The column of joints.
+/// View state of the column of joints.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct JointsView {
     /// The four fingers move together.
     linked: bool,
-    /// Force and speed of each joint are shown; `None` where there is room for them.
+    /// Force and speed of each joint are shown; `None` = if they fit.
     each: Option<bool>,
 }
 
 impl JointsView {
-    /// Lets the four fingers move together, or not.
+    /// Links or unlinks the four fingers.
     pub(crate) const fn toggle_link(&mut self) {
         self.linked = !self.linked;
     }
 
-    /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         kit::full_card_ui(ui, look, |ui| {
@@ -72,7 +71,7 @@ impl JointsView {
         });
     }
 
-    /// What stands at the right of the title, from right to left.
+    /// Draws the controls at the right of the title, from right to left.
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, each: bool) {
         let look = pane.look;
         let unit = pane.state.settings.angle_unit;
@@ -95,7 +94,7 @@ impl JointsView {
         let asked = hand.readings.sample.angle.map(|angle| angle.asked);
         let is_live = pane.freshness(asked) == Freshness::Live && pane.recorded().is_none();
         let refusal = hand.arm_refusal(pane.state.now);
-        // A first look must find what comes before moving; the header says why it cannot be armed.
+        // A new user needs to know the first step; if arming is refused, the header shows the reason.
         if is_live && !hand.connection.is_armed() && refusal.is_none() {
             let label = Label::new(look.say(window::ARM_FIRST), look.palette.accent);
             label.small().ui(ui);
@@ -103,7 +102,7 @@ impl JointsView {
     }
 }
 
-/// How old the angles are, where they are not live.
+/// Draws the age of the angles, unless they are live.
 pub(crate) fn age_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let angle = pane.hand().readings.sample.angle;

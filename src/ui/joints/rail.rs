@@ -1,4 +1,4 @@
-//! The joints where they are not set: what each drive says and measures. Sets nothing.
+//! The joints where they cannot be set: state and measurements of each drive. Sets nothing.
 
 use crate::app::layout::WindowRoom;
 use crate::hand::Dof;
@@ -11,7 +11,7 @@ use crate::ui::text::{main, window};
 use crate::ui::theme;
 use egui::{Align, Frame, Layout, Ui, vec2};
 
-/// Draws the rail. Where joints can be set, its head opens their column.
+/// Draws the rail. Where joints can be set, its heading opens their column.
 pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
     let look = pane.look;
     kit::full_card_ui(ui, look, |ui| {
@@ -27,7 +27,7 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
         } else {
             Label::new(title, look.palette.text).title().ui(ui);
         }
-        // Its place is kept while there is nothing to tell.
+        // Its space is reserved while there is nothing to show.
         let size = vec2(ui.available_width(), theme::TEXT_LINE);
         let down = Layout::top_down(Align::Min);
         ui.allocate_ui_with_layout(size, down, |ui| {

@@ -1,4 +1,4 @@
-//! What a joint measures, as numbers: angle, force, current, temperature. Moves nothing.
+//! Measurements of a joint as numbers: angle, force, current, temperature. Moves nothing.
 
 use crate::app::readings::Freshness;
 use crate::app::settings::AngleUnit;
@@ -14,7 +14,7 @@ use egui::{Rect, Ui};
 const DEGREES: f32 = theme::FIELD + theme::STEP;
 
 impl JointRow {
-    /// The angle as the hand says it and in degrees, or in percent.
+    /// Draws the angle in raw units, and in degrees or percent.
     pub(crate) fn angle_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let (left, right) = rect.split_left_right_at_x(rect.right() - DEGREES);
         self.angle_in_ui(ui, left, pane, AngleUnit::Raw);
@@ -25,7 +25,7 @@ impl JointRow {
         self.angle_in_ui(ui, right, pane, other);
     }
 
-    /// Where room is short: the angle in the chosen unit, and the force.
+    /// For narrow rows: draws the angle in the chosen unit, and the force.
     pub(crate) fn short_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let (left, right) = rect.split_left_right_at_x(rect.right() - DEGREES);
         self.angle_in_ui(ui, left, pane, pane.state.settings.angle_unit);
@@ -63,7 +63,7 @@ impl JointRow {
         number_ui(ui, rect, &name, Label::new(&text, color));
     }
 
-    /// Current and temperature, in another colour where the drive is warm or hot.
+    /// Draws current and temperature, in another colour if the drive is warm or hot.
     pub(crate) fn drive_reading_ui(&self, ui: &mut Ui, rect: Rect, pane: &Pane<'_>) {
         let (look, palette) = (pane.look, pane.look.palette);
         let sample = &pane.hand().readings.sample;
@@ -90,7 +90,7 @@ impl JointRow {
     }
 }
 
-/// A reading against the right edge of its place.
+/// Draws a right-aligned reading.
 fn number_ui(ui: &mut Ui, place: Rect, name: &str, reading: Label<'_>) {
     reading.named(name).number().right().put(ui, place);
 }

@@ -1,4 +1,4 @@
-//! A joint by its name and colour, and the ids of its parts. Draws nothing.
+//! Name, colour and widget ids of a joint. Draws nothing.
 
 use crate::hand::Dof;
 use crate::ui::kit::Pane;
@@ -8,17 +8,15 @@ use egui::{Color32, Id, Rect, Ui, vec2};
 /// Width of the readings at the right.
 pub(crate) const READING: f32 = 112.0;
 
-/// One joint, with its names made once.
+/// One joint with its name and colour.
 pub(crate) struct JointRow {
-    /// The joint.
     pub(crate) dof: Dof,
-    /// What it is called.
+    /// Name in the window's language.
     pub(crate) name: &'static str,
     pub(crate) color: Color32,
 }
 
 impl JointRow {
-    /// The row of a joint.
     pub(crate) fn new(dof: Dof, pane: &Pane<'_>) -> Self {
         Self {
             dof,
@@ -27,24 +25,24 @@ impl JointRow {
         }
     }
 
-    /// What a screen reader says of one of its parts.
+    /// Accessible name of one of its parts.
     pub(crate) fn named(&self, pane: &Pane<'_>, what: Text) -> String {
         format!("{} {}", self.name, pane.look.say(what))
     }
 
-    /// The id of one of its parts.
+    /// Widget id of one of its parts.
     pub(crate) fn id(&self, part: &'static str) -> Id {
         Id::unique(("joint", self.dof, part))
     }
 
-    /// Gives the keyboard to the angle, or to the force threshold while the angle cannot be moved.
+    /// Focuses the angle, or the force threshold while the angle cannot be moved.
     pub(crate) fn focus(&self, ui: &Ui, movable: bool) {
         let part = if movable { "angle" } else { "force" };
         ui.memory_mut(|memory| memory.request_focus(self.id(part)));
     }
 }
 
-/// The next piece of a line, as high as the line.
+/// Allocates the next part of a line, at the line's height.
 pub(crate) fn cell(ui: &mut Ui, width: f32) -> Rect {
     let height = ui.available_height();
     ui.allocate_space(vec2(width, height)).1

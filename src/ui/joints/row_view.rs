@@ -14,10 +14,10 @@ use crate::ui::text::{main, notices, tune};
 use crate::ui::theme;
 use egui::{Color32, CursorIcon, Frame, Margin, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
-/// How a row is drawn.
+/// Layout of a row.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RowStyle {
-    /// Height of its lines.
+    /// Height of a line, in points.
     pub(crate) line: f32,
     /// Force and speed have lines of their own.
     pub(crate) each: bool,
@@ -25,13 +25,12 @@ pub(crate) struct RowStyle {
     pub(crate) linked: bool,
 }
 
-/// The height of a row of such lines.
+/// Height of a row with lines of this height.
 pub(crate) fn height(line: f32, each: bool) -> f32 {
     let lines = if each { 4.0 } else { 2.0 };
     lines * line + theme::GAP
 }
 
-/// Draws the row of a joint.
 pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle) {
     let (row, palette) = (JointRow::new(dof, pane), pane.look.palette);
     let is_pointed = pointed::pointed(ui, PointedPlace::Hand) == Some(dof);
@@ -109,7 +108,7 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     });
 }
 
-/// Lamp and words of the drive: a click explains them.
+/// Draws lamp and text of the drive: a click explains them.
 fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     let rect = cell(ui, ui.available_width());
     let said = DriveWords::of(pane, row.dof);
@@ -123,7 +122,7 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
 }
 
 impl JointRow {
-    /// The place of a drive's words as a button that opens their explanation.
+    /// Turns the area of a drive's text into a button that opens the explanation.
     pub(crate) fn explain_ui(&self, ui: &Ui, pane: &mut Pane<'_>, rect: Rect, said: &DriveWords) {
         let name = self.named(pane, notices::EXPLAIN);
         let response = ui.interact(rect, self.id("explain"), Sense::click());
@@ -140,7 +139,7 @@ impl JointRow {
     }
 }
 
-/// A sign where the hand holds another speed or force than the user set, whose lines are not shown.
+/// Draws a warning if the hand has another speed or force than the user set, while those lines are hidden.
 fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     let (look, hand) = (pane.look, pane.hand());
     let joint = hand.controls.joints[row.dof];
@@ -155,7 +154,7 @@ fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     let all = [held.force.map(force), held.speed.map(speed)];
     let all: Vec<String> = all.into_iter().flatten().collect();
     if all.is_empty() {
-        // What comes after it keeps its id.
+        // The following widgets keep their ids.
         return ui.skip_ahead_auto_ids(1);
     }
     let all = all.join("\n");
@@ -164,7 +163,7 @@ fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     label.on_hover_text(format!("{all}\n{}", look.tip(main::HAND_DIFFERS)));
 }
 
-/// A sign where speed and threshold together were measured to go far past the threshold, with the figure.
+/// Draws a warning with the measured overshoot, if speed and threshold together are known to exceed the threshold far.
 fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     let (hand, look) = (pane.hand(), pane.look);
     let joint = hand.controls.joints[row.dof];

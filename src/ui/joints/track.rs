@@ -1,4 +1,4 @@
-//! The sliding track: a handle for what is wanted over a bar for what is. Knows numbers, not joints.
+//! The slider: a handle for the target over a bar or marker for the actual value. Independent of joints.
 
 use crate::ui::kit::{self, Look};
 use crate::ui::theme;
@@ -11,10 +11,10 @@ use egui::{
 const RAIL: f32 = 6.0;
 /// Radius of the handle.
 const HANDLE: f32 = 7.0;
-/// How far what belongs to the rail reaches below it.
+/// Distance that marks of the rail extend below it.
 const BELOW: f32 = 5.0;
 
-/// How the actual value is drawn.
+/// Style of the actual value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Actual {
     /// A marker on the rail; the gap to the handle is filled.
@@ -23,37 +23,37 @@ pub(crate) enum Actual {
     Bar,
 }
 
-/// A track at a place.
+/// A slider with its values.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SlideTrack<'a> {
-    /// What a screen reader says.
+    /// Accessible name.
     pub(crate) name: &'a str,
-    /// What it does, in a sentence.
+    /// Tooltip sentence.
     pub(crate) tip: &'a str,
-    /// Why it cannot be moved now.
+    /// Reason why it cannot be moved now.
     pub(crate) disabled: Option<&'a str>,
-    /// Largest value; the smallest is 0.
+    /// Maximum value; the minimum is 0.
     pub(crate) max: i16,
-    /// What one arrow key adds.
+    /// Step of an arrow key.
     pub(crate) step: i16,
-    /// Where the handle stands; none if that is not known.
+    /// Position of the handle; `None` if unknown.
     pub(crate) target: Option<i16>,
-    /// The measured value, if it is known and sensible.
+    /// Measured value, if it is known and plausible.
     pub(crate) actual: Option<i16>,
-    /// How the measured value is drawn.
+    /// Style of the measured value.
     pub(crate) draws: Actual,
-    /// Colour of what is measured.
+    /// Colour of the measured value.
     pub(crate) color: Color32,
-    /// A value worth a small tick.
+    /// A value marked with a small tick.
     pub(crate) tick: Option<i16>,
-    /// From here to the end the user should think twice; painted on the rail.
+    /// Start of the zone up to the end that needs caution; painted on the rail.
     pub(crate) rough_from: Option<i16>,
-    /// The highest measured value of late.
+    /// Highest recent measured value.
     pub(crate) peak: Option<i16>,
 }
 
 impl<'a> SlideTrack<'a> {
-    /// A track that can be moved and shows nothing yet.
+    /// A movable slider without values.
     pub(crate) const fn new(name: &'a str, max: i16, color: Color32) -> Self {
         Self {
             name,
@@ -71,7 +71,7 @@ impl<'a> SlideTrack<'a> {
         }
     }
 
-    /// Draws the track. The value that the user moved it to, if they did in this frame.
+    /// Draws the slider. Returns the value that the user moved it to in this frame.
     pub(crate) fn put(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Option<i16> {
         let sense = match self.disabled {
             None => Sense::click_and_drag(),
@@ -136,7 +136,7 @@ impl<'a> SlideTrack<'a> {
             return Some(self.nearest(value));
         }
         let steps = self.key_steps(ui, response);
-        // A handle that stands nowhere has no place to step from.
+        // Without a handle there is no position to step from.
         let from = self.target?;
         (steps != 0).then(|| {
             from.saturating_add(steps.saturating_mul(self.step))
@@ -167,7 +167,7 @@ impl<'a> SlideTrack<'a> {
                 by_key
             };
         });
-        // Only with the keyboard on it: a wheel that turns while the pointer passes moves nothing.
+        // Only while it has the focus: a wheel turned while the pointer passes over it moves nothing.
         if response.hovered() {
             steps += ui.input_mut(wheel_steps);
         }
@@ -261,13 +261,13 @@ impl<'a> SlideTrack<'a> {
     }
 }
 
-/// The line that the middle of the handle runs along.
+/// Rectangle of the rail, along which the middle of the handle moves.
 fn rail_of(rect: Rect) -> Rect {
     let width = (rect.width() - 2.0 * HANDLE).max(1.0);
     Rect::from_center_size(rect.center(), vec2(width, RAIL))
 }
 
-/// True from a press on the track until the pointer has left it: a tooltip would cover the joint that is being set.
+/// True from a press on the slider until the pointer has left it: a tooltip would cover the joint being set.
 fn was_held(ui: &Ui, response: &Response) -> bool {
     let held = Id::unique("held track");
     let before = ui.data(|data| data.get_temp(held)) == Some(response.id);
@@ -281,7 +281,7 @@ fn was_held(ui: &Ui, response: &Response) -> bool {
     is_held
 }
 
-/// Slanted lines on the far end of the rail: more than a colour.
+/// Hatches the far end of the rail, so that it differs in more than colour.
 fn paint_rough(ui: &Ui, look: Look, zone: Rect) {
     let zone = zone.shrink(1.0);
     if zone.width() <= 0.0 {
@@ -298,13 +298,13 @@ fn paint_rough(ui: &Ui, look: Look, zone: Rect) {
     }
 }
 
-/// Points of a touchpad that count as one notch of a wheel.
+/// Points of a touchpad that equal one notch of a wheel.
 const NOTCH: f32 = 16.0;
 
-/// More steps than this in one frame are not made by a hand.
+/// Maximum steps in one frame; more cannot come from a human hand.
 const MOST_STEPS: i16 = 100;
 
-/// Whole notches of the wheel, taken out of the input so that nothing scrolls as well.
+/// Whole notches of the wheel, removed from the input so that nothing scrolls as well.
 fn wheel_steps(input: &mut egui::InputState) -> i16 {
     let mut notches = 0.0;
     input.events.retain(|event| match event {

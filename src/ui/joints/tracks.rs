@@ -1,4 +1,4 @@
-//! What the user sets of a joint: target angle, force threshold, speed, and the last two for all joints at once.
+//! Settings of a joint: target angle, force threshold, speed, and the last two for all joints at once.
 
 use crate::app::action::Action;
 use crate::app::settings::AngleUnit;
@@ -12,21 +12,21 @@ use crate::ui::text::{Text, main};
 use crate::ui::theme;
 use egui::{Align, Id, Layout, Rect, Ui};
 
-/// A caption, a track and a number field in a row.
+/// A caption, a slider and a number field in a row.
 struct TrackRow<'a> {
     caption: Text,
     number_name: &'a str,
     id: Id,
     track: SlideTrack<'a>,
     scale: NumberScale,
-    /// What the hand holds in place of what is wanted.
+    /// The hand's own setting, if it differs from the target.
     other: Option<i16>,
-    /// What stands after it in the row.
+    /// Width to leave free after it in the row.
     after: f32,
 }
 
 impl TrackRow<'_> {
-    /// Draws it. What the user set in this frame.
+    /// Draws it. Returns the value that the user set in this frame.
     fn ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<i16> {
         let look = pane.look;
         let caption = Label::new(look.say(self.caption), look.palette.muted);
@@ -46,10 +46,10 @@ impl TrackRow<'_> {
         typed.map(|typed| self.scale.raw(typed)).or(moved)
     }
 
-    /// What the hand holds in place of what is wanted, on the end of the track that is far from the handle: nothing moves for it.
+    /// Draws the hand's differing setting over the end of the slider away from the handle, so that nothing shifts.
     fn other_ui(&self, ui: &mut Ui, look: Look, track: Rect) {
         let Some(other) = self.other else {
-            // The field behind it keeps its id, and so the keyboard.
+            // The next field keeps its id, and thus the focus.
             return ui.skip_ahead_auto_ids(1);
         };
         let (scale, decimals) = (self.scale, self.scale.decimals);
@@ -58,7 +58,7 @@ impl TrackRow<'_> {
         let wanted = self.track.target.map_or_else(|| UNKNOWN.into(), shown);
         let name = format!("{} {wanted} · {text}", self.number_name);
         let width = theme::OTHER.min(track.width() / 2.0);
-        // Where room is short the number alone, in its colour; where there is none, that it is another.
+        // In a narrow row only the coloured number; without space for that, only that it differs.
         let fits = |number: &String| kit::text_width(ui, number, theme::small()) <= width;
         let number = || Some(shown(other)).filter(fits);
         let short = (width < theme::OTHER)
@@ -77,7 +77,7 @@ impl TrackRow<'_> {
 }
 
 impl JointRow {
-    /// Target over actual.
+    /// Draws the target over the actual angle.
     pub(crate) fn angle_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, linked: bool) {
         let (look, hand) = (pane.look, pane.hand());
         let joint = hand.controls.joints[self.dof];
@@ -105,7 +105,7 @@ impl JointRow {
     }
 }
 
-/// The threshold over the live force of one joint; without a row the threshold of all.
+/// Draws the threshold over the live force of one joint; without a row, the threshold of all joints.
 pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>) {
     let (look, hand) = (pane.look, pane.hand());
     let joints = hand.controls.joints;
@@ -153,7 +153,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
     }
 }
 
-/// The speed of one joint; without a row that of all.
+/// Draws the speed of one joint; without a row, that of all joints.
 pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>) {
     let hand = pane.hand();
     let joints = hand.controls.joints;
@@ -189,7 +189,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
     }
 }
 
-/// Force threshold and speed of all joints; what differs from joint to joint is not known here.
+/// Draws force threshold and speed of all joints; values that differ between joints are shown as unknown.
 pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let name = Label::said(pane.look, main::EVERY);
     ui.horizontal(|ui| {
@@ -204,7 +204,7 @@ pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// Each trial of a series sets its own force and speed: what the user set is not in force then.
+/// Reason while a series runs: each trial sets its own force and speed, so the user's settings are not in force.
 fn series(pane: &Pane<'_>) -> Option<&'static str> {
     let runs = pane.hand().runs_series();
     runs.then(|| pane.look.say(main::SERIES_RUNS))
@@ -224,7 +224,7 @@ fn after(row: Option<&JointRow>) -> f32 {
     row.map_or(0.0, |_| READING + theme::GAP)
 }
 
-/// The value of one joint, or the one that all joints share, if they do.
+/// Value of one joint, or the common value of all joints, if they have one.
 fn value_of(row: Option<&JointRow>, values: PerDof<Option<i16>>) -> Option<i16> {
     let value = values[row.map_or(Dof::Little, |row| row.dof)];
     let is_shared = values.iter().all(|(_, other)| *other == value);
@@ -239,7 +239,7 @@ fn staged(pane: &Pane<'_>, tip: Text) -> String {
     format!("{tip}\n{}", pane.look.say(main::STAGED))
 }
 
-/// What is shown of the values 0..=max of a register.
+/// Mapping of a register's values 0..=max to displayed numbers.
 #[derive(Debug, Clone, Copy)]
 struct NumberScale {
     low: f64,
@@ -249,7 +249,7 @@ struct NumberScale {
 }
 
 impl NumberScale {
-    /// As the hand says it.
+    /// Raw values.
     fn whole(max: i16) -> Self {
         let max = f64::from(max);
         Self {
@@ -260,7 +260,7 @@ impl NumberScale {
         }
     }
 
-    /// Angles of one joint in the unit that the user chose.
+    /// Angles of one joint in the chosen unit.
     fn of_angle(unit: AngleUnit, dof: Dof) -> Self {
         let whole = Self::whole(Angle::MAX.get());
         let (low, high) = match unit {

@@ -1,5 +1,5 @@
-//! One card over the body of the window: what is asked or under way, and what can be done about it. Nothing below it can be
-//! reached, by pointer or keyboard; STOP stays. Knows no card's meaning and carries nothing out.
+//! One modal card over the body of the window: a question or a running job, with its actions. It blocks everything below it
+//! for pointer and keyboard; STOP stays usable. Independent of the cards' meaning; executes nothing.
 
 use crate::app::action::Action;
 use crate::ui::kit::controls;
@@ -13,21 +13,21 @@ use egui::{
 };
 use std::fmt::Display;
 
-/// What pressing a button of a card means.
+/// Effect of a card's button.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ButtonRole {
-    /// Nothing is changed by it. It has the keyboard first, and Esc does the same after it stopped the hand; where it is
-    /// all that a card offers and the hand rests, without a stop.
+    /// Changes nothing. It has the initial focus, and Esc activates it after stopping the hand; where it is the only button of
+    /// the card and the hand is at rest, without a stop.
     Safe,
-    /// One of several things to do.
+    /// One of several options.
     Plain,
-    /// The thing to do.
+    /// The main action.
     Main,
-    /// It cannot simply be taken back: only a pointer or a screen reader presses it, never Enter.
+    /// Cannot simply be undone: only a pointer or a screen reader presses it, never Enter.
     Danger,
 }
 
-/// One button of a card. Pressing it closes nothing by itself: the card is there for as long as what it is about.
+/// One button of a card. Pressing it does not close the card, which is shown for as long as its cause lasts.
 #[derive(Debug, Clone)]
 pub(crate) struct Choice {
     text: Text,
@@ -37,7 +37,7 @@ pub(crate) struct Choice {
 }
 
 impl Choice {
-    /// A button that asks for something.
+    /// A button that requests an action.
     pub(crate) const fn new(text: Text, manner: ButtonRole, does: Action) -> Self {
         Self {
             text,
@@ -47,7 +47,7 @@ impl Choice {
         }
     }
 
-    /// Cannot be pressed, for this reason before one that was given earlier.
+    /// Disabled for this reason, which overrides an earlier one.
     pub(crate) fn disabled(mut self, reason: Option<Text>) -> Self {
         self.disabled = reason.or(self.disabled);
         self
@@ -59,21 +59,21 @@ impl Choice {
 enum CardLine {
     /// A sentence.
     Words(String),
-    /// A sentence that matters less.
+    /// A less important sentence.
     Note(String),
-    /// A sentence that matters more.
+    /// A warning.
     Warning(String),
-    /// Something that must be so, and whether it is; `None` = not known.
+    /// A precondition, and whether it is met; `None` = not known.
     Check(Option<bool>, String),
-    /// What the columns of a table hold.
+    /// Column headings of a table.
     Head(Vec<String>),
     /// Cells of a table, the first one wide.
     Cells(Vec<String>),
 }
 
-/// What can be said in a card: a sentence of the window, or words put together.
+/// Text of a card: a translated sentence, or a composed string.
 pub(crate) trait Sayable {
-    /// In the window's language.
+    /// Text in the window's language.
     fn said(self, look: Look) -> String;
 }
 
@@ -95,22 +95,22 @@ impl<D: Display> Sayable for (Text, D) {
     }
 }
 
-/// What a card says and offers.
+/// Content and buttons of a card.
 #[derive(Debug, Clone)]
 pub(crate) struct Card {
     look: Look,
     title: String,
     lines: Vec<CardLine>,
-    /// How far it is, from 0 to 1, and what is going on or what is left.
+    /// Progress from 0 to 1, with the current step or the time left.
     progress: Option<(f32, String)>,
-    /// A word that has to be typed before anything dangerous can be pressed.
+    /// A word that must be typed before any dangerous button is enabled.
     word: Option<&'static str>,
     /// The buttons, the safe one first.
     choices: Vec<Choice>,
 }
 
 impl Card {
-    /// A card that says nothing yet.
+    /// An empty card.
     pub(crate) fn new(look: Look, title: impl Sayable) -> Self {
         Self {
             look,
@@ -122,38 +122,38 @@ impl Card {
         }
     }
 
-    /// Says this.
+    /// Adds a sentence.
     pub(crate) fn words(self, said: impl Sayable) -> Self {
         let said = CardLine::Words(said.said(self.look));
         self.line(said)
     }
 
-    /// Says what matters less.
+    /// Adds a less important sentence.
     pub(crate) fn note(self, said: impl Sayable) -> Self {
         let said = CardLine::Note(said.said(self.look));
         self.line(said)
     }
 
-    /// Says what matters more.
+    /// Adds a warning.
     pub(crate) fn warning(self, said: impl Sayable) -> Self {
         let said = CardLine::Warning(said.said(self.look));
         self.line(said)
     }
 
-    /// Says what must be so, and whether it is; `None` = not known.
+    /// Adds a precondition; `None` = not known.
     pub(crate) fn check(self, is_so: Option<bool>, said: Text) -> Self {
         let said = CardLine::Check(is_so, said.said(self.look));
         self.line(said)
     }
 
-    /// Says what the columns of a table hold.
+    /// Adds the column headings of a table.
     pub(crate) fn head(self, columns: impl IntoIterator<Item = Text>) -> Self {
         let columns = columns.into_iter().map(|text| text.said(self.look));
         let head = CardLine::Head(columns.collect());
         self.line(head)
     }
 
-    /// Says a row of a table: what it is of, then its cells.
+    /// Adds a table row: its label, then its cells.
     pub(crate) fn row(self, of: impl Sayable, cells: impl IntoIterator<Item = String>) -> Self {
         let of = [of.said(self.look)].into_iter();
         self.line(CardLine::Cells(of.chain(cells).collect()))
@@ -164,45 +164,45 @@ impl Card {
         self
     }
 
-    /// Tells how far it is, from 0 to 1, and what is going on or what is left.
+    /// Sets the progress from 0 to 1, with the current step or the time left.
     pub(crate) fn progress(mut self, part: f32, said: impl Sayable) -> Self {
         self.progress = Some((part, said.said(self.look)));
         self
     }
 
-    /// Wants a word typed before anything dangerous can be pressed.
+    /// Requires a word to be typed before any dangerous button is enabled.
     pub(crate) fn typed(mut self, word: &'static str) -> Self {
         self.word = Some(word);
         self
     }
 
-    /// Offers this too; the safe one comes first.
+    /// Adds a button, the safe one first.
     pub(crate) fn choice(mut self, choice: Choice) -> Self {
         self.choices.push(choice);
         self
     }
 }
 
-/// What the window remembers of its card.
+/// View state of the card.
 #[derive(Debug, Default)]
 pub(crate) struct CardView {
     typed: String,
-    /// Nothing is asked on the card that is shown: it only tells something.
+    /// The card only informs: all its buttons are safe.
     informs: bool,
-    /// The title and the buttons of the card that is shown: another one begins anew.
+    /// Title and number of buttons of the card shown; a different card resets the view state.
     shown: Option<(String, usize)>,
-    /// Height of the card as it was drawn last, and of all of it but its lines.
+    /// Heights of the last drawn card: the whole, and all except its lines.
     height: f32,
     chrome: f32,
 }
 
 impl CardView {
-    /// True while a card is shown that only tells something.
+    /// True while the card shown only informs.
     pub(crate) const fn informs(&self) -> bool {
         self.informs
     }
 
-    /// Draws the card, if there is one, over `shade`; what the user asked for in it.
+    /// Draws the card, if any, over `shade`. Returns the action of the button pressed.
     pub(crate) fn ui(&mut self, ui: &Ui, shade: Rect, card: Option<Card>) -> Option<Action> {
         let Some(card) = card else {
             self.shown = None;
@@ -224,7 +224,7 @@ impl CardView {
             .fixed_pos(shade.min)
             .constrain(false);
         let shown = area.show(ui.ctx(), |ui| {
-            // Takes every press beside the card, too.
+            // Consumes presses beside the card, too.
             ui.allocate_rect(shade, Sense::click_and_drag());
             let veil = card.look.palette.window.gamma_multiply(0.75);
             ui.painter().rect_filled(shade, 0.0, veil);
@@ -237,7 +237,7 @@ impl CardView {
         pressed.map(|choice| choice.does.clone())
     }
 
-    /// The card in the middle of a place, as high as it was last; the button that was pressed.
+    /// Draws the card in the middle of `place`, with its last height. Returns the index of the button pressed.
     fn placed_ui(&mut self, ui: &mut Ui, place: Rect, card: &Card, is_new: bool) -> Option<usize> {
         let width = 560.0_f32.min(place.width());
         let high = vec2(width, self.height.min(place.height()));
@@ -271,7 +271,7 @@ impl CardView {
         pressed
     }
 
-    /// What is in a card; the button that was pressed, and the height that its lines have.
+    /// Draws the content of a card. Returns the index of the button pressed, and the height of its lines.
     fn card_ui(
         &mut self,
         ui: &mut Ui,
@@ -307,7 +307,7 @@ impl CardView {
         (row.inner, lines.inner_rect.height())
     }
 
-    /// The buttons. The keyboard goes to the field, else to what is safe, so that Enter does no harm.
+    /// Draws the buttons. The focus goes to the word field, else to the safe button, so that Enter does no harm.
     fn choices_ui(&self, ui: &mut Ui, card: &Card, is_new: bool) -> Option<usize> {
         let look = card.look;
         let is_pressed = |key| ui.input(|input| input.key_pressed(key));
@@ -378,7 +378,7 @@ fn line_ui(ui: &mut Ui, look: Look, line: &CardLine) {
     }
 }
 
-/// Cells in columns of one width, the numbers against the right edge; `label` gets a cell and, but for the first, the
+/// Draws cells in columns of equal width, the numbers right-aligned. `label` receives a cell and, except for the first, the
 /// first one.
 fn cells_ui<'a>(
     ui: &mut Ui,

@@ -1,4 +1,4 @@
-//! The few widgets that everything is made of: placed by rectangle, painted from the theme, named for accessibility.
+//! Basic widgets: placed by rectangle, painted from the theme, named for accessibility.
 
 use crate::app::action::Action;
 use crate::ui::kit::pane::{Pane, ViewRequest};
@@ -13,12 +13,12 @@ use egui::{
 };
 use egui_extras::{TableBuilder, TableRow};
 
-/// Seconds for which a press on what cannot be pressed is answered.
+/// Seconds for which a disabled control shows its reason after a press.
 const TOLD_S: f32 = 3.0;
-/// Characters that fit in a line that is typed.
+/// Maximum characters of a one-line text field.
 const EDIT_MAX: usize = 128;
 
-/// A text at a place. Cut with dots if it is too long, and then whole in its tooltip.
+/// A text at a position. Truncated with dots if it is too long, with the full text in its tooltip.
 #[derive(Debug, Clone)]
 pub(crate) struct Label<'a> {
     text: &'a str,
@@ -30,7 +30,7 @@ pub(crate) struct Label<'a> {
 }
 
 impl<'a> Label<'a> {
-    /// Running text, left and centred in height.
+    /// Body text, left-aligned and vertically centred.
     pub(crate) const fn new(text: &'a str, color: Color32) -> Self {
         Self {
             text,
@@ -47,17 +47,16 @@ impl<'a> Label<'a> {
         Self::new(look.say(text), look.palette.text)
     }
 
-    /// A sentence that matters less.
+    /// A muted sentence.
     pub(crate) const fn muted(look: Look, text: Text) -> Self {
         Self::new(look.say(text), look.palette.muted)
     }
 
-    /// A small sentence that matters less.
+    /// A small muted sentence.
     pub(crate) fn note(look: Look, text: Text) -> Self {
         Self::muted(look, text).small()
     }
 
-    /// With another font.
     pub(crate) fn font(mut self, font: FontId) -> Self {
         self.font = font;
         self
@@ -67,41 +66,41 @@ impl<'a> Label<'a> {
         self.font(theme::small())
     }
 
-    /// As the title of what is below it.
+    /// Uses the title font.
     pub(crate) fn title(self) -> Self {
         self.font(theme::title())
     }
 
-    /// With digits of one width.
+    /// Uses digits of equal width.
     pub(crate) fn number(self) -> Self {
         self.font(theme::number())
     }
 
-    /// Against the right edge.
+    /// Right-aligned.
     pub(crate) fn right(mut self) -> Self {
         self.align = Align2::RIGHT_CENTER;
         self
     }
 
-    /// In the middle.
+    /// Centred.
     pub(crate) fn center(mut self) -> Self {
         self.align = Align2::CENTER_CENTER;
         self
     }
 
-    /// Names what the text is the value of, for accessibility.
+    /// Accessible name: the quantity that the text is the value of.
     pub(crate) fn named(mut self, name: &'a str) -> Self {
         self.name = Some(name);
         self
     }
 
-    /// Over as many lines as it needs.
+    /// Wraps over as many lines as it needs.
     pub(crate) fn wrap(mut self) -> Self {
         self.wraps = true;
         self
     }
 
-    /// Draws it where `ui` is.
+    /// Draws it at the cursor of `ui`.
     pub(crate) fn ui(self, ui: &mut Ui) -> Response {
         let rich = RichText::new(self.text).font(self.font).color(self.color);
         let label = egui::Label::new(rich);
@@ -116,19 +115,19 @@ impl<'a> Label<'a> {
         response
     }
 
-    /// Draws it in a place of this width in a row.
+    /// Draws it in a cell of this width in a row.
     pub(crate) fn cell_ui(self, ui: &mut Ui, width: f32) -> Response {
         cell_ui(ui, vec2(width, theme::CONTROL), |ui| self.ui(ui))
     }
 
-    /// Draws it in the next column of a table's row.
+    /// Draws it in the next column of a table row.
     pub(crate) fn column_ui(self, row: &mut TableRow<'_, '_>) {
         row.col(|ui| drop(self.ui(ui)));
     }
 
-    /// Draws it.
+    /// Draws it in `rect`, outside the layout.
     pub(crate) fn put(self, ui: &mut Ui, rect: Rect) -> Response {
-        // Not allocated: that would take the list's cursor back to the end of this rectangle.
+        // Not allocated: that would move the list's cursor back to the end of this rectangle.
         let id = ui.next_auto_id();
         ui.skip_ahead_auto_ids(1);
         let mut response = ui.interact(rect, id, Sense::hover());
@@ -143,7 +142,7 @@ impl<'a> Label<'a> {
         response
     }
 
-    /// Paints it and nothing else: no node, no tooltip. True if it was cut.
+    /// Paints the text only: no accessibility node, no tooltip. True if it was truncated.
     pub(crate) fn paint(&self, ui: &Ui, rect: Rect) -> bool {
         let text = self.text.to_owned();
         let mut job = LayoutJob::simple_singleline(text, self.font.clone(), self.color);
@@ -156,14 +155,14 @@ impl<'a> Label<'a> {
     }
 }
 
-/// Sets the name by which a screen reader calls a widget, in place of the text in it.
+/// Sets the accessible name of a widget, in place of its text.
 pub(crate) fn set_accessible_name(response: &Response, name: &str) {
     response
         .ctx
         .accesskit_node_builder(response.id, |node| node.set_label(name));
 }
 
-/// Senses clicks if enabled, else only the pointer over it.
+/// Senses clicks if enabled, else hover only.
 pub(crate) fn click_if(enabled: bool) -> Sense {
     if enabled {
         Sense::click()
@@ -172,49 +171,47 @@ pub(crate) fn click_if(enabled: bool) -> Sense {
     }
 }
 
-/// Width of a text on one line.
+/// Width of a text on one line, in points.
 pub(crate) fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
     let (text, color) = (text.to_owned(), Color32::PLACEHOLDER);
     let galley = ui.painter().layout_no_wrap(text, font, color);
     galley.size().x
 }
 
-/// How a button looks.
+/// Visual weight of a button.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Weight {
-    /// One of many.
+    /// An ordinary button.
     Normal,
-    /// The one that is chosen of several.
+    /// The selected one of several.
     Chosen,
-    /// The main thing to do.
+    /// The main action.
     Strong,
-    /// No ground until the pointer is there.
+    /// No background until hovered.
     Quiet,
-    /// Setpoints pass.
+    /// Armed: setpoints pass.
     Armed,
-    /// What cannot simply be taken back.
+    /// Cannot simply be undone.
     Danger,
     Stop,
 }
 
-/// A button at a place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Button<'a> {
-    /// What it says.
+    /// Visible text.
     pub(crate) text: &'a str,
-    /// What a screen reader says; the text if `None`.
+    /// Accessible name; the text if `None`.
     pub(crate) name: Option<&'a str>,
-    /// What it does, in a sentence.
+    /// Tooltip sentence.
     pub(crate) tip: &'a str,
-    /// Why it cannot be pressed now.
+    /// Reason why it is disabled now.
     pub(crate) disabled: Option<&'a str>,
-    /// How it looks.
     pub(crate) weight: Weight,
-    /// On or off, if it is a switch.
+    /// On or off; `None` if it is not a switch.
     pub(crate) selected: Option<bool>,
-    /// A sign in place of the text, which stays the name.
+    /// An icon in place of the text, which stays the accessible name.
     pub(crate) icon: Option<Icon>,
-    /// How high it is, points.
+    /// Height in points.
     pub(crate) height: f32,
 }
 
@@ -233,36 +230,35 @@ impl<'a> Button<'a> {
         }
     }
 
-    /// The same in the window's language.
+    /// An ordinary button with a translated text and tip.
     pub(crate) const fn said(look: Look, text: Text) -> Self {
         Self::new(look.say(text), look.tip(text))
     }
 
-    /// Explains itself with another tip.
+    /// Replaces the tooltip.
     pub(crate) const fn tip(mut self, tip: &'a str) -> Self {
         self.tip = tip;
         self
     }
 
-    /// The thing to do now, if that is so.
+    /// Strong if `is_so`, else normal.
     pub(crate) const fn strong_if(self, is_so: bool) -> Self {
         let strong = Weight::Strong;
         self.weight(if is_so { strong } else { Weight::Normal })
     }
 
-    /// As high as what matters most.
+    /// Height of the most important controls.
     pub(crate) const fn large(mut self) -> Self {
         self.height = theme::CONTROL_LARGE;
         self
     }
 
-    /// With another look.
     pub(crate) const fn weight(mut self, weight: Weight) -> Self {
         self.weight = weight;
         self
     }
 
-    /// With a longer name for accessibility.
+    /// Sets a longer accessible name.
     pub(crate) const fn named(mut self, name: &'a str) -> Self {
         self.name = Some(name);
         self
@@ -274,38 +270,38 @@ impl<'a> Button<'a> {
         self
     }
 
-    /// Disabled for this reason if that is so.
+    /// Disabled for this reason if `is_so`.
     pub(crate) const fn disabled_if(self, is_so: bool, reason: &'a str) -> Self {
         self.disabled(if is_so { Some(reason) } else { None })
     }
 
-    /// One of a row of which one is chosen.
+    /// One of a row, of which one is selected.
     pub(crate) const fn choice(self, selected: bool) -> Self {
         let quiet = Weight::Quiet;
         let weight = if selected { Weight::Chosen } else { quiet };
         self.selected(selected).weight(weight)
     }
 
-    /// It is on or off.
+    /// A switch that is on or off.
     pub(crate) const fn switch(self, on: bool) -> Self {
         let normal = Weight::Normal;
         let weight = if on { Weight::Chosen } else { normal };
         self.selected(on).weight(weight)
     }
 
-    /// Told to be on or off, and looks the same.
+    /// Reports on or off to a screen reader, with unchanged weight.
     pub(crate) const fn selected(mut self, on: bool) -> Self {
         self.selected = Some(on);
         self
     }
 
-    /// With a sign in place of its text, which stays its name.
+    /// Shows an icon in place of its text, which stays the accessible name.
     pub(crate) const fn icon(mut self, icon: Icon) -> Self {
         self.icon = Some(icon);
         self
     }
 
-    /// Draws it where `ui` is, as wide as what it says; a justified layout makes it wider.
+    /// Draws it at the cursor of `ui`, as wide as its text; a justified layout makes it wider.
     pub(crate) fn ui(self, ui: &mut Ui, look: Look) -> Response {
         let width = match self.icon {
             Some(_) => self.height.max(theme::CONTROL),
@@ -316,7 +312,7 @@ impl<'a> Button<'a> {
         self.put(ui, look, rect, id)
     }
 
-    /// Draws it, and asks for `action` when it is pressed.
+    /// Draws it, and pushes `action` on a click.
     pub(crate) fn on_click(mut self, ui: &mut Ui, pane: &mut Pane<'_>, action: Action) {
         let recorded = pane.recorded().filter(|_| !action.passes_in_replay());
         self.disabled = recorded.or(self.disabled);
@@ -325,14 +321,14 @@ impl<'a> Button<'a> {
         }
     }
 
-    /// Draws it, and opens something when it is pressed.
+    /// Draws it, and opens a view on a click.
     pub(crate) fn opens(self, ui: &mut Ui, pane: &mut Pane<'_>, opens: ViewRequest) {
         if self.ui(ui, pane.look).clicked() {
             pane.open(opens);
         }
     }
 
-    /// Draws it, and turns something on or off when it is pressed.
+    /// Draws it, and flips `on` on a click.
     pub(crate) fn flips(self, ui: &mut Ui, look: Look, on: &mut bool) {
         *on ^= self.ui(ui, look).clicked();
     }
@@ -344,7 +340,7 @@ impl<'a> Button<'a> {
         }
     }
 
-    /// Draws it as a knob on a track: at the right end it is on.
+    /// Draws it as a knob on a track, on at the right end.
     pub(crate) fn toggle_ui(self, ui: &mut Ui, look: Look) -> Response {
         let (id, place) = ui.allocate_space(vec2(40.0, theme::CONTROL));
         let response = self.weight(Weight::Quiet).ground(ui, look, place, id);
@@ -366,7 +362,7 @@ impl<'a> Button<'a> {
         response
     }
 
-    /// Draws it and says whether it was pressed.
+    /// Draws it in `rect`; its response reports the click.
     pub(crate) fn put(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Response {
         let response = self.ground(ui, look, rect, id);
         let color = self.text_color(look);
@@ -381,7 +377,7 @@ impl<'a> Button<'a> {
         response
     }
 
-    /// The button without its text, for those that paint their own.
+    /// Draws the button without its text, for callers that paint their own.
     pub(crate) fn ground(self, ui: &mut Ui, look: Look, rect: Rect, id: Id) -> Response {
         let enabled = self.disabled.is_none() && ui.is_enabled();
         let response = ui.interact(rect, id, click_if(enabled));
@@ -416,7 +412,7 @@ impl<'a> Button<'a> {
         }
     }
 
-    /// The colour of what is written on it.
+    /// Colour of the text.
     pub(crate) fn text_color(self, look: Look) -> Color32 {
         let palette = look.palette;
         match (self.disabled, self.weight) {
@@ -455,7 +451,7 @@ impl<'a> Button<'a> {
     }
 }
 
-/// What is pressed and cannot be pressed says at once why; true while it does.
+/// Shows the reason on a press on a disabled control; true while it is shown.
 fn told_ui(ui: &Ui, response: &Response, reason: &str) -> bool {
     let told = Id::unique("told why not");
     let (pressed, now) = ui.input(|input| (input.pointer.primary_pressed(), input.time));
@@ -473,7 +469,7 @@ fn told_ui(ui: &Ui, response: &Response, reason: &str) -> bool {
     true
 }
 
-/// A thin ring around what has the keyboard.
+/// A thin ring around the widget with the keyboard focus.
 pub(crate) fn focus_ring(ui: &Ui, look: Look, response: &Response, rect: Rect) {
     if response.has_focus() {
         let round = CornerRadius::same(theme::ROUND_SMALL + 2);
@@ -497,21 +493,21 @@ pub(crate) fn card_ui<R>(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui) -> R
     shown.inner
 }
 
-/// Cards of one width side by side, as many as have room, each as high as the highest of its row.
+/// A grid of cards of equal width, as many per row as fit, each as high as the highest of its row.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CardGrid {
-    /// What it is, for what is remembered of it.
+    /// Id under which the card heights are stored.
     pub(crate) salt: &'static str,
-    /// No card is narrower, but where not even one has room.
+    /// Minimum card width in points, unless not even one fits.
     pub(crate) least: f32,
-    /// No row has more cards.
+    /// Maximum cards per row.
     pub(crate) most: u8,
-    /// How many cards there are.
+    /// Number of cards.
     pub(crate) count: usize,
 }
 
 impl CardGrid {
-    /// Draws it; `add` draws what is in the card of a number.
+    /// Draws the grid; `add` draws the content of the card with the given index.
     pub(crate) fn ui(self, ui: &mut Ui, look: Look, mut add: impl FnMut(&mut Ui, usize)) {
         let width = ui.available_width();
         let gaps = |columns: u8| theme::GAP * (f32::from(columns) - 1.0);
@@ -547,7 +543,7 @@ impl CardGrid {
     }
 }
 
-/// A card over all the room there is.
+/// A card over all the available space.
 pub(crate) fn full_card_ui(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui)) {
     card_ui(ui, look, |ui| {
         ui.set_min_height(ui.available_height());
@@ -555,20 +551,20 @@ pub(crate) fn full_card_ui(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// Lets the scroll bars of lists that fill a card stand in its margin, so that they cover nothing. Within a panel they would be cut.
+/// Moves the scroll bars of lists that fill a card into its margin, so that they cover nothing. Within a panel they would be cut.
 pub(crate) fn put_scroll_bar_in_margin(ui: &mut Ui) {
     let scroll = &mut ui.spacing_mut().scroll;
     scroll.bar_width = theme::GAP;
     scroll.bar_outer_margin = -theme::GAP;
 }
 
-/// A table whose cells have what stands in them beside each other, in the middle of their height.
+/// A table whose cells lay out their content left to right, vertically centred.
 pub(crate) fn table<'a>(ui: &'a mut Ui, id: impl egui::AsIdSalt) -> TableBuilder<'a> {
     let row = Layout::left_to_right(Align::Center);
     TableBuilder::new(ui).id_salt(id).cell_layout(row)
 }
 
-/// The title of a card, and what stands at the right end of its row, from right to left.
+/// The title row of a card; `right` adds content at its right end, from right to left.
 pub(crate) fn head_ui<R>(
     ui: &mut Ui,
     look: Look,
@@ -585,7 +581,7 @@ pub(crate) fn head_ui<R>(
     row.inner
 }
 
-/// A line of text that counts as it is typed: what a screen reader says, and what is shown while it is empty.
+/// A one-line text field that is applied as it is typed, with its accessible name and a hint shown while it is empty.
 pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) -> Response {
     let edit = egui::TextEdit::singleline(text)
         .hint_text(hint.to_owned())
@@ -598,12 +594,12 @@ pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) ->
     response
 }
 
-/// The same with a name and a hint in the window's language.
+/// Same as [`edit_ui`], with a translated name and hint.
 pub(crate) fn edit_said_ui(ui: &mut Ui, look: Look, said: Text, text: &mut String) -> Response {
     edit_ui(ui, look.say(said), look.tip(said), text)
 }
 
-/// A panel of one size without a border, with this room left free around what is in it.
+/// A panel of fixed size without a border, with `gap` left free around its content.
 pub(crate) fn bare(panel: Panel, size: f32, gap: Margin) -> Panel {
     let panel = panel.exact_size(size).resizable(false);
     panel
@@ -611,25 +607,25 @@ pub(crate) fn bare(panel: Panel, size: f32, gap: Margin) -> Panel {
         .frame(Frame::new().inner_margin(gap))
 }
 
-/// Places what is added from the left to the right.
+/// Lays out content from left to right.
 pub(crate) fn left_ui<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
     let row = Layout::left_to_right(Align::Center);
     ui.with_layout(row, add).inner
 }
 
-/// Places what is added from the right to the left.
+/// Lays out content from right to left.
 pub(crate) fn right_ui<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
     let row = Layout::right_to_left(Align::Center);
     ui.with_layout(row, add).inner
 }
 
-/// Makes what is added as wide as there is room.
+/// Stretches content to the available width.
 pub(crate) fn wide_ui<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
     let wide = Layout::top_down_justified(Align::Center);
     ui.with_layout(wide, add).inner
 }
 
-/// Gives what is added a place of this size in a row, whatever it needs.
+/// A cell of fixed size in a row, whatever its content.
 pub(crate) fn cell_ui<R>(ui: &mut Ui, size: Vec2, add: impl FnOnce(&mut Ui) -> R) -> R {
     let row = Layout::left_to_right(Align::Center);
     let cell = ui.allocate_ui_with_layout(size, row, |ui| {
@@ -639,25 +635,25 @@ pub(crate) fn cell_ui<R>(ui: &mut Ui, size: Vec2, add: impl FnOnce(&mut Ui) -> R
     cell.inner
 }
 
-/// How much of a whole is done.
+/// Completed share of a total, 0..=1.
 pub(crate) fn share(done: usize, total: usize) -> f32 {
     let count = |number: usize| f32::from(u16::try_from(number).unwrap_or(u16::MAX));
     count(done) / count(total.max(1))
 }
 
-/// How much is done, as a bar that has a name.
+/// A progress bar with an accessible name.
 pub(crate) fn progress_ui(ui: &mut Ui, look: Look, name: &str, share: f32) {
     let bar = ProgressBar::new(share).desired_height(6.0);
     let bar = ui.add(bar.fill(look.palette.accent));
     bar.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, name));
 }
 
-/// Small words that wrap.
+/// Small text that wraps.
 pub(crate) fn say_ui(ui: &mut Ui, text: &str, color: Color32) -> Response {
     Label::new(text, color).small().wrap().ui(ui)
 }
 
-/// Tells a screen reader the name of a text field, and what stands in it.
+/// Sets the accessible name and value of a text field.
 pub(crate) fn named_field(response: &Response, name: &str, enabled: bool, text: &str) {
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::TextInput, enabled, name);
@@ -666,7 +662,7 @@ pub(crate) fn named_field(response: &Response, name: &str, enabled: bool, text: 
     });
 }
 
-/// A button for each of several values, of which one is chosen.
+/// A button for each of several values, one of which is selected.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pick {
     look: Look,
@@ -674,12 +670,12 @@ pub(crate) struct Pick {
 }
 
 impl Pick {
-    /// `tip` explains those whose text has none.
+    /// `tip` is the tooltip of values whose text has none.
     pub(crate) const fn new(look: Look, tip: Text) -> Self {
         Self { look, tip }
     }
 
-    /// Draws the buttons; true if another was chosen.
+    /// Draws the buttons; true if the selection changed.
     pub(crate) fn ui<T: Copy + PartialEq>(
         self,
         ui: &mut Ui,
@@ -703,24 +699,24 @@ impl Pick {
     }
 }
 
-/// A popup below a button: it is closed by a click outside, not by one in it.
+/// A popup below a button, closed by a click outside it only.
 pub(crate) fn lasting_popup(button: &Response) -> Popup<'_> {
     Popup::menu(button).close_behavior(PopupCloseBehavior::CloseOnClickOutside)
 }
 
-/// An entry of a menu; true if it was pressed.
+/// A menu entry; true if it was pressed.
 pub(crate) fn entry_ui(ui: &mut Ui, look: Look, text: Text) -> bool {
     let button = ui.button(look.say(text));
     button.on_hover_text(look.tip(text)).clicked()
 }
 
-/// A tick with what it stands for; true if it was changed.
+/// A labelled check box; true if it was changed.
 pub(crate) fn tick_ui(ui: &mut Ui, look: Look, text: Text, on: &mut bool) -> bool {
     let tick = ui.checkbox(on, look.say(text));
     tick.on_hover_text(look.tip(text)).changed()
 }
 
-/// One of several, from a list that opens; true if another one was chosen.
+/// A drop-down list; true if the selection changed.
 pub(crate) fn choose_ui<T: Clone + PartialEq, S: AsRef<str>>(
     ui: &mut Ui,
     name: &str,
@@ -740,8 +736,8 @@ pub(crate) fn choose_ui<T: Clone + PartialEq, S: AsRef<str>>(
     *chosen != before
 }
 
-/// True in the frame in which a place is pressed, or its button clicked by a key or a screen reader. A stop does not
-/// wait for the release, and is not lost where a slow frame sees press, release and a pointer that is gone already.
+/// True in the frame in which `response` is pressed, or activated by a key or a screen reader. A stop does not wait for the
+/// release, and is not lost when a slow frame sees press and release after the pointer has left.
 pub(crate) fn pressed(ui: &Ui, response: &Response) -> bool {
     if !ui.is_enabled() {
         return false;
@@ -753,7 +749,7 @@ pub(crate) fn pressed(ui: &Ui, response: &Response) -> bool {
             pressed: true,
             ..
         } => response.rect.contains(*pos),
-        // A second finger on the screen is no pointer.
+        // A second finger on the screen produces no pointer event.
         Event::Touch {
             phase: TouchPhase::Start,
             pos,
@@ -768,7 +764,7 @@ pub(crate) fn pressed(ui: &Ui, response: &Response) -> bool {
     went_down || response.clicked() && !by_pointer
 }
 
-/// The place of a lamp before a word, lit if it has a colour.
+/// Allocates the space of a lamp before a text, lit if `color` is given. Returns its centre.
 pub(crate) fn lamp_ui(ui: &mut Ui, color: Option<Color32>) -> Pos2 {
     let size = vec2(2.0 * theme::LAMP_AT, theme::TEXT_LINE);
     let center = ui.allocate_space(size).1.center();
@@ -778,7 +774,7 @@ pub(crate) fn lamp_ui(ui: &mut Ui, color: Option<Color32>) -> Pos2 {
     center
 }
 
-/// A round lamp.
+/// A round lamp with a halo.
 pub(crate) fn lamp(ui: &Ui, center: Pos2, color: Color32) {
     let painter = ui.painter();
     let halo = color.gamma_multiply(0.22);
@@ -786,14 +782,14 @@ pub(crate) fn lamp(ui: &Ui, center: Pos2, color: Color32) {
     painter.circle_filled(center, theme::LAMP, color);
 }
 
-/// A sign in the middle of a place.
+/// An icon in the middle of a rectangle.
 pub(crate) fn sign(ui: &Ui, rect: Rect, sign: Icon, color: Color32) {
     let center = Align2::CENTER_CENTER;
     ui.painter()
         .text(rect.center(), center, sign, theme::icon(), color);
 }
 
-/// A warning sign before a word.
+/// A warning sign before a text.
 pub(crate) fn warning_ui(ui: &mut Ui, color: Color32) -> Response {
     let size = Vec2::splat(theme::SIGN_SMALL);
     let (place, response) = ui.allocate_exact_size(size, Sense::hover());

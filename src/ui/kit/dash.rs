@@ -1,9 +1,9 @@
-//! Kinds of strokes: lines of one colour that an eye tells apart. Knows no plot.
+//! Line styles that keep curves of one colour distinguishable. Independent of the plots.
 
 use egui::{Color32, Painter, Rect, Shape, Stroke};
 use egui_plot::LineStyle;
 
-/// The kinds in their order, round and round.
+/// Returns the line style with this number, cycling through four.
 pub(crate) const fn nth(number: usize) -> LineStyle {
     match number % 4 {
         0 => LineStyle::Solid,
@@ -13,7 +13,7 @@ pub(crate) const fn nth(number: usize) -> LineStyle {
     }
 }
 
-/// Draws a sign of one across the middle of a place.
+/// Draws a sample of a line style across the middle of `place`.
 pub(crate) fn sample(painter: &Painter, place: Rect, style: LineStyle, stroke: Stroke) {
     let ends = [place.left_center(), place.right_center()];
     match style {
@@ -28,7 +28,7 @@ pub(crate) fn sample(painter: &Painter, place: Rect, style: LineStyle, stroke: S
     }
 }
 
-/// The colour of lines that stand back behind another one.
+/// Colour of lines in the background of another one.
 pub(crate) fn behind(color: Color32) -> Color32 {
     color.gamma_multiply(0.3)
 }

@@ -1,4 +1,4 @@
-//! What a drive says of itself: the colour of its lamp and the words beside it. Draws nothing.
+//! Summary of a drive's state: lamp colour and texts. Draws nothing.
 
 use crate::app::readings::Freshness;
 use crate::hand::{Dof, Status, Words};
@@ -7,23 +7,23 @@ use crate::ui::style::format;
 use crate::ui::text::words;
 use egui::Color32;
 
-/// What stands beside a drive's lamp.
+/// Lamp colour and texts for one drive.
 pub(crate) struct DriveWords {
-    /// Of the lamp, as fresh as the reading is.
+    /// Lamp colour, faded with the age of the reading.
     pub(crate) lamp: Color32,
-    /// Of the title: loud only where something is wrong.
+    /// Title colour: conspicuous only on a fault.
     pub(crate) text: Color32,
-    /// In two or three words, or "-".
+    /// Two or three words, or "-".
     pub(crate) title: String,
-    /// The same where room is short.
+    /// Title for narrow places.
     pub(crate) short: String,
-    /// Title, cause and advice, if anything is known.
+    /// Title, cause and advice; `None` while the state is unknown.
     pub(crate) words: Option<Words>,
     pub(crate) freshness: Freshness,
 }
 
 impl DriveWords {
-    /// The words for a joint's drive now: its first fault, else its status.
+    /// Texts for the current state of a joint's drive: its first fault, else its status.
     pub(crate) fn of(pane: &Pane<'_>, dof: Dof) -> Self {
         let look = pane.look;
         let palette = look.palette;
@@ -48,7 +48,7 @@ impl DriveWords {
             _ => title.to_owned(),
         };
         let short = match (fault, status) {
-            // A code that the manual does not list stands beside a fault, too.
+            // An undocumented status code is shown beside a fault, too.
             (Some(fault), Some(Status::Unknown(code))) => {
                 format!("{} ({code})", words::fault_short(fault, look.language))
             }

@@ -1,5 +1,5 @@
-//! Fields that are typed into. What is typed counts when the field is left, what is sent to a hand with Enter alone, and neither with Esc. Knows
-//! nothing of what they name.
+//! Text and number fields. A value is applied when the field loses focus; values sent to a hand need Enter; Esc always cancels.
+//! Independent of the meaning of the values.
 
 use crate::ui::kit::controls;
 use crate::ui::kit::pane::{Pane, Typing};
@@ -14,37 +14,37 @@ use egui::{
 };
 use std::ops::RangeInclusive;
 
-/// Characters that fit in a field for a number.
+/// Maximum characters of a number field.
 const TYPED_MAX: usize = 8;
 
-/// What was read, or why it is none, in words.
+/// Parsed value, or the reason why it is invalid.
 type Read<T> = Result<T, String>;
 
-/// Where a field is drawn, and whether what stands in it was refused or cannot be.
+/// Position of a field, and whether to mark its value as refused or invalid.
 struct FieldPlace {
     id: Id,
     rect: Rect,
     is_refused: bool,
 }
 
-/// What both kinds of fields have in common.
+/// Common part of text and number fields.
 #[derive(Debug, Clone, Copy)]
 struct Field<'a> {
-    /// What a screen reader says.
+    /// Accessible name.
     name: &'a str,
     hint: &'a str,
     tip: &'a str,
     disabled: Option<&'a str>,
     max: usize,
     is_number: bool,
-    /// What is in force cannot be as it is.
+    /// The value in force is invalid.
     is_wrong: bool,
-    /// What was typed counts when the field is left, not with Enter alone.
+    /// Applied when the field loses focus, not with Enter alone.
     counts_when_left: bool,
 }
 
 impl<'a> Field<'a> {
-    /// For text, at most so many characters.
+    /// A text field of at most `max` characters.
     const fn new(name: &'a str, max: usize) -> Self {
         Self {
             name,
@@ -58,7 +58,7 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// Draws it with what is in force. What was typed, once it counts; what cannot be read stays, and is told why.
+    /// Draws it, showing `value`. Returns the parsed text once it is applied; invalid text stays, with the reason below it.
     fn ui<T>(
         self,
         ui: &mut Ui,
@@ -75,7 +75,7 @@ impl<'a> Field<'a> {
         let (id, rect) = ui.allocate_space(vec2(width, height));
         let own = std::mem::take(pane.typing);
         let (own, other) = match own.field.as_ref() {
-            // Who presses one of these once more wants what is in force.
+            // Pressing Enter or Esc again restores the value in force.
             Some((field, _)) if *field == id && own.is_given_up(ui) => (Typing::default(), None),
             Some((field, _)) if *field == id && self.disabled.is_none() => (own, None),
             Some((field, _)) if *field == id => (Typing::default(), None),
@@ -100,7 +100,7 @@ impl<'a> Field<'a> {
         }
         let key = |key| ui.input(|input| input.key_pressed(key));
         let mut new = None;
-        // The second pass of a frame sees the focus lost again, and no key: what was refused stays refused.
+        // In the second pass of a frame the focus is lost again, but no key is down: refused text stays refused.
         if is_typed && refused.is_none() && response.lost_focus() {
             is_typed = if self.counts_when_left {
                 !key(Key::Escape)
@@ -166,7 +166,7 @@ impl<'a> Field<'a> {
             .desired_width(rect.width() - 14.0);
         let place = UiBuilder::new().max_rect(rect);
         let shown = ui.scope_builder(place, |ui| {
-            // A field is as high as its place, not as high as a button.
+            // The field is as high as its rectangle, not as a button.
             ui.spacing_mut().interact_size.y = rect.height();
             ui.add(edit)
         });
@@ -175,36 +175,35 @@ impl<'a> Field<'a> {
     }
 }
 
-/// A field for a line of text.
+/// A one-line text field.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TextField<'a>(Field<'a>);
 
 impl<'a> TextField<'a> {
-    /// A field of at most so many characters, with what a screen reader says.
+    /// A field of at most `max` characters, with its accessible name.
     pub(crate) const fn new(name: &'a str, max: usize) -> Self {
         Self(Field::new(name, max))
     }
 
-    /// Shows this while nothing stands in it.
+    /// Shown while the field is empty.
     pub(crate) const fn hint(mut self, hint: &'a str) -> Self {
         self.0.hint = hint;
         self
     }
 
-    /// Shows that what is in force cannot be as it is.
+    /// Marks the value in force as invalid.
     pub(crate) const fn wrong(mut self, is_wrong: bool) -> Self {
         self.0.is_wrong = is_wrong;
         self
     }
 
-    /// Draws it where `ui` is, over the width that is left, with what is in force. What was typed, once it was left with
-    /// something new in it.
+    /// Draws it at the cursor of `ui`, over the remaining width, showing `value`. Returns the text once it is applied, if it differs.
     pub(crate) fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>, value: &str) -> Option<String> {
         let new = self.read_ui(ui, pane, value, |text| Ok(text.to_owned()));
         new.filter(|new| new != value)
     }
 
-    /// The same where not every text can be read.
+    /// Same as [`Self::ui`], for text that has to be parsed.
     pub(crate) fn read_ui<T>(
         self,
         ui: &mut Ui,
@@ -216,7 +215,7 @@ impl<'a> TextField<'a> {
     }
 }
 
-/// A field for a number, which counts when the field is left.
+/// A number field, applied when it loses focus.
 #[derive(Debug, Clone)]
 pub(crate) struct NumberField<'a> {
     field: Field<'a>,
@@ -225,7 +224,7 @@ pub(crate) struct NumberField<'a> {
 }
 
 impl<'a> NumberField<'a> {
-    /// A field for whole numbers of a range: what a screen reader says, and what it does, in a sentence.
+    /// A field for whole numbers of a range, with its accessible name and a tooltip sentence.
     pub(crate) const fn new(name: &'a str, tip: &'a str, range: RangeInclusive<f64>) -> Self {
         let field = Field {
             tip,
@@ -239,31 +238,31 @@ impl<'a> NumberField<'a> {
         }
     }
 
-    /// Nothing can be typed now, for this reason.
+    /// Disabled for this reason.
     pub(crate) const fn disabled(mut self, reason: Option<&'a str>) -> Self {
         self.field.disabled = reason;
         self
     }
 
-    /// Shows that what is in force cannot be as it is.
+    /// Marks the value in force as invalid.
     pub(crate) const fn wrong(mut self, is_wrong: bool) -> Self {
         self.field.is_wrong = is_wrong;
         self
     }
 
-    /// What was typed counts with Enter alone, not when the field is left: it is sent to a hand.
+    /// Applied with Enter alone, not on loss of focus: the value is sent to a hand.
     pub(crate) const fn needs_enter(mut self) -> Self {
         self.field.counts_when_left = false;
         self
     }
 
-    /// So many digits may stand after the decimal mark.
+    /// Maximum number of digits after the decimal mark.
     pub(crate) const fn decimals(mut self, decimals: usize) -> Self {
         self.decimals = decimals;
         self
     }
 
-    /// Draws a field for whole numbers. The one that was typed and confirmed with Enter in this frame.
+    /// Draws a field for whole numbers. Returns the number in the frame in which it is applied.
     pub(crate) fn whole_ui(
         self,
         ui: &mut Ui,
@@ -279,8 +278,7 @@ impl<'a> NumberField<'a> {
         Some(whole)
     }
 
-    /// Draws it where `ui` is; what is in force is shown, none as "-". The number that was typed and confirmed with Enter
-    /// in this frame.
+    /// Draws it at the cursor of `ui`; `None` is shown as "-". Returns the number in the frame in which it is applied.
     pub(crate) fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>, value: Option<f64>) -> Option<f64> {
         let decimals = self.decimals;
         let shown = value.map_or_else(|| UNKNOWN.to_owned(), |value| format!("{value:.decimals$}"));
@@ -299,7 +297,7 @@ impl<'a> NumberField<'a> {
     }
 }
 
-/// Marks all of the field's text, so that what is typed next takes its place.
+/// Selects all of the field's text, so that typing replaces it.
 fn select_all(ui: &Ui, id: Id, text: &str) {
     let mut state = TextEditState::load(ui.ctx(), id).unwrap_or_default();
     let end = CCursor::new(text.chars().count());
@@ -308,15 +306,15 @@ fn select_all(ui: &Ui, id: Id, text: &str) {
     state.store(ui.ctx(), id);
 }
 
-/// Why what stands in a field was not taken, over what is below it, so that nothing moves under the pointer.
+/// Shows why the text was refused, over the content below the field, so that nothing moves under the pointer.
 fn refused_ui(ui: &Ui, look: Look, (id, rect): (Id, Rect), words: &str) {
     let id = id.with("refused");
     let tooltip = Tooltip::always_open(ui.ctx().clone(), ui.layer_id(), id, rect);
     tooltip.show(|ui| ui.colored_label(look.palette.bad, words));
 }
 
-/// A number written with plain digits and nothing else: no group marks, no full-width digit. Where decimals are wanted
-/// a point or a comma may stand before them, and a minus before all.
+/// Parses a number of plain digits: no group marks, no full-width digits. With decimals, a point or comma and a leading
+/// minus are accepted.
 fn strict(text: &str, decimals: usize) -> Option<f64> {
     let text = text.trim();
     let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());

@@ -1,4 +1,4 @@
-//! What every view is built from: texts, controls, cards, lists, borders.
+//! Building blocks of every view: texts, controls, cards, lists, borders.
 
 mod card;
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What every part of the window is given: the state, how it looks, and where to put actions.
+//! Context of every part of the window: the state, the appearance, and the list of actions.
 
 use crate::app::action::Action;
 use crate::app::effect::Effect;
@@ -13,64 +13,64 @@ use crate::ui::text::{inputs, main};
 use crate::ui::view::{Place, View};
 use egui::{Id, Key, Ui};
 
-/// One pass over one part of the window.
+/// Context for one pass over one part of the window.
 pub(crate) struct Pane<'a> {
-    /// What is shown.
+    /// State to show.
     pub(crate) state: &'a State,
     pub(crate) look: Look,
-    /// What the user asked for.
+    /// Actions requested by the user, in order.
     pub(crate) actions: &'a mut Vec<Action>,
-    /// The field being typed into.
+    /// Field with the keyboard, or with refused text.
     pub(crate) typing: &'a mut Typing,
-    /// What is to be opened after this frame.
+    /// View to open after this frame.
     pub(crate) opens: &'a mut Option<ViewRequest>,
 }
 
-/// What the user opens from another part of the window.
+/// A view or overlay that the user opens from another part of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ViewRequest {
     View(View),
-    /// A place, with the view that was open there last.
+    /// A tab, at the view that was open there last.
     Place(Place),
-    /// Faults and messages, or what was open before them.
+    /// Toggles between faults and messages and the view open before them.
     Faults,
-    /// What a drive says, with its faults.
+    /// State and faults of one drive.
     Drive(Dof),
-    /// A note of this moment.
+    /// A note at the current moment.
     Note,
-    /// The list of keys, or away with it.
+    /// Toggles the list of keys.
     Keys,
-    /// The command palette, or away with it.
+    /// Toggles the command palette.
     Palette,
 }
 
 impl<'a> Pane<'a> {
-    /// The hand that is shown.
+    /// Hand that is shown.
     pub(crate) fn hand(&self) -> &'a Hand {
         self.state.hand()
     }
 
-    /// Opens this after the frame.
+    /// Opens a view after the frame.
     pub(crate) const fn open(&mut self, opens: ViewRequest) {
         *self.opens = Some(opens);
     }
 
-    /// How a window as large as this one is divided.
+    /// Panel layouts for the current window size.
     pub(crate) fn layouts(&self, ui: &Ui) -> RoomLayouts {
         self.state.settings.layout.at(breakpoint(ui))
     }
 
-    /// Divides windows as large as this one so.
+    /// Requests these panel layouts for windows of the current size.
     pub(crate) fn lay_out(&mut self, ui: &Ui, layouts: RoomLayouts) {
         self.actions.push(Action::Layout(self.layout(ui, layouts)));
     }
 
-    /// The whole layout with windows as large as this one divided so.
+    /// Returns the whole layout with these panel layouts for the current window size.
     pub(crate) fn layout(&self, ui: &Ui, layouts: RoomLayouts) -> Layout {
         self.state.settings.layout.with(breakpoint(ui), layouts)
     }
 
-    /// Why nothing that moves the hand can be asked for now.
+    /// Reason why no motion can be requested now; `None` if motion is possible.
     pub(crate) fn unready(&self) -> Option<&'static str> {
         if let Some(recorded) = self.recorded() {
             return Some(recorded);
@@ -89,27 +89,27 @@ impl<'a> Pane<'a> {
         (!hand.connection.is_armed()).then(|| self.look.say(advice))
     }
 
-    /// Why nothing at all can be asked of a hand now: a recording is shown.
+    /// Reason why nothing can be requested of a hand: a recording is shown. `None` otherwise.
     pub(crate) fn recorded(&self) -> Option<&'static str> {
         let is_recorded = self.state.timeline.is_some();
         is_recorded.then(|| self.look.say(main::RECORDED))
     }
 
-    /// How fresh something asked for at `asked` is.
+    /// Freshness of a reading requested at `asked`.
     pub(crate) fn freshness(&self, asked: Option<Moment>) -> Freshness {
         let hand = self.hand();
         hand.readings
             .freshness(asked, hand.connection.is_live(), self.state.now)
     }
 
-    /// The same for the reading of a fingertip.
+    /// Freshness of a fingertip's reading.
     pub(crate) fn tip_freshness(&self, finger: Finger) -> Freshness {
         let hand = self.hand();
         hand.readings
             .tip_freshness(finger, hand.connection.is_live(), self.state.now)
     }
 
-    /// The newest value of one joint, and how fresh it is.
+    /// Newest value of one joint, with its freshness.
     pub(crate) fn newest<T: Copy>(
         &self,
         dof: Dof,
@@ -124,23 +124,23 @@ fn breakpoint(ui: &Ui) -> Breakpoint {
     Breakpoint::of(ui.ctx().content_rect().width())
 }
 
-/// The one field that is being typed into, or whose text was refused.
+/// The field being edited, or whose text was refused.
 #[derive(Debug, Default)]
 pub(crate) struct Typing {
-    /// Which, and what was typed so far.
+    /// Id of the field, and the text typed so far.
     pub(crate) field: Option<(Id, String)>,
-    /// Why that was refused.
+    /// Reason why the text was refused.
     pub(crate) refused: Option<String>,
 }
 
 impl Typing {
-    /// True if a text that was refused before goes now.
+    /// True if Enter or Esc discards a refused text in this frame.
     pub(crate) fn is_given_up(&self, ui: &Ui) -> bool {
         let keys = [Key::Enter, Key::Escape];
         self.refused.is_some() && ui.input(|input| keys.iter().any(|key| input.key_pressed(*key)))
     }
 
-    /// Something else was asked of a hand, or another view is open: a text that was refused would hide what is in force.
+    /// Discards refused text that would hide the value in force, once an action stops, moves, adjusts or connects a hand.
     pub(crate) fn after(&mut self, actions: &[Action]) {
         let covers = |action: &Action| {
             matches!(

@@ -1,4 +1,4 @@
-//! A field for the path of a file, for where the system offers no dialog. Opens nothing.
+//! A text field for a file path, for systems without a file dialog. Opens nothing itself.
 
 use crate::ui::kit::controls::{self, Button};
 use crate::ui::style::Look;
@@ -7,7 +7,7 @@ use crate::ui::theme;
 use egui::{Align, Id, Key, Layout, Ui};
 use std::path::PathBuf;
 
-/// Draws the field with its button. The path that was typed and confirmed; the quotes around a copied one are no part of it.
+/// Draws the field with its button. Returns the confirmed path, without the quotes around a pasted one.
 pub(crate) fn path_ui(ui: &mut Ui, look: Look, id: &'static str) -> Option<PathBuf> {
     let field = PathField {
         id,
@@ -17,7 +17,7 @@ pub(crate) fn path_ui(ui: &mut Ui, look: Look, id: &'static str) -> Option<PathB
     field.ui(ui, look)
 }
 
-/// The same for the folder of recordings.
+/// Same as [`path_ui`], for the folder of recordings.
 pub(crate) fn folder_path_ui(ui: &mut Ui, look: Look) -> Option<PathBuf> {
     let field = PathField {
         id: "sessions folder",
@@ -27,10 +27,10 @@ pub(crate) fn folder_path_ui(ui: &mut Ui, look: Look) -> Option<PathBuf> {
     field.ui(ui, look)
 }
 
-/// A field and its button.
+/// A path field with its button.
 struct PathField {
     id: &'static str,
-    /// The name of the field, with its hint.
+    /// Accessible name and hint.
     name: Text,
     button: Text,
 }

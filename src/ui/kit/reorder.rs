@@ -1,19 +1,18 @@
-//! Things that the user puts in another order, by dragging one to the place of another.
-//! Knows nothing of what they are.
+//! Lists that the user reorders by dragging an entry onto another. Independent of the entries' type.
 
 use crate::ui::style::Look;
 use crate::ui::theme;
 use egui::{CursorIcon, Id, Key, Rect, Sense, Stroke, StrokeKind, Ui};
 
-/// What is dragged.
+/// State of the drag in progress.
 #[derive(Debug, Default)]
 pub(crate) struct Reorder {
     dragged: Option<usize>,
 }
 
 impl Reorder {
-    /// For each thing, before its own controls: those stay on top and work as ever. From where to where one went, once it
-    /// is let go over this one. Esc lets it stay.
+    /// Call once per entry, before its own controls, which stay on top and keep working. Returns (from, to) when an entry is
+    /// dropped onto this one; Esc cancels the drag.
     pub(crate) fn place(
         &mut self,
         ui: &Ui,

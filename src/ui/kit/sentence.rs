@@ -1,11 +1,11 @@
-//! A sentence whose figures are fields, edited in place.
+//! A sentence whose numbers are fields, edited in place.
 
 use crate::ui::kit::controls::{Label, cell_ui, say_ui, text_width};
 use crate::ui::style::Look;
 use crate::ui::theme;
 use egui::{Ui, UiBuilder, vec2};
 
-/// Ends the words that belong to the field before them.
+/// Punctuation that ends the words kept with the field before them.
 const MARKS: [char; 8] = ['.', ',', ';', ':', '。', '，', '；', '：'];
 
 /// A sentence with a field at each `{}`.
@@ -17,7 +17,7 @@ pub(crate) struct Sentence<'a> {
 }
 
 impl<'a> Sentence<'a> {
-    /// With how wide each field is.
+    /// `widths` holds the width of each field, in points.
     pub(crate) const fn new(words: &'a str, widths: &'a [f32]) -> Self {
         Self {
             words,
@@ -26,14 +26,14 @@ impl<'a> Sentence<'a> {
         }
     }
 
-    /// Says below the field of this number why what stands in it cannot be.
+    /// Shows below the field with this number why its value is invalid.
     pub(crate) fn wrong(mut self, wrong: Option<(usize, String)>) -> Self {
         self.wrong = wrong;
         self
     }
 
-    /// Draws it over the width of `ui`, in as many lines as it needs. `field_ui` draws a field, by its number; that is on one line
-    /// with the words before it and the unit behind it.
+    /// Draws it over the width of `ui`, on as many lines as needed. `field_ui` draws the field with the given number, which stays
+    /// on one line with the words before it and the unit after it.
     pub(crate) fn ui(self, ui: &mut Ui, look: Look, mut field_ui: impl FnMut(&mut Ui, usize)) {
         let words_ui = |ui: &mut Ui, words: &str, width: f32| {
             if width > 0.0 {
@@ -57,7 +57,7 @@ impl<'a> Sentence<'a> {
                 let all = shown.fold(-theme::STEP, |all, width| all + width + theme::STEP);
                 cell_ui(ui, vec2(all, theme::CONTROL), |ui| {
                     words_ui(ui, before, before_width);
-                    // What is typed into a field stays there, whatever appears before it.
+                    // Own id scope: typed text stays in its field when a field appears or disappears before it.
                     let own = UiBuilder::new().scope_id(id.with(number));
                     cell_ui(ui, vec2(*width, theme::CONTROL), |ui| {
                         ui.scope_builder(own, |ui| field_ui(ui, number));

@@ -1,5 +1,5 @@
-//! The button that begins a series: a click where the hand is armed; held for a second where it is not, which arms it too.
-//! A stop, and whatever forbids the start, takes the hold back.
+//! The button that starts a series: a click while armed; while disarmed, hold it for a second, which arms the hand as well.
+//! A stop, or anything that forbids the start, cancels the hold.
 
 use crate::app::action::Action;
 use crate::app::trials::StartRefusal;
@@ -11,30 +11,30 @@ use crate::ui::theme;
 use egui::{CornerRadius, Event, Key, Response, Ui};
 use std::time::Duration;
 
-/// So long the button is held: longer than any click.
+/// Required hold time: longer than any click.
 const HOLD_DURATION: Duration = Duration::from_secs(1);
 
-/// What is kept of the hold between frames.
+/// State of the hold between frames.
 #[derive(Debug, Default)]
 pub(crate) struct StartButton {
     since: Option<Moment>,
-    /// It was let go too early.
+    /// Released too early.
     is_short: bool,
 }
 
-/// What the button begins.
+/// Labels and actions of the start button.
 #[derive(Debug, Clone)]
 pub(crate) struct StartWish {
-    /// Why it cannot begin, in words.
+    /// Reason why the series cannot start.
     pub(crate) refused: Option<String>,
-    /// In an arming that is in force.
+    /// Start within the arming in force.
     pub(crate) start: (Text, Action),
-    /// In an arming of its own.
+    /// Start with an arming of its own.
     pub(crate) arm_and_start: (Text, Action),
 }
 
 impl StartButton {
-    /// Draws the button over what it needs.
+    /// Draws the button and a line of text below it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, wish: StartWish) {
         let (look, palette) = (pane.look, pane.look.palette);
         let is_armed = pane.hand().connection.is_armed();
@@ -67,14 +67,14 @@ impl StartButton {
         say_ui(ui, words, color);
     }
 
-    /// True once it was held long enough, by the pointer on it or by Enter.
+    /// True once held for [`HOLD_DURATION`], with the pointer or with Enter.
     fn is_held(&mut self, ui: &Ui, pane: &Pane<'_>, response: &Response) -> bool {
         let has_pointer = response.contains_pointer();
         let has_keyboard = response.has_focus();
-        // Not the response's own press: that is over once it is too long for a click.
+        // `response.is_pointer_button_down_on()` ends once a press is too long for a click.
         let (begins, is_down) = ui.input(|input| {
             let pointer = &input.pointer;
-            // A key that is held repeats itself: that begins nothing anew.
+            // Auto-repeat of a held key does not begin a new hold.
             let is_enter = |event: &Event| {
                 matches!(
                     event,
@@ -117,7 +117,7 @@ impl StartButton {
     }
 }
 
-/// How much of the hold is done, along the lower edge.
+/// Progress of the hold, along the lower edge.
 fn bar(ui: &Ui, pane: &Pane<'_>, response: &Response, held: Duration) {
     let share = held.as_secs_f32() / HOLD_DURATION.as_secs_f32();
     let place = response.rect.shrink(2.0);
@@ -128,7 +128,7 @@ fn bar(ui: &Ui, pane: &Pane<'_>, response: &Response, held: Duration) {
         .rect_filled(place, CornerRadius::same(round), ink);
 }
 
-/// Why a series cannot begin, in words. `unsound` is what is wrong with what is wished, and `refusal` why the hand cannot begin it.
+/// Reason why a series cannot start. `unsound` is the error in the plan, `refusal` the reason why the hand cannot start it.
 pub(crate) fn start_refused(
     pane: &Pane<'_>,
     unsound: Option<Text>,

@@ -1,4 +1,4 @@
-//! The card of a calibration of the force sensors: what must be so, live; how far it is; the offsets before and after.
+//! The card of a force sensor calibration: live preconditions, progress, and the offsets before and after.
 
 use crate::app::procedures::{CalibrateProcedure, ProcedureAction, ProcedureStage};
 use crate::app::state::State;
@@ -53,7 +53,7 @@ fn over(look: Look, card: Card, before: Option<Offsets>, report: &CalibrateRepor
     offsets(card, &columns).choice(close())
 }
 
-/// A column of grams for each, a row for each joint.
+/// Adds a table with a column of grams for each entry and a row for each joint.
 fn offsets(card: Card, columns: &[(Text, Option<Offsets>)]) -> Card {
     let titles = columns.iter().map(|(title, _)| *title);
     let card = card.head([cards::JOINT].into_iter().chain(titles));

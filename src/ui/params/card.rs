@@ -1,4 +1,4 @@
-//! The card before what could hurt is written or saved: which joints, how the hand would wake up, what that was measured to press.
+//! The card before dangerous values are written or saved: joints, values at power-up, and the force measured with them.
 //! Nothing is written while it is open.
 
 use crate::app::action::Action;
@@ -12,7 +12,7 @@ use crate::ui::kit::{ButtonRole, Card, Choice, Look};
 use crate::ui::params::table::value_text;
 use crate::ui::text::{cards, device, main, poses, tune, words};
 
-/// The card of what waits for a yes, if something does.
+/// Card of the question that awaits confirmation, if there is one.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let question = state.hand().params.question.as_ref()?;
     Some(card(state, look, question))
@@ -46,7 +46,7 @@ fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
         .choice(agree.disabled(why.map(device::refusal)))
 }
 
-/// What a SAVE changes for the next power-up, row by row.
+/// Adds the changes that a SAVE makes for the next power-up, row by row.
 fn changes(state: &State, look: Look, card: Card) -> Card {
     let book = &state.hand().params;
     if book.unsaved().is_empty() {
@@ -71,7 +71,7 @@ fn changes(state: &State, look: Look, card: Card) -> Card {
     }
 }
 
-/// What is dangerous about these joints, with the measured figures.
+/// Adds warnings about these joints, with the measured values.
 pub(crate) fn dangers(look: Look, mut card: Card, dangers: &[Danger]) -> Card {
     let hard = dangers
         .iter()

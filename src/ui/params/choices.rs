@@ -1,4 +1,4 @@
-//! What the cards of all procedures have in common.
+//! Common buttons of all procedure cards.
 
 use crate::app::action::Action;
 use crate::app::params::rest_refusal;
@@ -7,12 +7,12 @@ use crate::app::state::State;
 use crate::ui::kit::{ButtonRole, Card, Choice};
 use crate::ui::text::{Text, cards, device};
 
-/// A button that goes one step further.
+/// A button that advances the procedure by one step.
 pub(crate) fn step(text: Text, manner: ButtonRole, step: ProcedureAction) -> Choice {
     Choice::new(text, manner, Action::Procedure(step))
 }
 
-/// The way out of a card that was read.
+/// The button that closes a card.
 pub(crate) fn close() -> Choice {
     step(cards::CLOSE, ButtonRole::Safe, ProcedureAction::Close)
 }

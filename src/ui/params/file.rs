@@ -1,4 +1,4 @@
-//! A file of parameters beside the hand, row by row with ticks. What is ticked is staged by an action; nothing is written.
+//! A parameter file compared with the hand, row by row with check boxes. Checked rows are staged by an action; nothing is written.
 
 use crate::app::action::Action;
 use crate::app::params::state::Compared;

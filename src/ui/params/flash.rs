@@ -1,4 +1,4 @@
-//! What is known of the hand's flash: SAVE and what came of it, what was saved last, backups, files. Every change is an action.
+//! State of the hand's flash: SAVE and its outcome, last saved values, backups, files. Every change is an action.
 
 use crate::app::action::Action;
 use crate::app::params::state::Doing;
@@ -12,7 +12,7 @@ use crate::ui::text::{cards, device, errors, main, notices};
 use crate::ui::theme;
 use egui::{Color32, ScrollArea, Ui, vec2};
 
-/// Draws the card: beside the table its parts under each other, below it side by side.
+/// Draws the card: its parts stacked beside the table, or side by side below it.
 pub(crate) fn flash_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     kit::card_ui(ui, pane.look, |ui| {
         let height = ui.available_height();
@@ -37,7 +37,7 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let hand = pane.hand();
     let reason = hand.params.save_refusal(&hand.connection.status);
     let reason = reason.map(|why| look.say(device::refusal(why)));
-    // Bright only where it is the next thing to do.
+    // Strong only if it is the next step.
     let unsaved = hand.params.unsaved();
     let is_next = hand.params.to_apply().is_empty() && !unsaved.is_empty();
     let save = Button::said(look, device::SAVE).strong_if(is_next);
@@ -54,7 +54,7 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     });
 }
 
-/// What is known, the newest first.
+/// State of the flash, newest first.
 fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     let (look, book) = (pane.look, &pane.hand().params);
     let palette = look.palette;
@@ -99,14 +99,14 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
     lines
 }
 
-/// What is written or saved now, in words; `None` also while parameters are only read.
+/// Write or save in progress, as text; `None` also while parameters are only read.
 pub(crate) fn writing(pane: &Pane<'_>) -> Option<&'static str> {
     let doing = pane.hand().params.doing;
     let words = device::doing(doing).filter(|_| doing != Doing::Reading);
     words.map(|words| pane.look.say(words))
 }
 
-/// How the last save ended, and in which colour; `None` if nothing was saved yet.
+/// Outcome of the last save, with its colour; `None` if nothing was saved yet.
 pub(crate) fn save_end(pane: &Pane<'_>) -> Option<(String, Color32)> {
     let (look, palette) = (pane.look, pane.look.palette);
     let (end, _) = pane.hand().params.save.as_ref()?;
@@ -115,7 +115,7 @@ pub(crate) fn save_end(pane: &Pane<'_>) -> Option<(String, Color32)> {
     Some((device::save_end(look, end), color))
 }
 
-/// `2026-11-21 12:30:00 UTC`, from a stamp.
+/// Formats a timestamp as `2026-11-21 12:30:00 UTC`.
 pub(crate) fn moment(stamp: &str) -> String {
     stamp.replace('T', " ").replace('Z', " UTC")
 }
@@ -155,7 +155,7 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     ui.horizontal(|ui| guarded_ui(ui, pane));
 }
 
-/// One backup as a button, with the hand below it.
+/// Draws one backup as a button, with its hand below.
 fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
     let look = pane.look;
     let (words, unreadable) = match &backup.file {
@@ -171,7 +171,7 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
     };
     let tip = format!("{words}\n{}", look.say(device::BACKUP_TIP));
     let button = Button::new(&words, &tip).disabled(unreadable.as_deref());
-    // As wide as the list: a name that is longer is cut.
+    // As wide as the list: a longer name is truncated.
     let (id, place) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
     if button.put(ui, look, place, id).clicked() {
         let wish = ParamAction::Open(Some(backup.path.clone()));
@@ -184,7 +184,7 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
     }
 }
 
-/// The buttons of what is done to a hand only under a card. Each opens its card and does nothing else.
+/// Draws the buttons of procedures that need confirmation. Each only opens its card.
 pub(crate) fn guarded_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let live = pane.hand().connection.status.state.is_live();

@@ -1,5 +1,5 @@
-//! The view of what the hand keeps: its tools, what waits for a yes, and where table, file and flash stand. Keeps only what is
-//! filtered; every change is an action.
+//! The view of the hand's parameters: tools, pending confirmation, and the layout of table, file and flash. Stores the filter
+//! only; every change is an action.
 pub(crate) mod calibration;
 pub(crate) mod card;
 pub(crate) mod choices;
@@ -17,14 +17,14 @@ use crate::ui::text::{device, errors};
 use crate::ui::theme;
 use egui::{Color32, Panel, Ui};
 
-/// What the view needs between frames.
+/// View state.
 #[derive(Debug, Default)]
 pub(crate) struct DeviceView {
     shown: ShownRows,
 }
 
 impl DeviceView {
-    /// Draws the view: flash beside the table, or below it where the window is narrow.
+    /// Draws the view: flash beside the table, or below it in a narrow window.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let flash = if ui.available_width() >= 860.0 {
             kit::bare(Panel::right("flash"), 280.0, theme::GAP_LEFT)
@@ -44,7 +44,7 @@ impl DeviceView {
         });
     }
 
-    /// What is shown of the table.
+    /// Draws the filter of the table.
     fn find_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ui.scope(|ui| {
@@ -64,7 +64,7 @@ impl DeviceView {
     }
 }
 
-/// What is done with what is staged.
+/// Draws the actions on staged values.
 fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, hand) = (pane.look, pane.hand());
     let why = |why: Option<_>| why.map(|why| look.say(device::refusal(why)));
@@ -98,7 +98,7 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// What is going on, or how old it all is.
+/// Operation in progress, or age of the values.
 fn status(pane: &Pane<'_>) -> (String, Color32) {
     let (look, hand) = (pane.look, pane.hand());
     let book = &hand.params;

@@ -1,5 +1,5 @@
-//! The cards of what is done under one: a change of the hand's place and the return to the factory's parameters. The words for
-//! each state, and what can be done about it.
+//! The cards of procedures that need confirmation: a change of the hand's address, and a factory reset of its parameters. The
+//! text for each state, and its buttons.
 
 use crate::app::action::Action;
 use crate::app::procedures::{
@@ -24,10 +24,10 @@ use crate::ui::params::table::value_text;
 use crate::ui::text::{Text, cards, device, errors, main};
 use std::path::Path;
 
-/// The word that a return to the factory's parameters wants typed, in every language.
+/// The word that a factory reset requires to be typed, in every language.
 pub(crate) const RESET_WORD: &str = "RESET";
 
-/// The card of what is under way, if something is.
+/// Card of the procedure in progress, if there is one.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     Some(match state.hand().procedures.card.as_ref()? {
         Procedure::Calibrate(run) => calibration::card(state, look, run),
@@ -36,7 +36,7 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     })
 }
 
-/// Nothing was written: why.
+/// Adds the reason why nothing was written.
 fn not_begun(look: Look, card: Card, error: &TaskError) -> Card {
     let card = match error {
         TaskError::NoBackup(why) => card
@@ -51,7 +51,7 @@ fn not_begun(look: Look, card: Card, error: &TaskError) -> Card {
     card.choice(close())
 }
 
-/// From which value to which.
+/// Old and new value of a change.
 fn from_to(look: Look, change: &PlaceChange) -> String {
     let (from, to) = (change.before, change.wanted);
     let [from, to] = [from, to].map(|value| value_text(change.id, Some(value)));
@@ -59,7 +59,7 @@ fn from_to(look: Look, change: &PlaceChange) -> String {
     look.pair(name, &format!("{from} -> {to}"))
 }
 
-/// Where the hand is now, and where it will be if that is elsewhere.
+/// Adds the hand's current address, and its future one if that differs.
 fn now_and_then(card: Card, places: &PlacePair) -> Card {
     let card = card.note((cards::NOW_AT, &places.old));
     if places.new == places.old {
@@ -84,7 +84,7 @@ fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     asking(state, card, begin(cards::CHANGE))
 }
 
-/// The button that begins what cannot simply be taken back.
+/// The button that begins an irreversible step.
 fn begin(text: Text) -> Choice {
     step(text, ButtonRole::Danger, ProcedureAction::Begin)
 }
@@ -196,7 +196,7 @@ fn change_over(look: Look, card: Card, places: &PlacePair, report: &PlaceReport)
     }
 }
 
-/// What is known of the flash after a change was kept.
+/// Adds the state of the flash after a change was confirmed.
 fn save_end(look: Look, card: Card, places: &PlacePair, saved: Option<&Saved>) -> Card {
     match saved {
         None => card.words(cards::OVER_UNSAVED),
@@ -205,7 +205,7 @@ fn save_end(look: Look, card: Card, places: &PlacePair, saved: Option<&Saved>) -
     }
 }
 
-/// Both places where the hand may be.
+/// Adds both possible addresses of the hand.
 fn both(card: Card, places: &PlacePair) -> Card {
     card.note(places.old.to_string())
         .note(places.new.to_string())
@@ -215,7 +215,7 @@ fn backup(card: Card, backup: &Path) -> Card {
     card.note((cards::BACKUP, backup.display()))
 }
 
-/// The ways back to a hand: each place where it may be.
+/// Adds buttons that connect to each possible address of the hand.
 fn ways(card: Card, places: &PlacePair) -> Card {
     let connect = |text, place: &Endpoint| {
         Choice::new(text, ButtonRole::Plain, Action::Connect(place.clone()))

@@ -1,5 +1,5 @@
-//! The table of what the hand keeps: a row for each parameter, each column with where its value comes from and how old it is.
-//! Every change is an action that stages; nothing here writes.
+//! The parameter table: a row for each parameter, and columns of its values with their source and age. Every change is an
+//! action that stages; nothing here writes.
 
 use crate::app::action::Action;
 use crate::app::readings::Freshness;
@@ -12,17 +12,17 @@ use crate::ui::theme;
 use egui::{Align, Layout, RichText, Ui, UiBuilder, vec2};
 use egui_extras::{Column, TableBody, TableRow};
 
-/// Characters of an address.
+/// Maximum characters of an address.
 const ADDRESS_MAX: usize = 15;
-/// Height of a row, and of one that has a button below its field.
+/// Height of a row.
 const ROW: f32 = 28.0;
-/// Widths of name, live, staged and saved; narrower where there is no room for all. The range has the rest.
+/// Widths of name, live, staged and saved; narrower if not all fit. The range column gets the rest.
 const COLUMNS: [f32; 4] = [240.0, 152.0, 176.0, 128.0];
 /// Width that all columns need.
 const WIDTH: f32 = 800.0;
-/// Which rows are in a group, its title, and what they are.
+/// Rows of a group, its title, and its description.
 type ParamGroup = (fn(ParamId) -> bool, Text, Text);
-/// The groups in their order.
+/// The groups in display order.
 const GROUPS: [ParamGroup; 3] = [
     (
         |id| matches!(id, ParamId::DefaultSpeed(_)),
@@ -39,9 +39,9 @@ const GROUPS: [ParamGroup; 3] = [
 
 #[derive(Debug, Default)]
 pub(crate) struct ShownRows {
-    /// Only those in which something differs.
+    /// Only rows in which values differ.
     pub(crate) only: bool,
-    /// Only those with these words.
+    /// Only rows that contain these words.
     pub(crate) words: String,
 }
 
@@ -58,10 +58,9 @@ impl ShownRows {
     }
 }
 
-/// In a low window the table scrolls rather than to lie on what is below it.
+/// Minimum height: in a low window the table scrolls instead of covering the content below it.
 const SCROLLED_LEAST: f32 = 64.0;
 
-/// Draws the table.
 pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
     let look = pane.look;
     let rows = ParamId::all().into_iter();
@@ -111,7 +110,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
     });
 }
 
-/// A line over all columns.
+/// A line across all columns.
 fn line_ui(body: &mut TableBody<'_>, height: f32, line: impl FnOnce(&mut Ui)) {
     let right = body.max_rect().right();
     body.row(height, |mut row| {
@@ -119,7 +118,7 @@ fn line_ui(body: &mut TableBody<'_>, height: f32, line: impl FnOnce(&mut Ui)) {
             let place = ui.max_rect().with_max_x(right);
             let layout = Layout::left_to_right(Align::Center);
             let builder = UiBuilder::new().max_rect(place).layout(layout);
-            // Not allocated: the column stays as wide as it is.
+            // Not allocated: the column's width is unchanged.
             let mut whole = ui.new_child(builder);
             whole.set_clip_rect(ui.clip_rect().with_max_x(right));
             line(&mut whole);
@@ -127,7 +126,7 @@ fn line_ui(body: &mut TableBody<'_>, height: f32, line: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// True if the last write of a row did not end as it should.
+/// True if the last write of a row did not succeed.
 fn has_trouble(pane: &Pane<'_>, id: ParamId) -> bool {
     let end = pane.hand().params.outcome(id);
     end.is_some_and(|end| end.verdict != RowVerdict::Applied)
@@ -169,7 +168,7 @@ fn row_ui(mut row: TableRow<'_, '_>, pane: &mut Pane<'_>, id: ParamId) {
     row.col(|ui| range_ui(ui, pane, id));
 }
 
-/// What may be written, and what the hand was delivered with where the manual says so.
+/// Draws the writable range, and the factory value if the manual states it.
 fn range_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
     let (look, muted) = (pane.look, pane.look.palette.muted);
     let range = match (id, id.range()) {
@@ -196,13 +195,13 @@ fn range_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
     shown.response.on_hover_text(section);
 }
 
-/// What a screen reader says before a value: `Index speed live`.
+/// Accessible name of a value: `Index speed live`.
 pub(crate) fn cell_name(pane: &Pane<'_>, id: ParamId, column: Text) -> String {
     let name = device::whole_name(pane.look, id);
     format!("{name} {}", pane.look.say(column).to_lowercase())
 }
 
-/// A value as the user says it: the serial speed in baud, not as its code.
+/// Text of a value: the serial speed in baud, not as its code.
 pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
     let speed = match (id, value) {
         (ParamId::ReduRatio, Some(Value::Number(code))) => SerialSpeed::of_code(code.into()),
@@ -215,7 +214,7 @@ pub(crate) fn value_text(id: ParamId, value: Option<Value>) -> String {
     }
 }
 
-/// A value, and beside or below it what is to be known of it.
+/// Draws a value, with a note beside or below it.
 pub(crate) fn cell_ui(ui: &mut Ui, value: Label<'_>, below: &str) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::GAP, 0.0);
@@ -253,7 +252,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
     });
 }
 
-/// What went wrong with a row, and what the hand said.
+/// Draws the error of a row, with the hand's reply.
 fn verdict_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
     let Some(end) = pane.hand().params.outcome(id) else {
         return;
@@ -285,7 +284,7 @@ fn live_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
     cell_ui(ui, Label::new(&value, color).named(&name), &below);
 }
 
-/// The field of what is to be staged, and the way to drop it.
+/// Draws the field of the staged value, and the button that drops it.
 fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let look = pane.look;
     let book = &pane.hand().params;
@@ -303,7 +302,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
             _ => number_ui(ui, pane, id, shown),
         };
         if let Some(new) = new {
-            // What the hand holds already is not staged.
+            // A value equal to the live one is not staged.
             let new = Some(new).filter(|new| Some(*new) != live);
             pane.actions.push(Action::Stage(id, new));
         }
@@ -336,7 +335,7 @@ fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
     kit::choose_ui(ui, name, &mut chosen, &all).then_some(chosen)?
 }
 
-/// What was typed and is no address stays, with the reason beside it.
+/// Draws an address field. Invalid text stays, with the reason beside it.
 fn address_ui(ui: &mut Ui, pane: &mut Pane<'_>, name: &str, value: Option<Value>) -> Option<Value> {
     let text = value.map_or_else(String::new, |value| value.to_string());
     let words = pane.look.say(panels::ADDRESS_WRONG);
@@ -347,7 +346,7 @@ fn address_ui(ui: &mut Ui, pane: &mut Pane<'_>, name: &str, value: Option<Value>
     })
 }
 
-/// A row that says where the hand is found is not written from the table: it is changed under a card, with a way back.
+/// Draws the button for a row that sets the hand's address: it is changed with a card, which can revert it.
 fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let look = pane.look;
     let hand = pane.hand();

@@ -1,4 +1,4 @@
-//! The one plot of the program: curves over time in `egui_plot`, with what that lacks. Knows no hand.
+//! The only plot widget of the program: curves over time in `egui_plot`, with its missing features added. Independent of the hand.
 
 use crate::draw::plot_line;
 use crate::history::{History, Series, Trace};
@@ -19,49 +19,49 @@ use egui_plot::{
 };
 use std::collections::HashMap;
 
-/// Most columns that a chart is drawn in.
+/// Maximum number of pixel columns of a chart.
 const COLUMNS_MOST: f32 = 8192.0;
-/// A box of a smaller part of a chart's height marks time alone.
+/// A zoom box lower than this share of the chart's height selects time only.
 const BOX_LEAST: f64 = 0.15;
-/// The least width of a title beside the values under the pointer.
+/// Minimum width of a title beside the values under the pointer.
 const TITLE_LEAST: f32 = 64.0;
 
-/// Where the points of a curve come from: seconds and values, oldest first.
+/// Source of a curve's points: seconds and values, oldest first.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Points<'a> {
-    /// As many of what was measured as there are columns of pixels.
+    /// A measured series, reduced to the number of pixel columns.
     Measured(&'a History, Series),
-    /// These.
+    /// The given points.
     Own(&'a [[f64; 2]]),
 }
 
-/// One line.
+/// One curve of a chart.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ChartCurve<'a> {
-    /// Where it leads.
+    /// Source of its points.
     pub(crate) points: Points<'a>,
-    /// What is taken from each point.
+    /// Time and value subtracted from each point.
     pub(crate) zero: [f64; 2],
     /// Width and colour.
     pub(crate) stroke: Stroke,
-    /// Kind of stroke.
+    /// Line style.
     pub(crate) style: LineStyle,
-    /// True if a value stands until the next one: nothing was asked for what lies between.
+    /// True if a value holds until the next one, as setpoints do: nothing was requested in between.
     pub(crate) steps: bool,
-    /// Digits of its value at the pointer, if that is told.
+    /// Decimals of the value shown at the pointer; `None` hides it.
     pub(crate) told: Option<usize>,
-    /// True for a line of the second recording: its points are remembered apart.
+    /// True for a curve of the second recording: its points are cached separately.
     pub(crate) beside: bool,
 }
 
 impl<'a> ChartCurve<'a> {
-    /// A plain line of what was measured.
+    /// A plain curve of measurements.
     pub(crate) fn measured(history: &'a History, series: Series, color: Color32) -> Self {
         let stroke = Stroke::new(theme::LINE, color);
         Self::new(Points::Measured(history, series), stroke)
     }
 
-    /// A plain line.
+    /// A plain curve.
     pub(crate) const fn new(points: Points<'a>, stroke: Stroke) -> Self {
         Self {
             points,
@@ -74,7 +74,7 @@ impl<'a> ChartCurve<'a> {
         }
     }
 
-    /// The unbroken pieces of it.
+    /// Its unbroken segments.
     fn pieces<'b>(&'b self, traces: &'b Traces) -> Vec<(&'b Self, &'b [[f64; 2]])> {
         match self.points {
             Points::Own(points) => vec![(self, points)],
@@ -86,7 +86,7 @@ impl<'a> ChartCurve<'a> {
         }
     }
 
-    /// True if a column of pixels holds more than one point of a piece.
+    /// True if a pixel column holds more than one point of a segment.
     fn is_dense(&self, piece: &[[f64; 2]], per_s: f64) -> bool {
         let ends = piece.first().zip(piece.last());
         let columns = ends.map_or(0.0, |(first, last)| (last[0] - first[0]) * per_s);
@@ -124,49 +124,49 @@ impl<'a> ChartCurve<'a> {
 
 type Traces = HashMap<(bool, Series), Trace>;
 
-/// What charts over one time remember between frames.
+/// View state of charts that share a time axis.
 #[derive(Debug, Default)]
 pub(crate) struct ChartView {
-    /// What is shown of the time.
+    /// Visible time range.
     pub(crate) time: TimeWindow,
-    /// Scales that the user chose.
+    /// Scales set by the user.
     pub(crate) scales: Scales,
-    /// Points of lines; of a line that goes on only the newest are fetched.
+    /// Cached points of the curves; only the newest are fetched for a growing curve.
     traces: Traces,
-    /// The chart that the pointer is in, and the part of its width that is left of it.
+    /// Title of the chart under the pointer, and the pointer's position as a share of its width.
     pointed: Option<(&'static str, f64)>,
 }
 
 /// A chart of one quantity.
 pub(crate) struct Chart<'a> {
     pub(crate) look: Look,
-    /// What it shows, with its unit. Different for each of the charts that share a view.
+    /// Title with unit; unique among the charts that share a view.
     pub(crate) title: Text,
-    /// The lines, the foremost last.
+    /// Curves, the foremost last.
     pub(crate) curves: Vec<ChartCurve<'a>>,
-    /// Values to compare with, dashed.
+    /// Reference values, drawn as dashed lines.
     pub(crate) levels: Vec<(f64, Color32)>,
-    /// Moments in seconds, as lines across.
+    /// Moments in seconds, drawn as vertical lines.
     pub(crate) moments: Vec<(f64, Color32)>,
     /// Seconds of two cursors.
     pub(crate) cursors: Option<[f64; 2]>,
-    /// What is always shown of the values.
+    /// Value range that is always visible.
     pub(crate) least: (f64, f64),
-    /// How times are told.
+    /// Format of the times.
     pub(crate) times: Times,
-    /// True if they are told below.
+    /// True if the time axis is drawn below this chart.
     pub(crate) is_lowest: bool,
-    /// Said where there is no line.
+    /// Text shown without any curve.
     pub(crate) empty: Text,
-    /// With caption and axis of time.
+    /// Height with caption and time axis, in points.
     pub(crate) height: f32,
-    /// Room at the right, for the half of a word below or for what stands at the ends of the curves.
+    /// Space at the right, for half of a time label or for the values at the ends of the curves.
     pub(crate) end: f32,
-    /// True without caption and numbers.
+    /// True to omit caption and numbers.
     pub(crate) is_sparkline: bool,
 }
 
-/// Height of one of several charts over one axis of time, which the lowest has below it.
+/// Height of one of several charts over a common time axis, which is drawn below the lowest.
 pub(crate) const fn height_over_axis(height: f32, is_lowest: bool) -> f32 {
     let axis = if is_lowest {
         theme::PLOT_TIME_AXIS
@@ -176,17 +176,17 @@ pub(crate) const fn height_over_axis(height: f32, is_lowest: bool) -> f32 {
     height + axis
 }
 
-/// What was drawn, with the response of the numbers beside it.
+/// The chart as drawn, with the response of the numbers beside it.
 pub(crate) type ChartResponse = PlotResponse<Response>;
 
-/// The time that the pointer is at.
+/// Time at the pointer, in seconds; `None` if the pointer is elsewhere.
 pub(crate) fn pointed_s(shown: &ChartResponse) -> Option<f64> {
     let at = shown.response.hover_pos()?;
     Some(shown.transform.value_from_position(at).x)
 }
 
 impl<'a> Chart<'a> {
-    /// Without anything in it.
+    /// An empty chart.
     pub(crate) const fn new(look: Look, title: Text, height: f32) -> Self {
         Self {
             look,
@@ -205,8 +205,8 @@ impl<'a> Chart<'a> {
         }
     }
 
-    /// Draws it as wide as `ui`. A drag moves in time, the wheel zooms, shift or the right button marks what to zoom
-    /// into, a double click takes all of it back.
+    /// Draws it as wide as `ui`. A drag pans in time, the wheel zooms, Shift-drag or the right button selects an area to zoom
+    /// into, a double click resets everything.
     pub(crate) fn ui(&self, ui: &mut Ui, view: &mut ChartView) -> ChartResponse {
         let mut traces = std::mem::take(&mut view.traces);
         let (from_s, to_s) = view.time.span();
@@ -216,7 +216,7 @@ impl<'a> Chart<'a> {
         let extent = self.fetch(&mut traces, (from_s, to_s), columns);
         let (aim, scale) = self.scale(ui, view, extent);
         ui.spacing_mut().item_spacing.y = 0.0;
-        // The ground tells where a plot is; a frame would be as loud as its curves.
+        // The background shows the extent of a plot; a frame would be as conspicuous as the curves.
         let frame = std::mem::take(&mut ui.visuals_mut().widgets.noninteractive.bg_stroke);
         if !self.is_sparkline {
             self.caption_ui(ui, view);
@@ -276,7 +276,7 @@ impl<'a> Chart<'a> {
         shown
     }
 
-    /// Where the ends of the scale are to be for values of this extent, and where they are on their way there.
+    /// Returns the target ends of the scale for values of this extent, and the current ends while it eases towards them.
     fn scale(
         &self,
         ui: &Ui,
@@ -301,7 +301,7 @@ impl<'a> Chart<'a> {
         }
     }
 
-    /// The time that the pointer is at in another of the charts: at the same place, however time goes on.
+    /// Draws the pointer's time in another chart: at a fixed position, although time advances.
     fn pointer_ui(&self, ui: &Ui, view: &ChartView, frame: Rect) {
         let other = view.pointed.filter(|(of, _)| *of != self.title.en);
         if let Some((_, part)) = other {
@@ -312,7 +312,7 @@ impl<'a> Chart<'a> {
         }
     }
 
-    /// Gets the points that are read from a history. What the values span.
+    /// Fetches the points of measured curves. Returns the range of all values.
     fn fetch(
         &self,
         traces: &mut Traces,
@@ -338,11 +338,11 @@ impl<'a> Chart<'a> {
                 Points::Measured(history, series) => {
                     let trace = traces.entry((curve.beside, series)).or_default();
                     history.trace(series, from_s, to_s, columns, trace);
-                    // What was asked for holds until something else is asked, though it is read seldom.
+                    // A setpoint holds until the next one, although it is read rarely.
                     if curve.steps && history.reading(series, to_s).is_some() {
                         trace.hold_until(to_s);
                     }
-                    // A trace keeps every extreme; the point before the left edge is not seen.
+                    // A trace keeps every extreme; the point before the left edge is not visible.
                     let seen = trace.points().filter(|[at_s, _]| *at_s >= from_s);
                     let values = seen.map(|[_, value]| (value - zero, value - zero));
                     extent = values.fold(extent, scales::joined);
@@ -352,7 +352,7 @@ impl<'a> Chart<'a> {
         extent
     }
 
-    /// Title, what is to be known of it, and the values under the pointer; over the curves, never on them.
+    /// Draws title, notes and the values under the pointer; above the curves, never over them.
     fn caption_ui(&self, ui: &mut Ui, view: &ChartView) {
         let look = self.look;
         let place = vec2(ui.available_width(), theme::PLOT_CAPTION);
@@ -368,7 +368,7 @@ impl<'a> Chart<'a> {
                 0.0
             };
             if let Some(at_s) = view.pointed_s() {
-                // Whoever points there wants the values: the title is cut before they are.
+                // A user who points at the chart wants the values: the title is truncated first.
                 let room = ui.available_width() - theme::PLOT_AXIS - TITLE_LEAST - taken;
                 self.readings_ui(ui, at_s, room);
             }
@@ -387,7 +387,7 @@ impl<'a> Chart<'a> {
         });
     }
 
-    /// The values at a time, each in the colour of its line, in this room.
+    /// Draws the values at a time within this width, each in the colour of its curve.
     fn readings_ui(&self, ui: &mut Ui, at_s: f64, room: f32) {
         let mut job = LayoutJob::default();
         let mut texts = Vec::new();
@@ -486,7 +486,7 @@ impl<'a> Chart<'a> {
         }
     }
 
-    /// The line that passes next to the pointer, by its place in the list; of several the foremost.
+    /// Index of the curve nearest to the pointer; of several, the foremost.
     pub(crate) fn nearest(&self, shown: &ChartResponse) -> Option<usize> {
         let at = shown.response.hover_pos()?;
         let apart = |curve: &ChartCurve<'_>| {
@@ -507,7 +507,7 @@ impl<'a> Chart<'a> {
     }
 }
 
-/// A drag moves the plot in time; with shift, or by the right button, it marks what to zoom into.
+/// A drag pans the plot in time; with Shift, or with the right button, it selects an area to zoom into.
 fn with_drags<'a>(ui: &Ui, plot: Plot<'a>) -> Plot<'a> {
     let marks = ui.input(|input| input.modifiers.shift);
     let boxes = if marks {
@@ -519,7 +519,7 @@ fn with_drags<'a>(ui: &Ui, plot: Plot<'a>) -> Plot<'a> {
         .boxed_zoom_pointer_button(boxes)
 }
 
-/// From a place to a piece of a line.
+/// Distance of the point `at` from a line segment.
 fn distance(from: Pos2, to: Pos2, at: Pos2) -> f32 {
     let way = to - from;
     let part = (at - from).dot(way) / way.length_sq().max(f32::MIN_POSITIVE);
@@ -527,13 +527,13 @@ fn distance(from: Pos2, to: Pos2, at: Pos2) -> f32 {
 }
 
 impl ChartView {
-    /// Moves the time window on to `now_s`: never before the history begins, and `window_s` wide while it follows.
+    /// Advances the time window to `now_s`: never before the start of the history, and `window_s` wide while it follows.
     pub(crate) fn advance(&mut self, history: &History, now_s: f64, window_s: f64) {
         let first_s = history.first_secs().unwrap_or(now_s);
         self.time.advance((first_s.min(now_s), now_s), window_s);
     }
 
-    /// How times are labelled: as an age, or by the clock while the chart is held.
+    /// Format of the times: age, or clock time while the chart is held.
     pub(crate) fn times(&self, look: Look) -> Times {
         if self.time.is_held() {
             Times::Clock
@@ -542,19 +542,19 @@ impl ChartView {
         }
     }
 
-    /// The time that the pointer is at in one of the charts.
+    /// Time at the pointer in any of the charts, in seconds.
     pub(crate) fn pointed_s(&self) -> Option<f64> {
         let (from_s, to_s) = self.time.span();
         let at_s = |(_, part)| from_s + part * (to_s - from_s);
         self.pointed.map(at_s)
     }
 
-    /// Takes over what `egui_plot` made of drags, and follows wheel and double click.
+    /// Applies drags handled by `egui_plot`, the wheel, and double clicks.
     fn act(&mut self, ui: &Ui, shown: &ChartResponse, title: Text, asked: PlotBounds) {
         let bounds = shown.transform.bounds();
         if *bounds != asked {
             self.time.show(bounds.range_x().into_inner());
-            // A low box marks time alone.
+            // A low box selects time only.
             let part = bounds.height() / asked.height();
             if (BOX_LEAST..0.999).contains(&part) {
                 let (low, high) = bounds.range_y().into_inner();
@@ -579,7 +579,7 @@ impl ChartView {
             let before = self.pointed;
             self.pointed = pointed.map(|at_s| (title.en, (at_s - from_s) / (to_s - from_s)));
             if self.pointed != before {
-                // The charts above were drawn before this was known.
+                // The charts above were drawn before the pointer's time was known.
                 ui.request_repaint();
             }
         }

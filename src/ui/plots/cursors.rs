@@ -1,4 +1,4 @@
-//! Two cursors in the plots, and the table of what lies between them. The figures come from all measurements.
+//! Two cursors in the plots, and the table of the values between them, computed from all measurements.
 
 use crate::history::Series;
 use crate::ui::kit::{Button, Label, Look, Pane, format};
@@ -12,12 +12,11 @@ use egui::{Align, CursorIcon, Grid, Id, Layout, Rect, Sense, Ui, WidgetInfo, pos
 
 /// Width of a cursor's flag.
 const CURSOR_FLAG: f32 = 16.0;
-/// Width of the names in the cursors' table.
+/// Width of the names in the cursor table.
 const CURSOR_NAMES: f32 = 84.0;
 
-/// Names of the cursors.
 const NAMES: [(&str, Text); 2] = [("A", panels::CURSOR_A), ("B", panels::CURSOR_B)];
-/// The columns of the table.
+/// Columns of the table.
 const COLUMNS: [Text; 7] = [
     panels::AT_A,
     panels::AT_B,
@@ -28,11 +27,11 @@ const COLUMNS: [Text; 7] = [
     panels::MEAN,
 ];
 
-/// Where the cursors stand, in seconds of A and B, if they are on.
+/// Positions of cursors A and B in seconds; `None` while they are off.
 #[derive(Debug, Default, Clone, Copy)]
 pub(crate) struct Cursors(pub(crate) Option<[f64; 2]>);
 
-/// What two cursors say of one line: A, B, B - A, change a second, smallest, largest, mean; `None` = not known.
+/// Figures of one curve: at A, at B, B - A, change per second, minimum, maximum, mean; `None` = not known.
 fn figures(pane: &Pane<'_>, series: Series, [a_s, b_s]: [f64; 2]) -> [Option<f64>; 7] {
     let history = &pane.hand().measured.history;
     let read = |at_s| {
@@ -55,7 +54,7 @@ fn figures(pane: &Pane<'_>, series: Series, [a_s, b_s]: [f64; 2]) -> [Option<f64
 }
 
 impl Cursors {
-    /// On at a third and two thirds of what is shown, or off.
+    /// Places the cursors at one and two thirds of the visible range, or turns them off.
     pub(crate) fn toggle(&mut self, (from, to): TimeSpan) {
         let third = (to - from) / 3.0;
         self.0 = match self.0 {
@@ -64,7 +63,7 @@ impl Cursors {
         };
     }
 
-    /// The flags under the lowest plot, by which the cursors are moved.
+    /// Draws the flags below the lowest plot, with which the cursors are dragged.
     pub(crate) fn flags_ui(&mut self, ui: &Ui, look: Look, lowest: &ChartResponse) {
         let frame = *lowest.transform.frame();
         let half = CURSOR_FLAG / 2.0;
@@ -92,7 +91,7 @@ impl Cursors {
         }
     }
 
-    /// The table. True if the next plot's figures are wanted.
+    /// Draws the table. True if the user switches to the next plot's figures.
     pub(crate) fn table_ui(
         self,
         ui: &mut Ui,
@@ -138,7 +137,7 @@ impl Cursors {
                 Label::new(name, look.palette.dof[line.dof]).small().ui(ui);
                 for (value, column) in figures(pane, line.series, at).into_iter().zip(COLUMNS) {
                     let text = value.map(|value| {
-                        // Four digits fill the column of a narrow plot.
+                        // Four digits fill the column in a narrow plot.
                         let is_long = value.abs() >= 1000.0;
                         let digits = panel.row.decimals.max(1);
                         let digits = if is_long { 0 } else { digits };

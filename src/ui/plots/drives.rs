@@ -1,4 +1,4 @@
-//! What the drives say of themselves over the time of the plots: an instrument, a row of colours for each joint.
+//! State of the drives over the time range of the plots: one row of colours per joint.
 
 use crate::hand::Dof;
 use crate::history::StatusRun;
@@ -10,23 +10,23 @@ use crate::ui::theme;
 use egui::{Color32, Rangef, Rect, Role, Sense, Stroke, Ui, WidgetInfo, remap, vec2};
 use std::time::Duration;
 
-/// A row with the gap below it.
+/// Height of a row with the gap below it.
 const ROW: f32 = 5.0;
-/// A row.
+/// Height of a row.
 const BAR: f32 = 4.0;
 
-/// Height of the rows of so many joints.
+/// Height of the rows of this number of joints.
 pub(crate) fn height(joints: usize) -> f32 {
     ROW * f32::from(u8::try_from(joints).unwrap_or(u8::MAX)) + theme::STEP
 }
 
-/// Where the rows stand.
+/// Position and time range of the rows.
 pub(crate) struct DrivesPlace<'a> {
     pub(crate) joints: &'a [Dof],
     pub(crate) span: TimeSpan,
-    /// Room at the right of the plots.
+    /// Space at the right of the plots.
     pub(crate) end: f32,
-    /// The time that the pointer is at in a plot.
+    /// Time at the pointer in a plot, in seconds.
     pub(crate) pointed_s: Option<f64>,
 }
 
@@ -67,7 +67,7 @@ impl DrivesPlace<'_> {
             .on_hover_text_at_pointer(told.unwrap_or_else(|| look.tip(panels::DRIVES).to_owned()));
     }
 
-    /// One joint: the stretches of which something is known.
+    /// Draws the row of one joint: time ranges with a known state.
     fn row(&self, ui: &Ui, pane: &Pane<'_>, dof: Dof, frame: Rect) {
         let palette = pane.look.palette;
         let bar = Rect::from_min_size(frame.min, vec2(frame.width(), BAR));
@@ -100,8 +100,8 @@ impl DrivesPlace<'_> {
     }
 }
 
-/// Of stretches in the order of time, those that a display can show: none narrower than a point, and of several within one point
-/// the first and what is `bad`. An hour of grasps has twenty thousand.
+/// Drops ranges that a display cannot show. Ranges come in time order; each is widened to at least one point, and of several
+/// within a point only the first and those in `bad` remain. An hour of grasps has twenty thousand.
 fn seen(
     runs: impl Iterator<Item = (Rangef, Color32)>,
     bad: Color32,
@@ -118,7 +118,7 @@ fn seen(
     })
 }
 
-/// What the drive of a joint said at a time, and since when.
+/// State of a joint's drive at a time, and its start.
 fn told(pane: &Pane<'_>, dof: Dof, at_s: f64) -> Option<String> {
     let look = pane.look;
     let history = &pane.hand().measured.history;

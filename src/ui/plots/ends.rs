@@ -1,5 +1,5 @@
-//! The newest values at the right ends of the curves, each in the colour of its curve and apart from the others where curves meet,
-//! so that equal curves are told apart, too. A click hides a joint's curves.
+//! Newest values at the right ends of the curves, each in its curve's colour, and spread where curves meet, so that equal curves
+//! remain distinguishable. A click hides a joint's curves.
 
 use crate::hand::Dof;
 use crate::ui::kit::{self, Label, Look, format};
@@ -9,29 +9,29 @@ use crate::ui::text::{panels, words};
 use crate::ui::theme;
 use egui::{Color32, CursorIcon, Rangef, Rect, Response, Role, Stroke, Ui, WidgetInfo, pos2};
 
-/// From here on there is room for names.
+/// Minimum width at which names are shown.
 const NAMED_FROM: f32 = 600.0;
-/// From the end of a curve to its value.
+/// Distance from the end of a curve to its value.
 const LEADER: f32 = 8.0;
-/// Pixels of a point from which on a display may be touched.
+/// Pixels per point from which a touch screen is assumed.
 const TOUCHED: f32 = 1.5;
-/// To the right edge of a value.
+/// Distance from the end of a curve to the right edge of its value.
 pub(crate) const VALUES: f32 = LEADER + VALUE;
-/// A value.
+/// Width of a value.
 const VALUE: f32 = 40.0;
-/// A name.
+/// Width of a name.
 const NAME: f32 = 88.0;
 
 /// The end of a curve.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CurveEnd {
     pub(crate) dof: Dof,
-    /// `None` where it is not known.
+    /// `None` if unknown.
     pub(crate) value: Option<f64>,
     pub(crate) color: Color32,
 }
 
-/// Room at the right of plots as wide as `ui`.
+/// Space at the right of plots as wide as `ui`.
 pub(crate) fn width(ui: &Ui) -> f32 {
     let name = if ui.available_width() < NAMED_FROM {
         0.0
@@ -49,7 +49,7 @@ pub(crate) struct PlotEnds<'a> {
 }
 
 impl PlotEnds<'_> {
-    /// Draws the ends. The joint that the pointer is at, and whether it was pressed.
+    /// Draws the ends. Returns the hovered joint, and true if it was clicked.
     pub(crate) fn ui(&self, ui: &Ui, ends: &[CurveEnd]) -> Option<(Dof, bool)> {
         if ends.iter().all(|end| end.value.is_none()) {
             return None;
@@ -86,12 +86,12 @@ impl PlotEnds<'_> {
         pointed
     }
 
-    /// The value of one curve, and its name where there is room.
+    /// Draws the value of one curve, and its name if it fits.
     fn end_ui(&self, ui: &Ui, end: &CurveEnd, place: Rect) -> Response {
         let (look, panel) = (self.look, self.panel);
         let name = look.say(words::dof(end.dof));
         let id = ui.scope_id().with((panel.title.en, end.dof.index()));
-        // A finger would hide the wrong one: there the menu does it.
+        // On a touch screen a finger would hide the wrong curve: use the menu there.
         let sense = kit::click_if(ui.pixels_per_point() < TOUCHED);
         let response = ui.interact(place, id, sense);
         let named = look.pair(look.say(panel.title), name);
@@ -118,9 +118,9 @@ impl PlotEnds<'_> {
     }
 }
 
-/// Middles at least a pitch apart, as near to the wanted ones as there is room; both in the same order.
+/// Spreads the centres to at least `pitch` apart, as near to `wanted` as `room` permits, in the same order.
 fn apart(wanted: &[f32], pitch: f32, room: Rangef) -> Vec<f32> {
-    // Groups that touch: how many, and the mean of where their first ones would stand.
+    // Groups that touch: their size, and the mean of the positions that their first members want.
     let mut groups: Vec<(f32, f32)> = Vec::new();
     let within = |(count, first): (f32, f32)| {
         let last = room.max - pitch * (count - 0.5);

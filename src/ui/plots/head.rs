@@ -1,4 +1,4 @@
-//! What stands over the plots: window, pause, cursors, the menu, and the joints. Draws no curve.
+//! Controls above the plots: time window, pause, cursors, menu, and joints. Draws no curve.
 
 use crate::app::action::Action;
 use crate::app::files::export::Export;
@@ -17,7 +17,7 @@ use egui::{Color32, Popup, Role, Ui, WidgetInfo};
 /// Width of the menu.
 const MENU: f32 = 264.0;
 
-/// Title and switches.
+/// Draws title and buttons.
 pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let is_narrow = ui.available_width() < 440.0;
@@ -40,7 +40,7 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     });
 }
 
-/// Everything that is not needed all the time.
+/// Draws the menu of less frequent options.
 fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let button = Button::said(look, panels::MORE);
@@ -73,7 +73,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     });
 }
 
-/// A switch for each plot. The last one that is shown stays.
+/// Draws a check box for each plot. The last visible one cannot be turned off.
 fn shown_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let shown = pane.state.settings.plots.clone();
     for panel in &PANELS {
@@ -86,7 +86,7 @@ fn shown_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// What is shown, as text or as a picture.
+/// Draws the entries that save the visible data as text or as a picture.
 fn keep_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let (from_s, to_s) = view.view.time.span();
@@ -127,7 +127,7 @@ fn window_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let mut chosen = pane.state.settings.plot_window;
     let all = PlotWindow::ALL.map(|window| (window, span_text(window)));
     ui.spacing_mut().combo_width = 68.0;
-    // All of them without scrolling.
+    // All entries, without scrolling.
     ui.spacing_mut().combo_height = f32::INFINITY;
     let name = pane.look.say(panels::WINDOW_NAME);
     if kit::choose_ui(ui, name, &mut chosen, &all) {
@@ -136,7 +136,7 @@ fn window_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     }
 }
 
-/// A span of time in words.
+/// Label of a time window.
 pub(crate) const fn span_text(window: PlotWindow) -> &'static str {
     match window {
         PlotWindow::S5 => "5 s",
@@ -150,7 +150,7 @@ pub(crate) const fn span_text(window: PlotWindow) -> &'static str {
     }
 }
 
-/// The six joints, each a switch for its curves, and the switch for thresholds; in as many rows as they need.
+/// Draws a switch for each joint's curves and for the thresholds, on as many rows as needed.
 fn legend_ui(ui: &mut Ui, look: Look, view: &mut PlotView) {
     let palette = look.palette;
     ui.horizontal_wrapped(|ui| {
@@ -180,12 +180,12 @@ fn legend_ui(ui: &mut Ui, look: Look, view: &mut PlotView) {
     });
 }
 
-/// A switch for curves: a sign and words, pale while off.
+/// A switch for curves: a symbol and a text, pale while off.
 struct CurveSwitch<'a> {
     sign: &'a str,
     color: Color32,
     words: &'a str,
-    /// What a screen reader says.
+    /// Accessible name.
     name: &'a str,
     is_on: bool,
 }

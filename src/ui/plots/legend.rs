@@ -1,25 +1,24 @@
-//! What the colours and strokes of a chart stand for.
+//! Legend of the colours and line styles of a chart.
 
 use crate::ui::kit::{self, Label, Look, dash};
 use crate::ui::theme;
 use egui::{Color32, Stroke, Ui, vec2};
 use egui_plot::LineStyle;
 
-/// What a colour and a kind of stroke stand for.
+/// Meaning of a colour and a line style.
 pub(crate) struct LegendKey {
     pub(crate) words: String,
     pub(crate) color: Color32,
-    /// The kind of stroke.
     pub(crate) style: LineStyle,
 }
 
-/// Keys in one row, as many as it has room for, and how many more there are.
+/// Draws the keys on one row, as many as fit, with the number of further ones.
 pub(crate) fn legend_ui(ui: &mut Ui, look: Look, keys: &[LegendKey]) {
     ui.horizontal(|ui| {
         ui.set_height(theme::LIST_LINE);
         for (at, key) in keys.iter().enumerate() {
             let width = kit::text_width(ui, &key.words, theme::small());
-            // Room for the sign, the gaps and the count of those that are left.
+            // Space for the sample, the gaps and the count of the remaining keys.
             if at > 0 && width + 2.0 * theme::KEY_SIGN + 3.0 * theme::GAP > ui.available_width() {
                 let more = format!("+{}", keys.len() - at);
                 Label::new(&more, look.palette.muted).small().ui(ui);

@@ -1,4 +1,4 @@
-//! What happened, as lines across the plots with their words. Knows no curve.
+//! Events as vertical lines with labels in the plots. Independent of the curves.
 
 use crate::history::{Mark, MarkKind};
 use crate::ui::kit::{self, Label, Look, Pane};
@@ -9,17 +9,17 @@ use crate::ui::text::{notices, panels};
 use crate::ui::theme;
 use egui::{Color32, Rect, Ui, pos2, vec2};
 
-/// Characters of a note beside its line; the rest is in the tooltip.
+/// Characters of a note shown beside its line; the tooltip has the rest.
 const NOTE_SHOWN: usize = 24;
 
-/// The lines.
+/// Times and colours of the lines.
 pub(crate) fn moments(pane: &Pane<'_>, (from_s, to_s): TimeSpan) -> Vec<(f64, Color32)> {
     let marks = pane.hand().measured.history.marks(from_s, to_s);
     let moment = |mark: &Mark| (mark.at.secs(), told(pane.look, &mark.kind).1);
     marks.map(moment).collect()
 }
 
-/// Words beside a line: of the newest of those that have no room of their own, and how many more these are.
+/// Label beside a line: the newest of several that have no space of their own, with the number of the others.
 struct MarkWords {
     x: f32,
     text: String,
@@ -27,7 +27,7 @@ struct MarkWords {
     more: usize,
 }
 
-/// The words of the marks, once, in the topmost plot. Where they would overlap they are joined.
+/// Draws the labels of the marks, in the topmost plot only. Overlapping labels are merged.
 pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
     let rect = *shown.transform.frame();
     let (from_s, to_s) = shown.transform.bounds().range_x().into_inner();
@@ -48,7 +48,7 @@ pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
     }
 }
 
-/// The words that have room, from the newest to the oldest; others are counted with those that are newer.
+/// Returns the labels that fit, from newest to oldest; the others are counted with the next newer one.
 fn joined(mut marks: Vec<MarkWords>, right: f32, width: impl Fn(&str) -> f32) -> Vec<MarkWords> {
     marks.reverse();
     let more = width(" +99");
@@ -60,7 +60,7 @@ fn joined(mut marks: Vec<MarkWords>, right: f32, width: impl Fn(&str) -> f32) ->
         match all.last_mut().filter(|_| !fits) {
             Some(newer) => newer.more += 1,
             None => {
-                // The newest stands left of its line where there is no room right of it.
+                // The newest label is to the left of its line if it does not fit on the right.
                 free_until = if fits { x } else { x - width - theme::GAP };
                 all.push(words);
             }
@@ -91,7 +91,7 @@ impl MarkWords {
     }
 }
 
-/// What a mark says, and its colour.
+/// Text and colour of a mark.
 pub(crate) fn told(look: Look, kind: &MarkKind) -> (String, Color32) {
     let palette = look.palette;
     let (text, color) = match kind {
@@ -111,10 +111,10 @@ pub(crate) fn told(look: Look, kind: &MarkKind) -> (String, Color32) {
     (look.say(text).to_owned(), color)
 }
 
-/// What happened where the pointer is, a line each.
+/// Events near the pointer, one per line.
 pub(crate) fn near(pane: &Pane<'_>, shown: &ChartResponse) -> Option<String> {
     let at_s = pointed_s(shown)?;
-    // A line is easily missed by some pixels.
+    // Tolerance, because a line is easily missed by a few pixels.
     let per_point = shown.transform.dvalue_dpos()[0];
     let by_s = f64::from(theme::STEP) * per_point;
     let history = &pane.hand().measured.history;
@@ -139,7 +139,7 @@ mod tests {
             color: Color32::WHITE,
             more: 0,
         };
-        // Ten points a letter.
+        // Ten points per letter.
         let width = |text: &str| text.chars().map(|_| 10.0).sum();
         let check = |marks: &[(f32, &str)], wanted: &[(&str, usize)]| {
             let marks = marks.iter().map(|(x, text)| mark(*x, text));
@@ -158,7 +158,7 @@ mod tests {
             &[(300.0, "a"), (310.0, "b"), (320.0, "c"), (330.0, "d")],
             &[("d", 3)],
         );
-        // The newest has its words left of its line, over the lines there.
+        // The newest label is to the left of its line, covering the lines there.
         check(
             &[(100.0, "far"), (450.0, "near"), (495.0, "newest")],
             &[("newest", 1), ("far", 0)],

@@ -1,4 +1,4 @@
-//! The stacked plots over one time: what was measured, what happened, and what lies between two cursors.
+//! Stacked plots over a common time range: measurements, events, and the figures between two cursors.
 pub(crate) mod chart;
 pub(crate) mod cursors;
 pub(crate) mod drives;
@@ -29,45 +29,45 @@ use crate::ui::text::panels as text;
 use crate::ui::theme;
 use egui::{Align2, Role, Stroke, Ui, WidgetInfo, pos2};
 
-/// What was asked for is paler than what was measured.
+/// Opacity of setpoints, paler than measurements.
 const WISHED_PART: f32 = 0.45;
-/// So pale are all joints but the one whose value the pointer is at.
+/// Opacity of all joints except the one whose value is hovered.
 const BEHIND_PART: f32 = 0.2;
 /// Height of a sparkline: its name and its unit.
 const SPARKLINE: f32 = 32.0;
-/// A tall plot is at least as high: its title, and the values of six joints at the ends of their curves.
+/// Minimum height of a tall plot: its title, and the values of six joints at the ends of their curves.
 const TALL_LEAST: f32 = 104.0;
-/// Where no plot could be higher, only one is shown.
+/// Available height below which only one plot is shown.
 const ALONE_BELOW: f32 = 72.0;
 
-/// Where one of the plots stands.
+/// Position and size of one plot.
 struct PlotPlace {
     height: f32,
-    /// Room at its right.
+    /// Space at its right.
     end: f32,
     is_lowest: bool,
     is_sparkline: bool,
 }
 
-/// What the plots need between frames.
+/// View state of the plots.
 #[derive(Debug, Default)]
 pub(crate) struct PlotView {
-    /// Which time is shown, on which scales.
+    /// Time range and scales.
     pub(crate) view: ChartView,
     /// Joints whose curves are hidden.
     hidden: PerDof<bool>,
-    /// The joint whose value the pointer is at.
+    /// Joint whose value is hovered.
     pointed: Option<Dof>,
-    /// Whether thresholds are shown.
+    /// True while thresholds are shown.
     thresholds: bool,
     cursors: Cursors,
-    /// The plot whose figures are told.
+    /// Plot whose figures are shown.
     chosen: Option<PlotKind>,
     /// True while the plots fill the view.
     pub(crate) large: bool,
-    /// Width and height of the card in points, for a picture of it.
+    /// Width and height of the card in points, for saving it as a picture.
     size: (f32, f32),
-    /// The hand that is shown.
+    /// Hand that is shown.
     hand: Option<Endpoint>,
 }
 
@@ -82,12 +82,12 @@ impl PlotView {
         });
     }
 
-    /// Shows just this stretch of time.
+    /// Shows exactly this time range.
     pub(crate) const fn pin(&mut self, span: TimeSpan) {
         self.view.time.pin(span);
     }
 
-    /// Time went on; nothing that was chosen for one hand is kept for another.
+    /// Advances the time. On a change of hand, follows the newest values and resets the cursors.
     fn advance(&mut self, pane: &Pane<'_>) {
         let hand = pane.hand();
         if self.hand != hand.connection.endpoint && hand.connection.endpoint.is_some() {
@@ -136,7 +136,7 @@ impl PlotView {
             true => (vec![chosen], vec![chosen.kind], room(ui, 1)),
             false => (shown, tall, height),
         };
-        // In a window that was forced to be tiny there is no place to draw in.
+        // In a window that was forced to be tiny there is no space to draw in.
         let end = ends::width(ui);
         if height <= theme::PLOT_CAPTION + theme::PLOT_NUMBER
             || ui.available_width() <= 4.0 * theme::PLOT_AXIS + end
@@ -161,7 +161,7 @@ impl PlotView {
         }
     }
 
-    /// Which of so many shown plots are tall, and how high: two if there is room for them, with this much taken below.
+    /// Chooses the tall plots out of the `shown` ones, and their height: two if they fit with `below` points used below.
     fn tall(ui: &Ui, pane: &Pane<'_>, shown: usize, below: f32) -> (Vec<PlotKind>, f32) {
         let height = |tall: usize| tall_height(ui, tall, shown - tall, below);
         let count = match shown {
@@ -174,7 +174,7 @@ impl PlotView {
         (tall, height(count))
     }
 
-    /// The tall plots, over one axis of time.
+    /// Draws the tall plots over a common time axis.
     fn tall_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, shown: &[&Panel], height: f32) {
         let (end, mut pointed) = (ends::width(ui), None);
         for (n, panel) in shown.iter().enumerate() {
@@ -211,7 +211,7 @@ impl PlotView {
         }
     }
 
-    /// The newest values of a plot: those at its right edge.
+    /// Newest values of a plot, at its right edge.
     fn ends(&self, pane: &Pane<'_>, panel: &Panel) -> Vec<CurveEnd> {
         let history = &pane.hand().measured.history;
         let (_, to_s) = self.view.time.span();
@@ -226,7 +226,7 @@ impl PlotView {
         panel.measured(&self.hidden).into_iter().map(end).collect()
     }
 
-    /// A plot that tells its course alone, with its name and what its newest values span.
+    /// Draws a plot reduced to its curves, with its name and the range of its newest values.
     fn sparkline_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, panel: &Panel, end: f32) {
         let look = pane.look;
         let place = PlotPlace {
@@ -289,7 +289,7 @@ impl PlotView {
             ..curve_of(&hand.measured.history, line)
         };
         let lines = panel.lines(&self.hidden);
-        // The second recording stands behind the first.
+        // The second recording is drawn behind the first.
         let beside = pane.state.beside.iter().flat_map(|beside| {
             let measured = lines.iter().filter(|line| !line.wished);
             measured.map(|line| ChartCurve {
@@ -337,7 +337,7 @@ impl PlotView {
         }
     }
 
-    /// Size of the card, for a picture of it.
+    /// Size of the card, for saving it as a picture.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -347,7 +347,7 @@ impl PlotView {
         (self.size.0 as u32, self.size.1 as u32)
     }
 
-    /// The lines of all shown plots and joints: what is copied and saved.
+    /// Series of all shown plots and joints, for copying and saving.
     fn shown_series(&self, pane: &Pane<'_>) -> Vec<Series> {
         let plots = &pane.state.settings.plots;
         let panels = PANELS.iter().filter(|panel| plots.shows(panel.kind));
@@ -356,14 +356,14 @@ impl PlotView {
     }
 }
 
-/// Height of each tall plot beside so many sparklines, and what is below.
+/// Height of each tall plot, beside `low` sparklines and with `below` points used below.
 fn tall_height(ui: &Ui, tall: usize, low: usize, below: f32) -> f32 {
     let count = |count: usize| f32::from(u8::try_from(count).unwrap_or(u8::MAX));
     let room = ui.available_height() - theme::PLOT_TIME_AXIS - below;
     ((room - count(low) * (SPARKLINE + theme::STEP)) / count(tall.max(1))).floor()
 }
 
-/// Height of each of so many plots above their time axis.
+/// Height of each of `count` plots above their time axis.
 pub(crate) fn room(ui: &Ui, count: usize) -> f32 {
     let count = f32::from(u8::try_from(count).unwrap_or(u8::MAX));
     ((ui.available_height() - theme::PLOT_TIME_AXIS) / count).floor()

@@ -1,4 +1,4 @@
-//! The notes of the user as a list: a click shows the moment of one, and each can be taken away.
+//! List of the user's notes: a click shows the moment of a note, and each can be deleted.
 
 use crate::app::action::Action;
 use crate::history::{Mark, MarkKind};
@@ -8,10 +8,10 @@ use crate::ui::text::panels;
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 
-/// Characters of a note in the list; the rest is in the tooltip.
+/// Characters of a note in the list; the tooltip has the rest.
 const SHOWN: usize = 28;
 
-/// Draws the list, the newest first, if there are any. The moment that is to be shown, seconds.
+/// Draws the list, newest first, if there are any notes. Returns the moment to show, in seconds.
 pub(crate) fn notes_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<f64> {
     let history = &pane.hand().measured.history;
     let all = history.marks(f64::NEG_INFINITY, f64::INFINITY);

@@ -1,4 +1,4 @@
-//! The plots there are: which lines stand in each, and on what scale. Draws nothing.
+//! Definitions of the plots: the curves of each, and its scale. Draws nothing.
 
 use crate::app::settings::PlotKind;
 use crate::hand::{Dof, Finger, PerDof, Quantity, QuantityRow, Touch};
@@ -8,17 +8,17 @@ use crate::ui::text::{Text, panels};
 /// One of the stacked plots.
 #[derive(Debug)]
 pub(crate) struct Panel {
-    /// What it is called in the settings.
+    /// Key in the settings.
     pub(crate) kind: PlotKind,
     /// Title with unit.
     pub(crate) title: Text,
-    /// The same where it is a sparkline.
+    /// Title of the sparkline.
     pub(crate) short: Text,
-    /// Digits and scale.
+    /// Decimals and scale.
     pub(crate) row: &'static QuantityRow,
 }
 
-/// All, from top to bottom.
+/// All plots, from top to bottom.
 pub(crate) const PANELS: [Panel; 6] = [
     Panel {
         kind: PlotKind::Force,
@@ -58,19 +58,19 @@ pub(crate) const PANELS: [Panel; 6] = [
     },
 ];
 
-/// One line of a plot.
+/// One curve of a plot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct PanelLine {
-    /// Where its points come from.
+    /// Source of its points.
     pub(crate) series: Series,
-    /// Whose colour it has.
+    /// Joint that gives it its colour.
     pub(crate) dof: Dof,
-    /// True for what was asked of the hand and not measured.
+    /// True for setpoints, as opposed to measurements.
     pub(crate) wished: bool,
 }
 
 impl Panel {
-    /// The lines of all parts that are not hidden; those that were asked for come first, under the measured ones.
+    /// Curves of all joints that are not hidden, setpoints first so that they are drawn under the measurements.
     pub(crate) fn lines(&self, hidden: &PerDof<bool>) -> Vec<PanelLine> {
         let joint = |quantity| {
             Dof::ALL.into_iter().map(move |dof| PanelLine {
@@ -99,7 +99,7 @@ impl Panel {
         all.into_iter().filter(|line| !hidden[line.dof]).collect()
     }
 
-    /// The measured ones only: those that figures are told of.
+    /// Measured curves only: those with figures.
     pub(crate) fn measured(&self, hidden: &PerDof<bool>) -> Vec<PanelLine> {
         let lines = self.lines(hidden).into_iter();
         lines.filter(|line| !line.wished).collect()

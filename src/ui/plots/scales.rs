@@ -1,4 +1,4 @@
-//! Value scales: round by themselves, or as the user set them by dragging or by the wheel.
+//! Value scales: rounded automatically, or set by the user with a drag or the wheel.
 
 use crate::ui::kit::Look;
 use crate::ui::text::{Text, panels};
@@ -6,29 +6,29 @@ use crate::ui::theme;
 use egui::{CursorIcon, Response, Role, Ui, WidgetInfo};
 use std::collections::BTreeMap;
 
-/// No end lies beyond: more than the counts of a fingertip.
+/// Limit of both ends: more than the counts of a fingertip.
 const MOST: f64 = 10_000_000.0;
-/// The narrowest scale: a hundredth of what the finest plot tells.
+/// The narrowest scale: a hundredth of the finest plot's resolution.
 const NARROWEST: f64 = 0.01;
-/// Points between two lines of a grid that `egui_plot` hands to its spacers as one step.
+/// Points between two grid lines that `egui_plot` passes to its spacers as one step.
 const BASE_PX: f64 = 8.0;
-/// Points between two times.
+/// Points between two time labels.
 const TIME_PX: f64 = 60.0;
-/// A scale becomes narrower only when its values would have fitted in less for so long.
+/// Time for which the values must fit a narrower scale before the scale narrows.
 const ROOMY_S: f64 = 2.0;
-/// A scale takes so long to its new ends.
+/// Duration of the transition to new ends.
 const EASE_S: f32 = 0.12;
-/// Steps of time above a second, where tens do not fit.
+/// Time steps above a second, where decimal steps do not fit.
 const LONG_STEPS: [f64; 8] = [10.0, 15.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0];
 
-/// The next 1, 2 or 5 times a power of ten.
+/// Rounds up to the next 1, 2 or 5 times a power of ten.
 fn round_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.max(NARROWEST / 10.0).log10().floor());
     let fits = |times: &f64| times * power >= least * (1.0 - 1e-9);
     [1.0, 2.0, 5.0].into_iter().find(fits).unwrap_or(10.0) * power
 }
 
-/// Seconds between two lines, from those that eight points span.
+/// Seconds between two grid lines, from the seconds that eight points span.
 pub(crate) fn time_step(base_s: f64) -> f64 {
     let least = base_s * TIME_PX / BASE_PX;
     let long = LONG_STEPS.into_iter().find(|step| *step >= least);
@@ -39,21 +39,21 @@ pub(crate) fn time_step(base_s: f64) -> f64 {
     }
 }
 
-/// Between two lines of a scale, from what eight points span.
+/// Distance of two grid lines of a scale, from the value that eight points span.
 pub(crate) fn step((low, high): (f64, f64), base: f64) -> f64 {
     let room = (high - low) / base * BASE_PX / f64::from(theme::PLOT_NUMBER);
     round_step((high - low) / (room - 1.0).clamp(1.0, 4.0))
 }
 
-/// What is always shown and what the values span, rounded outwards for a chart of this height.
+/// Union of the always visible range and the values' range, rounded outwards for a chart of this height.
 pub(crate) fn rounded(least: (f64, f64), extent: Option<(f64, f64)>, height: f32) -> (f64, f64) {
     let (low, high) = extent.unwrap_or(least);
     let (low, high) = (low.min(least.0), high.max(least.1));
     let base = (high - low) / f64::from(height.max(1.0)) * BASE_PX;
     let step = step((low, high), base);
-    // Ends at half a step, so that little of the plot stays empty.
+    // Ends at half a step, so that little of the plot is empty.
     let half = step / 2.0;
-    // A value a hair below zero must not take a quarter of the plot.
+    // A value slightly below zero must not cost a quarter of the plot.
     let low = if low < 0.0 && low > -step * 0.2 {
         -step * 0.2
     } else {
@@ -62,13 +62,13 @@ pub(crate) fn rounded(least: (f64, f64), extent: Option<(f64, f64)>, height: f32
     (low, (high / half).ceil() * half)
 }
 
-/// Both of two spans.
+/// Union of two ranges.
 pub(crate) fn joined(one: Option<(f64, f64)>, (low, high): (f64, f64)) -> Option<(f64, f64)> {
     let (from, to) = one.unwrap_or((low, high));
     Some((from.min(low), to.max(high)))
 }
 
-/// Digits after the point that tell numbers apart which are a step apart.
+/// Decimals that distinguish numbers one step apart.
 pub(crate) fn digits(step: f64) -> usize {
     let digits = [1.0, 0.1, 0.01].iter();
     digits
@@ -76,17 +76,17 @@ pub(crate) fn digits(step: f64) -> usize {
         .count()
 }
 
-/// A number of a scale, with so many digits as a step needs.
+/// Formats a number of a scale with the decimals that its step needs.
 pub(crate) fn number(value: f64, step: f64) -> String {
     if step >= 10_000.0 && value != 0.0 {
         return format!("{}k", value / 1000.0);
     }
     let digits = digits(step);
-    // No "-0".
+    // Avoids "-0".
     format!("{:.digits$}", value + 0.0)
 }
 
-/// The ends of a scale on their way to where they are to be; there at once where nothing is to move by itself.
+/// Current ends of a scale on their way to `aim`; `aim` at once if animations are off.
 pub(crate) fn eased(ui: &Ui, title: Text, aim: (f64, f64)) -> (f64, f64) {
     if ui.style().animation_time <= 0.0 {
         return aim;
@@ -106,7 +106,7 @@ pub(crate) fn eased(ui: &Ui, title: Text, aim: (f64, f64)) -> (f64, f64) {
     (end("low", aim.0), end("high", aim.1))
 }
 
-/// The ends of a scale that follows its values, and since when these would fit in less, seconds.
+/// Ends of a scale that follows its values, and the time in seconds since when a narrower one would do.
 #[derive(Debug)]
 struct SettledScale {
     ends: (f64, f64),
@@ -120,7 +120,7 @@ pub(crate) struct ScaleAxis<'a> {
     pub(crate) response: &'a Response,
 }
 
-/// The scales that the user chose; others follow their values.
+/// Scales set by the user; the others follow their values.
 #[derive(Debug, Default)]
 pub(crate) struct Scales {
     chosen: BTreeMap<&'static str, (f64, f64)>,
@@ -128,12 +128,12 @@ pub(crate) struct Scales {
 }
 
 impl Scales {
-    /// The ends that the user chose.
+    /// Ends set by the user; `None` if the scale follows its values.
     pub(crate) fn chosen(&self, title: Text) -> Option<(f64, f64)> {
         self.chosen.get(title.en).copied()
     }
 
-    /// The ends of a scale that follows its values: wider at once, narrower once that held for a while; without a time at once, too.
+    /// Ends of a scale that follows its values: it widens at once and narrows after [`ROOMY_S`]; without a time, at once as well.
     pub(crate) fn settled(
         &mut self,
         title: Text,
@@ -158,7 +158,7 @@ impl Scales {
         own.ends
     }
 
-    /// Takes these ends.
+    /// Sets the ends, limited to ±[`MOST`].
     pub(crate) fn choose(&mut self, title: Text, low: f64, high: f64) {
         let low = low.clamp(-MOST, MOST - NARROWEST);
         self.chosen
@@ -170,7 +170,7 @@ impl Scales {
         self.chosen.remove(title.en);
     }
 
-    /// The numbers beside a plot: drag moves, the wheel zooms around the pointer, a double click fits the values again.
+    /// Handles input on the numbers beside a plot: drag pans, wheel zooms around the pointer, double click fits the values again.
     pub(crate) fn axis_ui(&mut self, ui: &Ui, look: Look, axis: &ScaleAxis<'_>) {
         let ScaleAxis {
             title,
@@ -259,12 +259,12 @@ mod tests {
         assert_eq!(settled((0.0, 1000.0), Some(0.1)), (0.0, 1000.0));
         assert_eq!(settled((-100.0, 200.0), Some(0.2)), (-100.0, 1000.0));
         assert_eq!(settled((0.0, 200.0), Some(1.0)), (-100.0, 1000.0));
-        // It is full once more: the while begins again.
+        // It is full again: the waiting time restarts.
         assert_eq!(settled((-100.0, 1000.0), Some(2.9)), (-100.0, 1000.0));
         assert_eq!(settled((0.0, 500.0), Some(3.0)), (-100.0, 1000.0));
         assert_eq!(settled((0.0, 200.0), Some(4.9)), (-100.0, 1000.0));
         assert_eq!(settled((0.0, 200.0), Some(5.1)), (0.0, 200.0));
-        // Who looks at what was, sees it as it fits.
+        // A user who views past data sees it fitted at once.
         settled((0.0, 1000.0), Some(6.0));
         assert_eq!(settled((0.0, 300.0), None), (0.0, 300.0));
     }

@@ -1,16 +1,16 @@
-//! Which stretch of time is shown: the newest, or one that the user chose. Knows no curve and no pixel.
+//! Visible time range: the newest, or one chosen by the user. Independent of curves and pixels.
 
-/// The shortest stretch: two measurements of a fast link.
+/// Minimum range: two measurements of a fast link.
 const SHORTEST_S: f64 = 0.02;
-/// The longest: all that is held.
+/// Maximum range: the whole history.
 const LONGEST_S: f64 = 3600.0;
-/// This part of the view always shows a time from which something is held.
+/// Share of the view that always shows a time within the history.
 const STAYS: f64 = 0.1;
 
 /// From and to, in seconds.
 pub(crate) type TimeSpan = (f64, f64);
 
-/// What is shown of the time from the oldest to the newest measurement.
+/// Visible part of the time between the oldest and the newest measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TimeWindow {
     held: Option<TimeSpan>,
@@ -31,29 +31,29 @@ impl Default for TimeWindow {
 }
 
 impl TimeWindow {
-    /// Time went on.
+    /// Sets the bounds for this frame.
     pub(crate) const fn advance(&mut self, bounds: TimeSpan, window_s: f64) {
         self.bounds = bounds;
         self.window_s = window_s;
     }
 
-    /// What is shown.
+    /// Visible time range.
     pub(crate) fn span(&self) -> TimeSpan {
         let newest = self.bounds.1;
         self.held.unwrap_or((newest - self.window_s, newest))
     }
 
-    /// True while the newest is not followed.
+    /// True while the newest values are not followed.
     pub(crate) const fn is_held(&self) -> bool {
         self.held.is_some()
     }
 
-    /// Stands still from now on.
+    /// Freezes the range.
     pub(crate) fn hold(&mut self) {
         self.held = Some(self.span());
     }
 
-    /// Holds what follows, and lets follow what holds; true if it holds now.
+    /// Toggles between holding and following.
     pub(crate) fn toggle(&mut self) {
         if self.is_held() {
             self.follow();
@@ -62,17 +62,17 @@ impl TimeWindow {
         }
     }
 
-    /// Follows the newest again.
+    /// Follows the newest values again.
     pub(crate) const fn follow(&mut self) {
         self.held = None;
     }
 
-    /// Shows just this stretch, wherever the measurements end.
+    /// Shows exactly this range, even beyond the measurements.
     pub(crate) const fn pin(&mut self, span: TimeSpan) {
         self.held = Some(span);
     }
 
-    /// Shows this stretch.
+    /// Shows this range, limited to the measurements.
     pub(crate) fn show(&mut self, (from, to): TimeSpan) {
         let width = (to - from).clamp(SHORTEST_S, LONGEST_S);
         let (first, newest) = self.bounds;
@@ -81,21 +81,21 @@ impl TimeWindow {
         self.held = Some((to - width, to));
     }
 
-    /// Shows what was around a moment, as much as now.
+    /// Centres the range on a moment, with unchanged width.
     pub(crate) fn center(&mut self, at_s: f64) {
         let (from, to) = self.span();
         let half = (to - from) / 2.0;
         self.show((at_s - half, at_s + half));
     }
 
-    /// Shows so many seconds, up to the same moment as now.
+    /// Sets the width in seconds, with an unchanged end.
     pub(crate) fn resize(&mut self, width_s: f64) {
         if let Some((_, to)) = self.held {
             self.show((to - width_s, to));
         }
     }
 
-    /// Shows `factor` times as much time; what stands at `at_s` stays in its place.
+    /// Scales the range by `factor`, with `at_s` at an unchanged position.
     pub(crate) fn zoom(&mut self, at_s: f64, factor: f64) {
         let (from, to) = self.span();
         let width = (to - from).max(SHORTEST_S);
@@ -103,7 +103,7 @@ impl TimeWindow {
         self.show((at_s - (at_s - from) * factor, at_s + (to - at_s) * factor));
     }
 
-    /// Shows what is so many seconds later.
+    /// Shifts the range by this many seconds.
     pub(crate) fn pan(&mut self, by_s: f64) {
         let (from, to) = self.span();
         self.show((from + by_s, to + by_s));

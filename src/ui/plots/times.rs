@@ -1,22 +1,22 @@
-//! Times of the charts: their grid, and how they are told.
+//! Times of the charts: grid and labels.
 
 use crate::ui::plots::scales;
 use egui_plot::GridMark;
 use std::ops::RangeInclusive;
 
-/// How times are told.
+/// Format of times.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Times {
-    /// As a clock shows them.
+    /// Clock time.
     Clock,
-    /// As seconds from a moment, which has a word of its own.
+    /// Seconds from a moment, which has a label of its own.
     From(f64, &'static str),
 }
 
-/// Lines of a grid, a step apart, one of them at `zero`.
+/// Grid lines one step apart, one of them at `zero`.
 pub(crate) fn marks((from, to): (f64, f64), zero: f64, step: f64) -> Vec<GridMark> {
     let first = ((from - zero) / step).ceil();
-    // No step gives more; the bound guards against a broken one.
+    // No valid step gives more; the limit guards against an invalid one.
     let marks = (0..64_u8).map(|n| GridMark {
         value: zero + (first + f64::from(n)) * step,
         step_size: step,
@@ -27,7 +27,7 @@ pub(crate) fn marks((from, to): (f64, f64), zero: f64, step: f64) -> Vec<GridMar
 }
 
 impl Times {
-    /// The moment that they are counted from.
+    /// Moment from which times are counted.
     pub(crate) const fn zero_s(self) -> f64 {
         match self {
             Self::Clock => 0.0,
@@ -35,9 +35,9 @@ impl Times {
         }
     }
 
-    /// What is written below a line of the grid.
+    /// Label below a grid line.
     pub(crate) fn label(self, mark: GridMark, seen: &RangeInclusive<f64>) -> String {
-        // At the left edge it would run into the numbers of the values.
+        // At the left edge it would overlap the numbers of the values.
         let is_left = mark.value - seen.start() < (seen.end() - seen.start()) * 0.04;
         match self {
             _ if is_left => String::new(),
@@ -48,7 +48,7 @@ impl Times {
         }
     }
 
-    /// A time, fine enough for steps of `step_s`.
+    /// Formats a time, precise enough for steps of `step_s`.
     pub(crate) fn text(self, at_s: f64, step_s: f64) -> String {
         let digits = scales::digits(step_s);
         match self {
@@ -61,7 +61,7 @@ impl Times {
     }
 }
 
-/// How long a stretch is, as the choice of windows names it: `10 s`, `2.5 s`, `5 min`.
+/// Formats a duration as in the choice of windows: `10 s`, `2.5 s`, `5 min`.
 pub(crate) fn length(seconds: f64) -> String {
     let minutes = seconds / 60.0;
     match minutes >= 1.0 && (minutes - minutes.round()).abs() < 1e-3 {
@@ -70,7 +70,7 @@ pub(crate) fn length(seconds: f64) -> String {
     }
 }
 
-/// A time of the program as a clock shows it, fine enough for steps of `step_s`.
+/// Formats a program time as clock time, precise enough for steps of `step_s`.
 pub(crate) fn clock(at_s: f64, step_s: f64) -> String {
     let digits = scales::digits(step_s);
     let unit = [1.0, 10.0, 100.0, 1000.0]

@@ -1,4 +1,4 @@
-//! One pose of the library, large: its picture, name, tags, angles, speed and force. Every change is an action.
+//! Editor of a library pose: picture, name, tags, angles, speed and force. Every change is an action.
 
 use crate::app::action::Action;
 use crate::hand::gap::{Gap, gap_on_path};
@@ -14,9 +14,9 @@ use crate::ui::text::{Text, poses, tune, words};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui, vec2};
 
-/// Characters of all tags.
+/// Maximum characters of all tags.
 const TAGS_MAX: usize = 120;
-/// Width of the words before the fields.
+/// Width of the captions.
 const CAPTION: f32 = 88.0;
 /// Height of all fields below the picture.
 const FIELDS: f32 = 12.0 * (theme::CONTROL + theme::STEP) + 2.0 * theme::CONTROL_LARGE;
@@ -61,7 +61,7 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     }
 }
 
-/// Whether it is a pose by size, its gap, and what its grip is told by.
+/// Draws the switch for a pose by size, its gap, and the thresholds of its grip.
 fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let by_size = Button::said(look, poses::BY_SIZE).choice(pose.gap.is_some());
@@ -83,7 +83,7 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     }
 }
 
-/// A gap as a number in mm; the one that was confirmed.
+/// Draws a gap in mm. Returns it once confirmed.
 fn gap_field_ui(ui: &mut Ui, pane: &mut Pane<'_>, gap: Gap) -> Option<Gap> {
     let look = pane.look;
     let caption = look.say(poses::GAP);
@@ -96,7 +96,7 @@ fn gap_field_ui(ui: &mut Ui, pane: &mut Pane<'_>, gap: Gap) -> Option<Gap> {
     Gap::new(typed).ok()
 }
 
-/// The thresholds that are not the usual ones, by the names that files have.
+/// Thresholds that differ from the defaults, by their names in files.
 fn thresholds_words(thresholds: &GripThresholds) -> String {
     let own = thresholds.unusual();
     let words: Vec<String> = own
@@ -121,7 +121,7 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
     }
 }
 
-/// One joint's angle as a number behind its name; the number that was confirmed.
+/// Draws one joint's angle as a number after its name. Returns it once confirmed.
 fn angle_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) -> Option<Angle> {
     let look = pane.look;
     let name = look.say(words::dof(dof));

@@ -1,4 +1,4 @@
-//! The stored gestures as tiles, the names the user gives them, and in a drawer how they are started. Starts nothing by
+//! The stored gestures as tiles, their names set by the user, and a collapsible section with the start route. Starts nothing by
 //! itself.
 
 use crate::app::action::Action;
@@ -8,20 +8,19 @@ use crate::ui::poses::tiles::gesture_ui;
 use crate::ui::text::{cards, panels, poses};
 use egui::{CollapsingHeader, Grid, ScrollArea, Ui};
 
-/// Characters that a name may have.
+/// Maximum characters of a name.
 const NAME_MAX: usize = 24;
-/// Names beside each other.
+/// Names per row.
 const NAMES: usize = 4;
 
-/// What the gestures need between frames.
+/// View state of the gestures.
 #[derive(Debug, Default)]
 pub(crate) struct GestureView {
-    /// True while names are typed instead of gestures started.
+    /// True while names are edited instead of gestures started.
     naming: bool,
 }
 
 impl GestureView {
-    /// Draws the view.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -85,7 +84,7 @@ impl GestureView {
     }
 }
 
-/// How gestures are started, and what is known of that way.
+/// Draws the route by which gestures are started, with notes about it.
 fn route_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let routes = [

@@ -1,4 +1,4 @@
-//! Grips by size: a popup with the kinds, the gap, the size of what is held, and the blocks that make it true.
+//! Grips by size: a popup with kind, gap, size of the held object, and the reference blocks that calibrate it.
 
 use crate::app::action::Action;
 use crate::app::hands::grip;
@@ -15,7 +15,7 @@ use egui::{Id, Slider, Ui, vec2};
 /// Width of the popup.
 const POPUP: f32 = 420.0;
 
-/// The button in the strip of poses, with its popup.
+/// Draws the button in the strip of poses, with its popup.
 pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let button = Button::said(look, poses::GRIP_SIZE).ui(ui, look);
@@ -27,7 +27,7 @@ pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// The kinds of which one has a gap; the others say why they have none.
+/// Draws the kinds of grip. Only one has a gap; the tooltips of the others explain why they have none.
 fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     ui.horizontal(|ui| {
@@ -40,7 +40,7 @@ fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
     });
 }
 
-/// Why no gap can be sent now, though the hand is armed.
+/// Reason why no gap can be sent now; `None` if it is possible.
 fn refusal(pane: &Pane<'_>) -> Option<&'static str> {
     let (look, hand) = (pane.look, pane.hand());
     let locked = grip::locks_pinch(hand).then(|| look.say(main::LOCKED));
@@ -48,7 +48,7 @@ fn refusal(pane: &Pane<'_>) -> Option<&'static str> {
     pane.unready().or(locked).or(closed)
 }
 
-/// Where the hand was sent, or is; the widest if it does not pinch.
+/// Gap of the current target, else of the actual pose; the widest if the hand does not pinch.
 fn gap_now(pane: &Pane<'_>) -> Gap {
     let hand = pane.hand();
     let targets = hand.controls.joints.map(|joint| joint.target).all();
@@ -58,7 +58,7 @@ fn gap_now(pane: &Pane<'_>) -> Gap {
     gap.map_or(Gap::MAX, Gap::nearest)
 }
 
-/// The gap: sent while the hand is armed, else shown on the drawn hand.
+/// Draws the gap: sent while the hand is armed, else previewed on the drawn hand.
 fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let is_armed = pane.hand().connection.is_armed();
@@ -84,7 +84,7 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     } else if wish.is_some() {
         aim::wish(ui, Gap::nearest(mm));
     }
-    // Its room is kept: the slider stays where the pointer has it.
+    // Its space is reserved, so that the slider stays under the pointer.
     ui.scope(|ui| {
         ui.set_min_height(theme::CONTROL);
         opening_ui(ui, pane, is_armed);
@@ -94,7 +94,7 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     keep.on_click(ui, pane, pose);
 }
 
-/// A pose by size with this gap, gentle.
+/// A gentle pose by size with this gap.
 fn pose(look: Look, gap: Gap) -> LibraryPose {
     let mut pose = LibraryPose::at(gap.angles());
     pose.name = look.fill(poses::GAP_POSE, &[&gap.mm()]);
@@ -102,7 +102,7 @@ fn pose(look: Look, gap: Gap) -> LibraryPose {
     pose
 }
 
-/// Before a gap can be sent: that the hand is not armed, or the button that opens it.
+/// Draws the precondition of a gap: a note while disarmed, or the button that opens the hand.
 fn opening_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_armed: bool) {
     let (look, hand) = (pane.look, pane.hand());
     if !is_armed {
@@ -114,7 +114,7 @@ fn opening_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_armed: bool) {
     }
 }
 
-/// The size of what is held, and the blocks that were measured.
+/// Draws the size of the held object, and the measured blocks.
 fn held_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let held = figures::held_size(pane);

@@ -1,4 +1,4 @@
-//! The view of poses: the user's own, sequences of them, and the gestures in the hand. Holds what is chosen, no pose.
+//! The view of poses: the user's own, sequences of them, and the gestures in the hand. Holds the selection only, no pose.
 pub(crate) mod editor;
 pub(crate) mod gestures;
 mod grip_size;
@@ -20,7 +20,7 @@ use crate::ui::text::{Text, notices, poses};
 use crate::ui::theme;
 use egui::{Align, Layout, ScrollArea, Ui, UiBuilder, vec2};
 
-/// What the view shows.
+/// Section of the view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum PoseSection {
     #[default]
@@ -39,7 +39,7 @@ impl PoseSection {
     ];
 }
 
-/// What the view needs between frames.
+/// View state.
 #[derive(Debug, Default)]
 pub(crate) struct PoseView {
     section: PoseSection,
@@ -53,7 +53,6 @@ pub(crate) struct PoseView {
 }
 
 impl PoseView {
-    /// Draws the view.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let newest = pane.state.poses.newest;
         if newest != self.shown {
@@ -74,7 +73,7 @@ impl PoseView {
         });
     }
 
-    /// The sections, and what is done with all poses.
+    /// Draws the choice of sections, and the actions on all poses.
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let sections = Pick::new(look, poses::SECTION_TIP);
@@ -146,7 +145,7 @@ impl PoseView {
     }
 }
 
-/// From right to left.
+/// Draws the actions from right to left.
 fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let book = &pane.state.poses;
@@ -163,7 +162,7 @@ fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// Why the last file was not taken, and a field for the path of another.
+/// Draws the reason why the last file was rejected, and a field for another path.
 fn refused_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let Some(refused) = &pane.state.poses.refused else {
         return;

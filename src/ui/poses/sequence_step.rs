@@ -1,4 +1,4 @@
-//! One step of a sequence as a row: its pose, its times and its place. Every change is an action.
+//! One step of a sequence as a row: its pose, times and position. Every change is an action.
 
 use crate::app::action::Action;
 use crate::hand::gap::{Gap, GripKind};
@@ -15,19 +15,19 @@ use crate::ui::theme;
 use egui::{Align, CursorIcon, Layout, Rect, Ui, UiBuilder, Vec2, vec2};
 use std::ops::RangeInclusive;
 
-/// Height of a row: its pose and place, and below them its numbers.
+/// Height of a row: pose and position, and the numbers below them.
 pub(crate) const ROW: f32 = theme::CONTROL + NUMBER.y + 2.0 * theme::STEP;
-/// Room of a number with its caption, and of the pose's picture.
+/// Size of a number with its caption, and of the pose's picture.
 const NUMBER: Vec2 = vec2(66.0, 36.0);
 const PICTURE: f32 = 56.0;
 
-/// Asks for a change of this sequence.
+/// Pushes a change of this sequence.
 pub(crate) fn change(pane: &mut Pane<'_>, sequence: &Sequence, edit: SequenceEdit) {
     let edit = LibraryEdit::Sequence(sequence.id, edit);
     pane.actions.push(Action::Library(edit));
 }
 
-/// The step that is shown or run now.
+/// Index of the step that is previewed or run now.
 pub(crate) fn step_now(pane: &Pane<'_>, sequence: &Sequence) -> Option<usize> {
     let preview = pane.state.poses.preview.as_ref();
     if let Some(preview) = preview.filter(|own| own.sequence == sequence.id) {
@@ -76,7 +76,7 @@ pub(crate) fn step_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, at:
     }
 }
 
-/// What a step is called, and its angles.
+/// Name and angles of a step.
 fn shown(pane: &Pane<'_>, goal: StepGoal) -> Option<(String, PerDof<Angle>)> {
     match goal {
         StepGoal::Pose(id) => {
@@ -90,7 +90,7 @@ fn shown(pane: &Pane<'_>, goal: StepGoal) -> Option<(String, PerDof<Angle>)> {
     }
 }
 
-/// Buttons that put the step elsewhere, from right to left.
+/// Draws the buttons that remove or move the step, from right to left.
 fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, at: usize) {
     let look = pane.look;
     let number = (at + 1).to_string();
@@ -113,7 +113,7 @@ fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, at: usize) {
     }
 }
 
-/// The part of a row that takes the keyboard and the pointer for putting the step elsewhere.
+/// Draws the part of a row that is focused or dragged to move the step.
 fn handle_ui(ui: &mut Ui, look: Look, at: usize, name: &str) {
     let label = format!("{} {}: {name}", look.say(poses::STEP_NAME), at + 1);
     let text = format!("{}  {name}", at + 1);
@@ -125,12 +125,12 @@ fn handle_ui(ui: &mut Ui, look: Look, at: usize, name: &str) {
     response.on_hover_cursor(CursorIcon::Grab);
 }
 
-/// What a number, or the button, of a step is called.
+/// Accessible name of a step's number or button.
 fn named(look: Look, at: usize, caption: Text) -> String {
     format!("{} {} {}", look.say(poses::STEP), at + 1, look.say(caption))
 }
 
-/// Whether it waits until the hand holds something.
+/// Draws the switch to wait until the hand holds something.
 fn until_ui(ui: &mut Ui, look: Look, at: usize, step: &mut SequenceStep) {
     let label = named(look, at, poses::UNTIL);
     let waits = Button::said(look, poses::UNTIL).named(&label);
@@ -144,7 +144,7 @@ fn until_ui(ui: &mut Ui, look: Look, at: usize, step: &mut SequenceStep) {
 
 /// A number of a step with its caption.
 struct StepNumber {
-    /// Which step, 0 the first.
+    /// Index of the step.
     at: usize,
     caption: Text,
     tip: Text,
@@ -154,7 +154,7 @@ struct StepNumber {
 }
 
 impl StepNumber {
-    /// A whole number from 0 on.
+    /// A whole number from 0 to `max`.
     fn whole(at: usize, caption: Text, now: impl Into<f64>, max: impl Into<f64>) -> Self {
         Self {
             at,
@@ -166,7 +166,7 @@ impl StepNumber {
         }
     }
 
-    /// Draws it; the number that was confirmed.
+    /// Draws it. Returns the number once confirmed.
     fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<f64> {
         let look = pane.look;
         let label = named(look, self.at, self.caption);
@@ -182,7 +182,7 @@ impl StepNumber {
         typed.inner
     }
 
-    /// The same for a whole number.
+    /// Same as [`Self::ui`], for a whole number.
     fn whole_ui(self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<i64> {
         #[expect(
             clippy::cast_possible_truncation,
@@ -217,14 +217,14 @@ fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, step: &mut SequenceSt
     }
 }
 
-/// Sets a value to what was typed, unless nothing was or it is out of range.
+/// Sets `value` to the typed one, if there is one and it is valid.
 fn set_if_valid<T, E>(value: &mut T, typed: Option<Result<T, E>>) {
     if let Some(Ok(typed)) = typed {
         *value = typed;
     }
 }
 
-/// The gap of a grip by size.
+/// Draws the gap of a grip by size.
 fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, gap: &mut Gap) {
     let number = StepNumber {
         range: Gap::MIN.mm().into()..=Gap::MAX.mm().into(),

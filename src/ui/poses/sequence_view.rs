@@ -1,4 +1,4 @@
-//! Sequences: their steps, the dry run on the drawn hand, and the real one. Every change and start is an action.
+//! Sequences: their steps, the dry run on the drawn hand, and the real run. Every change and start is an action.
 
 use crate::app::action::Action;
 use crate::hand::PerDof;
@@ -17,13 +17,13 @@ use crate::ui::theme;
 use egui::{Align, Layout, Panel, ScrollArea, Ui, UiBuilder, vec2};
 use std::time::Duration;
 
-/// Time between two pictures of a dry run while nothing else is new.
+/// Repaint interval of a dry run.
 const FRAME: Duration = Duration::from_millis(33);
 
-/// The gap that a grip by size starts from, mm.
+/// Initial gap of a grip by size, in mm.
 pub(crate) const FIRST_GAP_MM: f32 = 30.0;
 
-/// What the sequences need between frames.
+/// View state of the sequences.
 #[derive(Debug, Default)]
 pub(crate) struct SequenceView {
     chosen: Option<SequenceId>,
@@ -32,7 +32,7 @@ pub(crate) struct SequenceView {
     order: reorder::Reorder,
 }
 
-/// A part of the view with a card's distance to what is at its left.
+/// A panel at the right, with the gap between cards at its left.
 pub(crate) fn beside(width: f32, id: &'static str) -> Panel {
     kit::bare(Panel::right(id), width, theme::GAP_LEFT)
 }
@@ -147,7 +147,7 @@ fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
     });
 }
 
-/// From right to left.
+/// Draws the actions from right to left.
 fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
     let look = pane.look;
     let delete = Button::said(look, poses::DELETE);

@@ -1,4 +1,4 @@
-//! What is shipped: each entry with its picture, to be started, copied or hidden. Changes none of it.
+//! Shipped poses and demos: each with its picture, to be started, copied or hidden. Changes none of them.
 
 use crate::app::action::Action;
 use crate::poses::edit::LibraryEdit;
@@ -11,10 +11,10 @@ use crate::ui::text::poses;
 use crate::ui::theme;
 use egui::{Align, Layout, ScrollArea, Ui, UiBuilder, vec2};
 
-/// A tile with its buttons.
+/// Size of a tile with its buttons.
 const TILE: egui::Vec2 = vec2(150.0, 164.0);
 
-/// Draws all that is shipped, hidden or not.
+/// Draws all shipped entries, hidden or not.
 pub(crate) fn shipped_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     Label::note(pane.look, poses::SHIPPED_ABOUT).wrap().ui(ui);
     let area = ScrollArea::vertical().auto_shrink(false);

@@ -16,7 +16,7 @@ use crate::ui::theme;
 use crate::ui::view::View;
 use egui::{Id, Rect, Response, ScrollArea, Stroke, StrokeKind, Ui, vec2};
 
-/// An entry on the shelf, and its least height where that is low.
+/// Size of an entry in the strip, and its minimum height.
 const TILE: egui::Vec2 = vec2(96.0, 84.0);
 const TILE_LEAST: f32 = 56.0;
 /// Width of the popup of gestures.
@@ -24,12 +24,12 @@ const POPUP: f32 = 460.0;
 /// Height of a tile's name.
 const NAME_HEIGHT: f32 = 20.0;
 
-/// Shares of the way to open.
+/// Angles as shares of the way to open.
 pub(crate) fn shares(angles: &PerDof<Angle>) -> PerDof<Option<f32>> {
     PerDof::from_fn(|dof| Some(f32::from(angles[dof].get()) / 1000.0))
 }
 
-/// Why this pose cannot be taken now.
+/// Reason why this pose cannot be sent now; `None` if it can.
 fn refusal(pane: &Pane<'_>, pose: &LibraryPose) -> Option<&'static str> {
     if let Some(unready) = pane.unready() {
         return Some(unready);
@@ -40,7 +40,7 @@ fn refusal(pane: &Pane<'_>, pose: &LibraryPose) -> Option<&'static str> {
     (!any || !pinches).then(|| pane.look.say(main::LOCKED))
 }
 
-/// Why no gesture can be started now.
+/// Reason why no gesture can be started now; `None` if one can.
 fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
     if pane.state.settings.gesture_route == GestureRoute::Off {
         return Some(pane.look.say(panels::GESTURES_OFF));
@@ -48,7 +48,7 @@ fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
     pane.unready()
 }
 
-/// A tile of the library: picture, name, tags. True if it was chosen.
+/// Draws a tile of the library: picture, name, tags. True if it was clicked.
 pub(crate) fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, chosen: bool) -> bool {
     let (look, rect) = (pane.look, ui.max_rect());
     let name = look.told(poses::POSE, &pose.name);
@@ -81,7 +81,7 @@ pub(crate) fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, chos
     response.clicked()
 }
 
-/// The overview's strip: the user's poses first, then what is shipped.
+/// Draws the overview's strip: the user's poses first, then the shipped ones.
 pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {
@@ -98,7 +98,7 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// Tiles in as many rows as there is room for; what does not fit at the side is scrolled to, with the wheel, too.
+/// Draws the tiles in as many rows as fit; further columns are reached by scrolling, also with the wheel.
 fn shelf_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (state, gap) = (pane.state, theme::STEP);
     let entries = state.poses.ready(&state.settings.hidden_poses);
@@ -108,7 +108,7 @@ fn shelf_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let columns = (count / fit.y.max(1.0)).ceil().max(fit.x.min(count));
     let size = vec2(TILE.x, room.y.clamp(TILE_LEAST, TILE.y));
     ui.style_mut().always_scroll_the_only_direction = true;
-    // No tile is cut at the end.
+    // No tile is cut off at the end.
     let whole = (TILE.x + gap) * fit.x.max(1.0);
     let area = ScrollArea::horizontal().auto_shrink(false);
     area.max_width(whole).id_salt("strip").show(ui, |ui| {
@@ -122,7 +122,7 @@ fn shelf_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// Of several hands: whether a pose or demo goes to all that are armed.
+/// With several hands, draws the switch that sends a pose or demo to all armed hands.
 pub(crate) fn for_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let hands = &pane.state.hands;
     if hands.is_several() {
@@ -133,7 +133,7 @@ pub(crate) fn for_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// The gestures in the hand that have a name, in a popup below a button. The others are in the view of poses.
+/// Draws the named gestures of the hand, in a popup below a button. The others are in the view of poses.
 fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let is_named = |one: &Gesture| pane.state.settings.gesture_name(*one).is_some();
@@ -152,7 +152,7 @@ fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// Keeps the pose of now.
+/// Draws a button that stores the current pose.
 pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
     let look = pane.look;
     let unknown = pane.hand().pose_now(pane.state.now).is_none();
@@ -161,7 +161,7 @@ pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
     button.on_click(ui, pane, Action::Capture(name));
 }
 
-/// An entry that one press starts, and another press ends while it runs: its picture, its name, and its key.
+/// Draws the tile of an entry, with its picture, name and key. A press starts it, or ends it while it runs.
 fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::Vec2) {
     let (look, state) = (pane.look, pane.state);
     let name = look.entry_name(&state.poses, entry);
@@ -173,7 +173,7 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
         EntryId::Pose(_) => look.tip(poses::RECALL),
         _ => look.tip(verb),
     };
-    // The name may be cut on its tile.
+    // The name may be truncated on its tile.
     let mut tip = look.pair(name, tip);
     if let Some(key) = key {
         tip = format!("{tip}\nShift+{}", key.get());
@@ -189,7 +189,7 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
     let inner = rect.shrink(theme::STEP);
     let (picture, words) = inner.split_top_bottom_at_y(inner.bottom() - NAME_HEIGHT);
     if let Some(angles) = pictured(&state.poses, entry) {
-        // Room for what stands in the corners.
+        // Space for the marks in the corners.
         let picture = picture.shrink2(vec2(theme::GAP, 0.0));
         tile::sign_ui(ui, look, picture, &shares(&angles));
     }
@@ -231,7 +231,7 @@ fn verb(state: &State, entry: EntryId) -> Text {
     }
 }
 
-/// Why this entry cannot be started now.
+/// Reason why this entry cannot be started now; `None` if it can.
 fn entry_refusal(pane: &Pane<'_>, entry: EntryId) -> Option<&'static str> {
     match entry {
         EntryId::Pose(id) => {
@@ -242,7 +242,7 @@ fn entry_refusal(pane: &Pane<'_>, entry: EntryId) -> Option<&'static str> {
     }
 }
 
-/// A button that starts an entry, or ends it while it runs.
+/// Draws a button that starts an entry, or ends it while it runs.
 pub(crate) fn start_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
     let (look, state) = (pane.look, pane.state);
     let verb = verb(state, entry);
@@ -258,7 +258,7 @@ pub(crate) fn start_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
     button.on_click(ui, pane, press(state, entry));
 }
 
-/// What a press on an entry does: it starts it, or ends it while it runs. A pose starts again.
+/// Action of a press on an entry: starts it, or ends it while it runs. A pose is sent again.
 pub(crate) fn press(state: &State, entry: EntryId) -> Action {
     match entry {
         EntryId::Pose(id) => Action::Recall(id),
@@ -267,7 +267,7 @@ pub(crate) fn press(state: &State, entry: EntryId) -> Action {
     }
 }
 
-/// The angles that stand for an entry.
+/// Angles that represent an entry in pictures.
 pub(crate) fn pictured(library: &PoseState, entry: EntryId) -> Option<PerDof<Angle>> {
     let pose = |id| library.pose(id).map(|pose| pose.angles);
     match entry {
@@ -283,7 +283,7 @@ pub(crate) fn pictured(library: &PoseState, entry: EntryId) -> Option<PerDof<Ang
     }
 }
 
-/// A gesture of the hand: its name, or quietly its number.
+/// Draws a gesture of the hand by its name, or muted by its number.
 pub(crate) fn gesture_ui(ui: &mut Ui, pane: &mut Pane<'_>, gesture: Gesture) -> Response {
     let look = pane.look;
     let known = pane.state.settings.gesture_name(gesture);

@@ -1,4 +1,4 @@
-//! Choosing a second recording that is drawn over the replayed one, and the marks at which both are aligned.
+//! Selecting a second recording to draw over the replayed one, and the marks at which the two are aligned.
 
 use crate::app::action::Action;
 use crate::app::recordings::{BesideRecording, RecordingAction, RecordingItem, Timeline};
@@ -10,10 +10,10 @@ use crate::ui::recordings::marks::{clock, shown};
 use crate::ui::text::recordings;
 use egui::{Popup, ScrollArea, Ui};
 
-/// Recordings that are offered, the newest first.
+/// Maximum number of recordings offered, newest first.
 const OFFERED: usize = 200;
 
-/// Draws the choice, and once one is chosen its name and the marks.
+/// Draws the choice, or the chosen recording's name with the marks.
 pub(crate) fn beside_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let look = pane.look;
     let Some(beside) = &pane.state.beside else {
@@ -46,7 +46,7 @@ fn offers_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     });
 }
 
-/// The moments of a recording that it can be aligned at.
+/// Moments at which a recording can be aligned.
 fn moments(look: Look, first: Moment, marks: &[FileMark]) -> Vec<(Moment, String)> {
     let beginning = (first, look.say(recordings::BEGINNING).to_owned());
     let marks = marks.iter().filter_map(|mark| {

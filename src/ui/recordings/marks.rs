@@ -1,4 +1,4 @@
-//! How marks and times of a recording are told, in lists and on the time line.
+//! Names and times of a recording's marks, in lists and on the timeline.
 
 use crate::record::EventKind;
 use crate::ui::kit::Look;
@@ -6,7 +6,7 @@ use crate::ui::text::{Text, main, panels, recordings, tune};
 use egui::Color32;
 use std::time::Duration;
 
-/// The word and the colour of a mark; none for what the line does not show.
+/// Name and colour of a mark; `None` for marks that the timeline does not show.
 pub(crate) fn shown(look: Look, kind: EventKind) -> Option<(Text, Color32)> {
     let palette = look.palette;
     Some(match kind {
@@ -22,7 +22,7 @@ pub(crate) fn shown(look: Look, kind: EventKind) -> Option<(Text, Color32)> {
     })
 }
 
-/// `1:02:03.45`, from the beginning of the recording.
+/// Formats `1:02:03.45`, from the beginning of the recording.
 pub(crate) fn clock(since: Duration) -> String {
     let seconds = since.as_secs();
     let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);

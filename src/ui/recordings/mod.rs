@@ -1,4 +1,4 @@
-//! The view of recordings: which are on disk, found, named, starred, replayed and deleted.
+//! The view of recordings: finding, naming, starring, replaying, exporting and deleting them.
 pub(crate) mod beside;
 pub(crate) mod marks;
 pub(crate) mod stretch;
@@ -21,25 +21,24 @@ use egui::{Frame, Panel, ProgressBar, Ui};
 use std::path::Path;
 use std::time::Duration;
 
-/// Other programs record too: the list is looked for again so often while it is open.
+/// Interval at which the folder is listed while the view is open: other programs record, too.
 const POLL_INTERVAL: Duration = Duration::from_secs(5);
-/// How far an export is, is drawn again so often.
+/// Repaint interval of an export's progress.
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
-/// What the view needs between frames.
+/// View state.
 #[derive(Debug, Default)]
 pub(crate) struct RecordingsView {
     find: String,
-    /// When the list was asked for last, in seconds of the window's time.
+    /// Time of the last listing, in seconds of the window's time.
     looked: Option<f64>,
     /// The field for another file is open.
     other: bool,
-    /// What is marked on a strip.
+    /// Time range marked on a strip.
     marked: Option<MarkedStretch>,
 }
 
 impl RecordingsView {
-    /// Draws the view.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let now = ui.input(|input| input.time);
         if self
@@ -61,7 +60,7 @@ impl RecordingsView {
             folder_ui(ui, pane);
             foot_ui(ui, pane);
             if !pane.state.recordings.exports.is_empty() {
-                // Below the list, whose rows stay under the pointer.
+                // Below the list, so that its rows stay under the pointer.
                 let foot = Panel::bottom("exports").resizable(false);
                 let foot = foot.show_separator_line(false).frame(Frame::NONE);
                 foot.show(ui, |ui| exports_ui(ui, pane));
@@ -70,7 +69,7 @@ impl RecordingsView {
         });
     }
 
-    /// The list is old once the view was left.
+    /// Called when the user leaves the view: the list is refreshed when it is next shown.
     pub(crate) const fn leave(&mut self) {
         self.looked = None;
     }
@@ -117,7 +116,7 @@ impl RecordingsView {
     }
 }
 
-/// A picture, what comes here by itself, and the one thing to do.
+/// Draws the page of an empty list: a picture, a hint on automatic recording, and one action.
 fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     ui.vertical_centered(|ui| {
@@ -138,7 +137,7 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// What is being written in formats of others, and how far that is.
+/// Draws the exports in progress.
 fn exports_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     for running in &pane.state.recordings.exports {
@@ -155,7 +154,7 @@ fn exports_ui(ui: &mut Ui, pane: &Pane<'_>) {
     }
 }
 
-/// Where recordings lie, and what changes that.
+/// Draws the folder of the recordings, and the buttons that change it.
 fn folder_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     ui.horizontal(|ui| {
@@ -187,7 +186,7 @@ fn folder_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// How much room the recordings need, and what can go.
+/// Draws the disk space used, and the recordings that may be deleted.
 fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let state = &pane.state.recordings;
@@ -212,7 +211,7 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// What goes to make room, and how that is kept from happening.
+/// Draws the recordings due for deletion, and a way to prevent it.
 fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, &pane.state.recordings);
     let Some(first) = state.planned.iter().min_by_key(|one| one.due_unix_s()) else {
@@ -230,7 +229,7 @@ fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// The question before a recording is deleted.
+/// Card that confirms deleting a recording.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let path = state.recordings.to_delete.as_ref()?;
     let words = look.fill(recordings::DELETE_WHAT, &[&title_of(look, state, path)]);
@@ -241,7 +240,7 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     Some(card.choice(back).choice(delete))
 }
 
-/// What the recording of a path is called.
+/// Title of the recording with this path.
 fn title_of(look: Look, state: &State, path: &Path) -> String {
     let mut items = state.recordings.items.iter();
     let item = items.find(|item| item.path == path);

@@ -1,4 +1,4 @@
-//! The button that replays what is listed elsewhere: a fault, a recording around one, a trial.
+//! The button that replays an entry of another list: a fault, a recording around one, a trial.
 
 use crate::app::recordings::{RecordingAction, replay_of};
 use crate::hand::Moment;
@@ -7,17 +7,17 @@ use crate::ui::text::recordings;
 use crate::ui::theme;
 use egui::Ui;
 
-/// What is to be replayed.
+/// Time range to replay.
 pub(crate) struct ReplayedStretch<'a> {
-    /// What it is, for the button's name.
+    /// Title, for the button's accessible name.
     pub(crate) title: &'a str,
-    /// The hand, in the spelling of endpoints.
+    /// The hand, as an endpoint.
     pub(crate) hand: &'a str,
     pub(crate) stretch: Option<(Moment, Moment)>,
 }
 
 impl ReplayedStretch<'_> {
-    /// Draws the button; what it asks for, once it is pressed.
+    /// Draws the button. Returns its action on a click.
     pub(crate) fn ui(&self, ui: &mut Ui, pane: &Pane<'_>) -> Option<RecordingAction> {
         let look = pane.look;
         let replay = self.stretch.and_then(|stretch| {

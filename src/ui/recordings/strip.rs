@@ -1,4 +1,4 @@
-//! The strip of force of a recording: an instrument, painted by hand. The same in the list and under the time line.
+//! The force strip of a recording, painted by hand. Used in the list and below the timeline.
 
 use crate::app::recordings::RecordingItem;
 use crate::hand::Moment;
@@ -7,10 +7,10 @@ use crate::ui::kit::Look;
 use crate::ui::recordings::marks;
 use egui::{Color32, Painter, Rect, Stroke, pos2, vec2};
 
-/// A force that fills the strip at least, in grams: a quiet recording does not look like a grasp.
+/// Minimum force at full height, in grams: a quiet recording must not look like a grasp.
 const FULL_LEAST: f32 = 200.0;
 
-/// Paints the greatest forces over a place.
+/// Paints the maximum forces over a rectangle.
 pub(crate) fn strip(painter: &Painter, look: Look, place: Rect, forces: &[f32]) {
     let full = forces.iter().copied().filter(|force| force.is_finite());
     let full = full.fold(FULL_LEAST, f32::max);
@@ -18,7 +18,7 @@ pub(crate) fn strip(painter: &Painter, look: Look, place: Rect, forces: &[f32]) 
         return;
     };
     let width = place.width() / width;
-    // Opaque, so that no seam is seen where bars meet within a pixel.
+    // Opaque, so that no seam is visible where bars meet within a pixel.
     let color = look.palette.sunken.lerp_to_gamma(look.palette.accent, 0.7);
     let mut left = place.left();
     for equal in forces.chunk_by(|one, other| one == other) {
@@ -42,7 +42,7 @@ pub(crate) fn marks(painter: &Painter, look: Look, place: Rect, item: &Recording
     }
 }
 
-/// The moments and colours of what is marked.
+/// Moments and colours of the marks.
 pub(crate) fn moments(look: Look, item: &RecordingItem) -> Vec<(Moment, Color32)> {
     let is_marked = |kind| {
         matches!(

@@ -1,4 +1,4 @@
-//! The table of recordings: a row each, with what is done with it at its end.
+//! The table of recordings: a row each, with its actions at the end.
 
 use crate::app::action::Action;
 use crate::app::recordings::{RecordingAction, RecordingExport, RecordingForm, RecordingItem};
@@ -21,18 +21,18 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 const ROW: f32 = 40.0;
-/// Characters of a name.
+/// Maximum characters of a name.
 const NAME_MAX: usize = 80;
-/// The least width of a name.
+/// Minimum width of a name.
 const NAME: f32 = 200.0;
-/// The strip of force where there is little room, and where there is much: a column for each of its points.
+/// Minimum and maximum width of the force strip; at maximum, one column per point.
 const STRIP: (f32, f32) = (48.0, 308.0);
-/// Marks that are told beside the pointer.
+/// Maximum number of marks listed beside the pointer.
 const MARKS_TOLD: usize = 3;
-/// The drawn hand beside the pointer.
+/// Size of the hand drawn beside the pointer.
 const HAND: Vec2 = vec2(120.0, 112.0);
 
-/// The columns: title and width; the strip of force takes what it can have beside a name, the name what is left then.
+/// Columns with title and width; the strip gets the space left beside a minimum name, the name the rest.
 const COLUMNS: [(Text, f32); 9] = [
     (recordings::STAR, 36.0),
     (recordings::NAME, 0.0),
@@ -45,7 +45,7 @@ const COLUMNS: [(Text, f32); 9] = [
     (recordings::REPLAY, 100.0),
 ];
 
-/// A stretch that is marked on the strip of a recording, as parts of its length.
+/// A time range marked on a recording's strip, as shares of its length.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MarkedStretch {
     path: PathBuf,
@@ -54,7 +54,7 @@ pub(crate) struct MarkedStretch {
 }
 
 impl MarkedStretch {
-    /// How long it is.
+    /// Duration of the range.
     fn length(&self, item: &RecordingItem) -> Duration {
         item.length.mul_f64(self.to - self.from)
     }
@@ -78,13 +78,12 @@ impl MarkedStretch {
     }
 }
 
-/// The table, with what is marked in it.
+/// The table, with the marked range.
 pub(crate) struct RecordingTable<'a> {
     pub(crate) marked: &'a mut Option<MarkedStretch>,
 }
 
 impl RecordingTable<'_> {
-    /// Draws it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, items: &[&RecordingItem]) {
         let look = pane.look;
         ui.spacing_mut().item_spacing.x = theme::STEP;
@@ -146,7 +145,7 @@ impl RecordingTable<'_> {
         }
     }
 
-    /// The strip of force: the pointer shows the hand of then, a drag marks a stretch and offers its export.
+    /// Draws the force strip: hovering shows the hand at that time, a drag marks a range and offers its export.
     fn strip_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
         let look = pane.look;
         let size = vec2(ui.available_width() - theme::GAP, ROW - theme::GAP);
@@ -187,14 +186,14 @@ impl RecordingTable<'_> {
         }
     }
 
-    /// What is marked of a recording.
+    /// Marked range of a recording.
     fn of(&self, item: &RecordingItem) -> Option<&MarkedStretch> {
         self.marked
             .as_ref()
             .filter(|marked| marked.path == item.path)
     }
 
-    /// The formats that a recording, or what is marked of it, can be exported in.
+    /// Draws the export formats of a recording, or of its marked range.
     fn forms_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
         let look = pane.look;
         let marked = self.of(item);
@@ -262,14 +261,14 @@ impl RecordingTable<'_> {
     }
 }
 
-/// How wide the strip of force is, so that all columns fit in the smallest window.
+/// Width of the force strip, such that all columns fit in the smallest window.
 fn strip_width(room: f32) -> f32 {
     let others = COLUMNS.iter().map(|(_, width)| width + theme::STEP);
     let taken = others.sum::<f32>() - STRIP.0 + NAME;
     (room - taken - theme::GAP).clamp(STRIP.0, STRIP.1)
 }
 
-/// The size; told apart where it goes to make room.
+/// Draws the size, in another colour if the recording is due for deletion.
 fn size_ui(ui: &mut Ui, pane: &Pane<'_>, item: &RecordingItem) {
     let look = pane.look;
     let mut planned = pane.state.recordings.planned.iter();
@@ -300,7 +299,7 @@ fn star_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
     button.on_click(ui, pane, Action::Recording(action));
 }
 
-/// The name in words, and below it the hand.
+/// Draws the title, and the hand below it.
 fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
     let look = pane.look;
     ui.vertical(|ui| {
@@ -328,7 +327,7 @@ fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
     });
 }
 
-/// The hand as it was after a part of a recording, with the time, its greatest force and what happened there.
+/// Draws the hand at a share of the recording, with the time, the maximum force and the events at that point.
 fn moment_ui(ui: &mut Ui, look: Look, item: &RecordingItem, part: f64) {
     #[expect(
         clippy::cast_possible_truncation,

@@ -1,17 +1,17 @@
-//! Numbers as people read them: fixed width, units, and "-" for what is not known. No colours.
+//! Number formats: fixed width, units, and "-" for unknown values. No colours.
 
 use std::time::Duration;
 
-/// What is shown for a value that is not known.
+/// Text of an unknown value.
 pub(crate) const UNKNOWN: &str = "-";
 
-/// Gigabytes.
+/// Converts bytes to gigabytes.
 #[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
 pub(crate) fn giga(bytes: u64) -> f64 {
     bytes as f64 / 1e9
 }
 
-/// What several files need, `345.6 MB` or `1.23 GB`.
+/// Total size of several files, `345.6 MB` or `1.23 GB`.
 pub(crate) fn size(bytes: u64) -> String {
     match bytes {
         0..1_000_000_000 => megabytes(bytes),
@@ -19,7 +19,7 @@ pub(crate) fn size(bytes: u64) -> String {
     }
 }
 
-/// The size of a file, `3.4 MB`.
+/// Size of a file, `3.4 MB`.
 pub(crate) fn megabytes(bytes: u64) -> String {
     format!("{:.1} MB", giga(bytes) * 1000.0)
 }
@@ -37,7 +37,7 @@ pub(crate) fn with_unit(value: Option<i64>, width: usize, unit: &str) -> String 
     format!("{} {unit}", whole(value, width))
 }
 
-/// Degrees with one digit, or "-".
+/// Degrees with one decimal, or "-".
 pub(crate) fn degrees(value: Option<f32>) -> String {
     value.map_or_else(|| format!("{UNKNOWN:>6}"), |value| format!("{value:>5.1}°"))
 }
@@ -50,7 +50,7 @@ pub(crate) fn percent(angle: Option<i16>) -> String {
     )
 }
 
-/// A number of newtons as the hand sent it: also "NaN", "inf" and numbers that are too long.
+/// Newtons as received, including "NaN", "inf" and numbers too long for the column.
 pub(crate) fn newtons(value: Option<f32>) -> String {
     match value {
         None => UNKNOWN.into(),
@@ -62,7 +62,7 @@ pub(crate) fn newtons(value: Option<f32>) -> String {
     }
 }
 
-/// Counts, shortened: 1 234, 56.7k, 8.90M.
+/// Counts, abbreviated: 1 234, 56.7k, 8.90M.
 pub(crate) fn counts(value: Option<i64>) -> String {
     let Some(value) = value else {
         return UNKNOWN.into();
@@ -80,7 +80,7 @@ pub(crate) fn counts(value: Option<i64>) -> String {
     }
 }
 
-/// A rate in hertz, or "-" while there is none.
+/// A rate in hertz, or "-" for none.
 pub(crate) fn hertz(value: f64) -> String {
     match value {
         1.0..f64::INFINITY => format!("{value:.0} Hz"),
@@ -97,7 +97,7 @@ pub(crate) fn millis(value: Option<Duration>) -> String {
     )
 }
 
-/// How old something is: 350 ms, 2.4 s, 3 min.
+/// An age: 350 ms, 2.4 s, 3 min.
 pub(crate) fn age(value: Duration) -> String {
     match value.as_secs() {
         0 => format!("{} ms", value.as_millis()),
@@ -107,7 +107,7 @@ pub(crate) fn age(value: Duration) -> String {
     }
 }
 
-/// How long something takes: 45 s, 4 min 20 s, 2 h 5 min.
+/// A duration: 45 s, 4 min 20 s, 2 h 5 min.
 pub(crate) fn duration(value: Duration) -> String {
     let seconds = value.as_secs();
     match seconds {
@@ -117,8 +117,8 @@ pub(crate) fn duration(value: Duration) -> String {
     }
 }
 
-/// An error's text as a sentence: capital letter first, unless it begins with the name of a port or an address, and a
-/// full stop last.
+/// An error's text as a sentence: with a leading capital, unless it begins with the name of a port or an address, and a
+/// full stop.
 pub(crate) fn sentence(text: &str) -> String {
     let is_word = text
         .split(' ')

@@ -15,15 +15,14 @@ use std::fmt::Display;
 /// Colours, language and hand of this frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Look {
-    /// Colours.
     pub(crate) palette: &'static Palette,
     pub(crate) language: Language,
-    /// The hand that is drawn.
+    /// Side of the drawn hand.
     pub(crate) side: Side,
 }
 
 impl Look {
-    /// As the settings and the shown hand say.
+    /// From the settings and the shown hand.
     pub(crate) fn of(state: &State) -> Self {
         Self {
             palette: Palette::of(state.settings.theme),
@@ -37,12 +36,12 @@ impl Look {
         text.of(self.language)
     }
 
-    /// The sentence with this behind it.
+    /// The sentence, followed by `more`.
     pub(crate) fn told(self, text: Text, more: impl Display) -> String {
         format!("{} {more}", self.say(text))
     }
 
-    /// What an entry of the library is called in the window's language.
+    /// Name of a library entry in the window's language.
     pub(crate) fn entry_name(self, poses: &PoseState, entry: EntryId) -> &str {
         match (poses.named(entry), self.language) {
             (Some(names), Language::Zh) if !names.zh.is_empty() => names.zh,
@@ -51,7 +50,7 @@ impl Look {
         }
     }
 
-    /// The colour of a message.
+    /// Colour of a message.
     pub(crate) const fn level(self, level: Level) -> Color32 {
         match level {
             Level::Info => self.palette.accent,
@@ -65,7 +64,7 @@ impl Look {
         self.say(text.tip())
     }
 
-    /// A name and what is said of it, with the colon of the language.
+    /// A name and its description, separated by the language's colon.
     pub(crate) fn pair(self, name: &str, said: &str) -> String {
         let colon = match self.language {
             Language::En => ": ",
@@ -74,12 +73,12 @@ impl Look {
         format!("{name}{colon}{said}")
     }
 
-    /// A sentence in the window's language with these parts in it.
+    /// A sentence in the window's language with these parts inserted.
     pub(crate) fn fill(self, text: Text, parts: &[&dyn Display]) -> String {
         text.fill(self.language, parts)
     }
 
-    /// Names after each other.
+    /// Joins names with the language's separator.
     pub(crate) fn list<N: AsRef<str>>(self, names: &[N]) -> String {
         let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
         names.join(match self.language {
@@ -88,7 +87,7 @@ impl Look {
         })
     }
 
-    /// The colour of a value of this freshness that would be `live`.
+    /// Colour of a value: `live` if it is fresh, else faint.
     pub(crate) fn value(self, freshness: Freshness, live: Color32) -> Color32 {
         match freshness {
             Freshness::Live => live,

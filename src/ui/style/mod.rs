@@ -1,4 +1,4 @@
-//! What texts and controls are made of: sentences in two languages, numbers as people read them, the colours of a frame.
+//! Building blocks of texts and controls: sentences in two languages, number formats, the colours of a frame.
 
 pub(crate) mod format;
 mod look;

@@ -1,15 +1,15 @@
-//! One sentence in all languages of the window. The sentences themselves live beside it.
+//! A sentence in all languages of the window. The sentences themselves are in `ui::text`.
 
 use crate::app::settings::Language;
 use std::fmt::Display;
 
-/// One sentence in all languages, and for a control the tooltip that explains it.
+/// A sentence in all languages, and for a control the tooltip that explains it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Text {
     /// English.
     pub(crate) en: &'static str,
     pub(crate) zh: &'static str,
-    /// The tooltip in both, empty without one.
+    /// Tooltip in both languages, empty without one.
     tip: [&'static str; 2],
 }
 
@@ -20,13 +20,13 @@ impl Text {
         Self { en, zh, tip }
     }
 
-    /// It with a tooltip.
+    /// Adds a tooltip.
     pub(crate) const fn with_tip(self, en: &'static str, zh: &'static str) -> Self {
         let tip = [en, zh];
         Self { tip, ..self }
     }
 
-    /// The tooltip.
+    /// The tooltip as a sentence of its own.
     pub(crate) const fn tip(self) -> Self {
         let [en, zh] = self.tip;
         Self::new(en, zh)
@@ -40,7 +40,7 @@ impl Text {
         }
     }
 
-    /// The sentence with these parts in place of its `{}`, in their order.
+    /// Replaces each `{}` of the sentence by these parts, in order.
     pub(crate) fn fill(self, language: Language, parts: &[&dyn Display]) -> String {
         let mut pieces = self.of(language).split("{}");
         let first = pieces.next().unwrap_or_default().to_owned();
@@ -49,8 +49,8 @@ impl Text {
     }
 }
 
-/// Writes a table of sentences as constants, then functions that name each value of a type, and a list of them all for
-/// the tests. A row holds English and Chinese, and for a control its tooltip in both.
+/// Writes a table of sentences as constants, then functions that return the text of each value of a type, and a list of all
+/// texts for the tests. A row holds English and Chinese, and for a control its tooltip in both.
 macro_rules! texts {
     (
         $($name:ident: $en:literal, $zh:literal $(, $tip_en:literal, $tip_zh:literal)?;)*

@@ -79,7 +79,7 @@ texts! {
     OFFSET_BEFORE: "Before, g", "校准前 g";
     OFFSET_AFTER: "After, g", "校准后 g";
 
-    /// What must be so before a calibration.
+    /// Precondition of a calibration.
     fn check(Check) {
         Check::Open => "Fingers and thumb are open", "手指和拇指已张开";
         Check::Still => "No joint moves", "各关节静止";

@@ -1,4 +1,4 @@
-//! Sentences of the check-up: what is asked before it, how far it is, and what it came to.
+//! Sentences of the check-up: preconditions, progress, and results.
 
 use crate::checkup::check::Check;
 use crate::checkup::report::{CheckupReport, Keeping};
@@ -57,7 +57,7 @@ texts! {
     COLUMN_ADVICE: "What to do", "处理";
     HAND: "Hand", "整手";
 
-    /// A light, as a word.
+    /// Name of a grade.
     fn light(Light) {
         Light::Fine => "fine", "正常";
         Light::Unknown => "unknown", "未知";
@@ -66,7 +66,7 @@ texts! {
     }
 }
 
-/// What is measured.
+/// Name of a measured quantity.
 pub(crate) const fn subject(what: Subject) -> Text {
     let zh = match what {
         Subject::OpenEnd => "张开端角度",
@@ -94,7 +94,7 @@ pub(crate) const fn subject(what: Subject) -> Text {
     Text::new(what.row().name, zh)
 }
 
-/// What to do about it.
+/// Advice about a measured quantity.
 pub(crate) const fn advice(what: Subject) -> Text {
     let zh = match what {
         Subject::OpenEnd
@@ -122,7 +122,7 @@ pub(crate) const fn advice(what: Subject) -> Text {
     Text::new(what.row().advice, zh)
 }
 
-/// What a figure is of.
+/// Part of the hand that a value belongs to.
 pub(crate) const fn part(of: Part) -> Text {
     match of {
         Part::Joint(dof) => words::dof(dof),
@@ -131,7 +131,7 @@ pub(crate) const fn part(of: Part) -> Text {
     }
 }
 
-/// What is to be done about a figure, and that it drifts.
+/// Advice about a value, and its drift.
 pub(crate) fn to_do(look: Look, check: &Check) -> String {
     let what = check.measured.what;
     let advice = (check.light >= Light::Watch).then(|| look.say(advice(what)).to_owned());
@@ -144,7 +144,7 @@ pub(crate) fn to_do(look: Look, check: &Check) -> String {
     all.join(" ")
 }
 
-/// What is to be known of a check-up besides its figures.
+/// Remarks on a check-up, in addition to its values.
 pub(crate) fn remarks(look: Look, report: &CheckupReport) -> Vec<String> {
     let joint = |dof| look.say(words::dof(dof));
     let left_alone = report.left_alone.iter().map(|(dof, zero_g)| {
@@ -161,7 +161,7 @@ pub(crate) fn remarks(look: Look, report: &CheckupReport) -> Vec<String> {
     left_alone.chain(keeping).collect()
 }
 
-/// How much the hand was used.
+/// Recorded usage of the hand.
 pub(crate) fn usage(look: Look, report: &CheckupReport) -> String {
     let Some(usage) = &report.usage else {
         return look.say(NOT_RECORDED).into();

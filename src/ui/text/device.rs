@@ -1,4 +1,4 @@
-//! Sentences of what the hand keeps: rows, verdicts, SAVE, files.
+//! Sentences of the hand's parameters: rows, verdicts, SAVE, files.
 
 use crate::app::params::state::ParamRefusal;
 use crate::app::params::state::{Doing, SaveEnd};
@@ -142,7 +142,7 @@ texts! {
     WHY_BEFORE_APPLY: "before apply", "应用前";
     WHY_BEFORE_RESET: "before reset", "复位前";
 
-    /// Why it cannot be done now.
+    /// Reason why it is not possible now.
     fn refusal(ParamRefusal) {
         ParamRefusal::NoHand => "No hand answers.", "没有灵巧手应答。";
         ParamRefusal::Armed => "The hand is armed: disarm it first.", "灵巧手已使能：请先取消使能。";
@@ -158,7 +158,7 @@ texts! {
     }
 }
 
-/// What is going on; none where nothing is.
+/// Operation in progress; `None` if there is none.
 pub(crate) const fn doing(doing: Doing) -> Option<Text> {
     match doing {
         Doing::Nothing => None,
@@ -169,7 +169,7 @@ pub(crate) const fn doing(doing: Doing) -> Option<Text> {
     }
 }
 
-/// A row's own name, in its group.
+/// Name of a row within its group.
 pub(crate) const fn name(id: ParamId) -> Text {
     match id {
         ParamId::HandId => HAND_ID,
@@ -179,7 +179,7 @@ pub(crate) const fn name(id: ParamId) -> Text {
     }
 }
 
-/// A row's name alone: `Index speed`.
+/// Name of a row without its group: `Index speed`.
 pub(crate) fn whole_name(look: Look, id: ParamId) -> String {
     let own = look.say(name(id));
     match id {
@@ -189,7 +189,7 @@ pub(crate) fn whole_name(look: Look, id: ParamId) -> String {
     }
 }
 
-/// What a row does.
+/// Description of a row's effect.
 pub(crate) const fn about(id: ParamId) -> Text {
     match id {
         ParamId::HandId => ABOUT_HAND_ID,
@@ -200,7 +200,7 @@ pub(crate) const fn about(id: ParamId) -> Text {
     }
 }
 
-/// What came of a row.
+/// Outcome for a row.
 pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
     let say = |text| look.say(text);
     match &end.verdict {
@@ -243,7 +243,7 @@ fn not_sent(look: Look, why: NotSent) -> String {
     look.say(text).into()
 }
 
-/// How a SAVE ended.
+/// Outcome of a SAVE.
 pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
     match end {
         SaveEnd::Told(told) => saved(look, told),
@@ -259,7 +259,7 @@ pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
     }
 }
 
-/// True if what was to be saved is saved, as far as the wire can tell.
+/// True if the parameters are saved, as far as the wire shows.
 pub(crate) const fn is_saved(end: &SaveEnd) -> bool {
     matches!(end, SaveEnd::Told(Saved::Confirmed | Saved::ReadBack))
 }
@@ -293,7 +293,7 @@ pub(crate) fn saved(look: Look, saved: &Saved) -> String {
     }
 }
 
-/// Why a file was written; unknown words as they stand there.
+/// Reason why a file was written; unknown text is returned unchanged.
 pub(crate) fn why(look: Look, why: &str) -> String {
     let known = [
         WHY_DUMP,

@@ -1,5 +1,5 @@
-//! Every error that reaches the user, as a sentence in the window's language. English is the error's own words, except
-//! where they speak of the command line.
+//! Every error shown to the user, as a sentence in the window's language. English uses the error's own text, except where that
+//! refers to the command line.
 
 use crate::app::inputs::OpenRefusal;
 use crate::app::settings::Language;
@@ -23,7 +23,7 @@ use crate::ui::text::{inputs, poses};
 use std::fmt::Display;
 use std::io::ErrorKind;
 
-/// The error's own words in English; else what `zh` makes of it.
+/// The error's own text in English; else the result of `zh`.
 fn told<E: Display>(look: Look, error: &E, zh: impl FnOnce(&E) -> String) -> String {
     match look.language {
         Language::En => format::sentence(&error.to_string()),
@@ -31,7 +31,7 @@ fn told<E: Display>(look: Look, error: &E, zh: impl FnOnce(&E) -> String) -> Str
     }
 }
 
-/// Writes a table of errors as the function that says each in Chinese, and one of another name that says it in the window's language.
+/// Writes a table of errors as a function that returns the Chinese text, and one of another name for the window's language.
 macro_rules! chinese {
     ($($(#[$doc:meta])* fn $name:ident($error:ty) $(as $said:ident)? { $($case:pat $(if $guard:expr)? => $words:literal $(, $part:expr)*;)* })*) => {$(
         $(#[$doc])*
@@ -49,7 +49,7 @@ macro_rules! chinese {
 }
 
 chinese! {
-    /// Why a wire could not be opened, or broke.
+    /// Reason why a wire could not be opened, or broke.
     fn transport_zh(&TransportError) as transport {
         TransportError::Missing { place } => "{place} 不存在：请插入适配器，或选择其他端口。";
         TransportError::NotAPort { place } => "{place} 不是串口：请选择适配器的设备，例如 /dev/ttyUSB0。";
@@ -112,7 +112,7 @@ chinese! {
         NotSent::TooSoon { wait } => "刚刚保存过，请等待 {} 秒", wait.as_secs_f64().ceil();
     }
 
-    /// Why a request to the hand was not carried out.
+    /// Reason why a request to the hand was not executed.
     fn request_zh(&RequestError) as request {
         RequestError::NotConnected => "没有连接：未发送任何内容。";
         RequestError::NotArmed => "未使能：未发送任何内容。";
@@ -153,7 +153,7 @@ chinese! {
         EndpointError::Value { key, value, want } => "{key}={value} 无效：应为{}。", want_zh(want);
     }
 
-    /// Why an export was not written.
+    /// Reason why an export was not written.
     fn export_zh(&ExportError) as export {
         ExportError::Exists { path } => "{} 已存在，不会覆盖。", path.display();
         ExportError::Unwritable { path, error } => "无法写入 {}：{}。", path.display(), system_error_zh(error);
@@ -178,7 +178,7 @@ chinese! {
         Want::OneOf(all) => " {}", all.replace(", ", "、").replace(" or ", " 或 ");
     }
 
-    /// What is wrong with addresses to scan.
+    /// Error in addresses to scan.
     fn hosts_zh(&HostsError) as hosts {
         HostsError::Host { text } => "{text} 不是主机：请输入地址，例如 192.168.11.210；端口不是 6000 时在后面加上冒号与端口。";
         HostsError::Port { port } => "{port} 不是端口：请输入 1 至 65535 的数字。";
@@ -187,7 +187,7 @@ chinese! {
         HostsError::Impossible { address } => "灵巧手不可能使用地址 {address}：请输入灵巧手的地址。";
     }
 
-    /// What a scan heard that is no hand, or none it can name.
+    /// Sign of something other than a hand, or of an unidentified one, during a scan.
     fn hint_zh(&ScanHint) as hint {
         ScanHint::OtherId { endpoint, hand_id } => "{endpoint} 有应答，但 HAND_ID 为 {hand_id}：可能不是灵巧手。";
         ScanHint::OtherSeries { endpoint, hand_id } => "{endpoint} 像灵巧手一样应答（HAND_ID 为 {hand_id}），但不属于本系列：其寄存器含义不同。";
@@ -196,7 +196,7 @@ chinese! {
         ScanHint::Garbled { place, bauds, bytes } => "{place} 上有数据，但波特率 {} 下无法识别（{bytes} 字节）：可能波特率不同、是其他设备，或接线接反。", numbers(bauds);
     }
 
-    /// Why a task could not go on.
+    /// Reason why a task could not continue.
     fn task_zh(&TaskError) as task {
         TaskError::NotRead { id, why } => "无法读取 {}：{}", id.name(), request_zh(why);
         TaskError::NotReached => "灵巧手没有应答。";
@@ -210,7 +210,7 @@ chinese! {
         BackupError::System(error) => "{}", system_error_zh(error);
     }
 
-    /// Why the write of a gateway's client was not done.
+    /// Reason why the write of a gateway's client was not executed.
     fn write_refusal_zh(&WriteRefusal) as write_refusal {
         WriteRefusal::NotGranted => "没有程序获准控制：需由人允许。";
         WriteRefusal::Taken => "其他来源正在控制。";
@@ -223,7 +223,7 @@ chinese! {
         WriteRefusal::Request(error) => "{}", request_zh(error);
     }
 
-    /// Why there is no gamepad.
+    /// Reason why there is no gamepad.
     fn pad_zh(&PadTrouble) as pad {
         PadTrouble::LinuxOnly => "仅在 Linux 上读取手柄：在此可由其他程序读取，并按 'handscope help stream' 所述发送。";
         PadTrouble::NoFolder { folder, why } => "无法查找手柄：{}：{}。", folder.display(), system_error_zh(why);
@@ -231,7 +231,7 @@ chinese! {
         PadTrouble::NoThread(why) => "无法读取手柄：{}。", system_error_zh(why);
     }
 
-    /// Why there is no DDS.
+    /// Reason why DDS is unavailable.
     fn dds_zh(&DdsError) as dds {
         DdsError::NoInterface { name } => "本机没有带 IPv4 地址的网络接口 {name}：可用 'ip address' 查看。";
         DdsError::System { name, error } => "无法使用网络接口 {name}：{}。", system_error_zh(&error.into());
@@ -272,7 +272,7 @@ chinese! {
     }
 }
 
-/// An example of an endpoint without its kind.
+/// Example of an endpoint without its kind.
 fn bare(example: &str) -> &str {
     example.split_once(':').map_or(example, |(_, rest)| rest)
 }
@@ -282,7 +282,7 @@ fn numbers(all: &[u32]) -> String {
     all.join("、")
 }
 
-/// What is wrong with the link.
+/// Description of a link problem.
 pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
     match (look.language, trouble) {
         (_, LinkTrouble::Transport(error)) => transport(look, error),
@@ -296,7 +296,7 @@ pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
     }
 }
 
-/// What is wrong with an endpoint that was put together in the form.
+/// Error in an endpoint entered in the form.
 pub(crate) fn endpoint(look: Look, error: &EndpointError) -> String {
     match (look.language, error) {
         (Language::En, EndpointError::Place { example, .. }) => {
@@ -307,7 +307,7 @@ pub(crate) fn endpoint(look: Look, error: &EndpointError) -> String {
     }
 }
 
-/// Why a typed address leads to no hand.
+/// Reason why a typed address leads to no hand.
 pub(crate) fn typed(look: Look, error: &TypedError) -> String {
     match error {
         TypedError::Endpoint(error) => endpoint(look, error),
@@ -315,7 +315,7 @@ pub(crate) fn typed(look: Look, error: &TypedError) -> String {
     }
 }
 
-/// Why a file was not taken.
+/// Reason why a file was rejected.
 pub(crate) fn file(look: Look, error: &FileError) -> String {
     told(look, error, |error| file_zh(error) + "。")
 }
@@ -338,7 +338,7 @@ fn file_zh(error: &FileError) -> String {
     format!("{line}{field}{}", file_cause_zh(&error.cause))
 }
 
-/// Why the plan of the settings was not taken.
+/// Reason why the plan in the settings was rejected.
 pub(crate) fn plan(look: Look, error: &PlanReadError) -> String {
     match look.language {
         Language::En => error.to_string(),
@@ -346,7 +346,7 @@ pub(crate) fn plan(look: Look, error: &PlanReadError) -> String {
     }
 }
 
-/// Why there is no backup.
+/// Reason why there is no backup.
 pub(crate) fn backup(look: Look, error: &BackupError) -> String {
     match look.language {
         Language::En => error.to_string(),
@@ -370,7 +370,7 @@ fn system_error_zh(error: &SystemError) -> String {
     }
 }
 
-/// What has no kind of its own in the standard library, or shares one: by the numbers of Unix.
+/// Errors without a kind of their own in the standard library, or with a shared one, by Unix error number.
 const fn system_code_zh(code: i32) -> Option<&'static str> {
     if !cfg!(unix) {
         return None;
@@ -402,12 +402,12 @@ const fn system_kind_zh(kind: ErrorKind) -> Option<&'static str> {
         ErrorKind::ConnectionReset => "连接被对方重置",
         ErrorKind::FileTooLarge => "文件过大",
         ErrorKind::InvalidData => "格式不对",
-        // The library's list is open.
+        // The library's enum is non-exhaustive.
         _ => return None,
     })
 }
 
-/// Why something was not opened at the place that the user named.
+/// Reason why an input was not opened at the given place.
 pub(crate) fn not_opened(look: Look, refusal: &OpenRefusal) -> String {
     match refusal {
         OpenRefusal::System(error) => look.fill(inputs::NOT_OPENED, &[&system_error(look, error)]),
@@ -416,7 +416,7 @@ pub(crate) fn not_opened(look: Look, refusal: &OpenRefusal) -> String {
     }
 }
 
-/// Why the hand, or the rule against unsafe writes, said no.
+/// Reason why the hand, or the rule against unsafe writes, refused.
 pub(crate) fn reason(look: Look, reason: Refusal) -> String {
     match look.language {
         Language::En => reason.to_string(),
@@ -449,7 +449,7 @@ mod tests {
         }
     }
 
-    /// Words of another language in a row, outside of commands, paths and names of registers.
+    /// True if English words occur in a row, outside of commands, paths and register names.
     fn is_english(text: &str) -> bool {
         let told: String = text.split('\'').step_by(2).collect();
         told.split(|sign: char| !sign.is_ascii()).any(|part| {
@@ -462,7 +462,7 @@ mod tests {
         })
     }
 
-    /// Checks sentences, and that there is one for each of the variants that `source` has of an enum.
+    /// Checks sentences, and that there is one for each variant of the enum in `source`.
     fn check<E>(all: &[E], (source, name): (&str, &str), zh: impl Fn(&E) -> String) {
         let (_, body) = source.split_once(&format!("pub enum {name} {{")).unwrap();
         let (body, _) = body.split_once("\n}\n").unwrap();
@@ -769,7 +769,7 @@ mod tests {
             file(chinese(), &named),
             "'trial-1.csv'：第 4 行，格式不对。"
         );
-        // A file error stays what it is through an error of the system's type.
+        // A file error survives conversion to the system's error type.
         let wrapped: std::io::Error = named.into();
         assert_eq!(system_error(chinese(), &wrapped.into()), "格式不对");
         let range = PlanReadError::Range("speeds");

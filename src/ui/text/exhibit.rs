@@ -1,4 +1,4 @@
-//! Sentences of an exhibition: what visitors read from two metres away, and what staff do.
+//! Sentences of an exhibition: for visitors, readable from two metres, and for staff.
 
 use crate::exhibit::run::HaltReason;
 use crate::ui::style::phrase::texts;
@@ -59,7 +59,7 @@ texts! {
     FAULTS: "Faults", "故障";
     STOPS: "STOP pressed", "按下停止";
 
-    /// What staff do before the hand moves again.
+    /// Instructions to staff before the hand moves again.
     fn halted(HaltReason) {
         HaltReason::NotArmed => "Staff: check that nobody is near the hand, then unlock and arm.", "工作人员：确认无人靠近灵巧手后，解锁并使能。";
         HaltReason::NoHand => "Staff: the hand does not answer. Check its power and its cable.", "工作人员：灵巧手没有应答。请检查电源和线缆。";

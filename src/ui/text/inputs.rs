@@ -1,4 +1,4 @@
-//! Sentences of what besides the window may move the hand: streams, the gateway, a gamepad with its controls and what they do.
+//! Sentences of inputs that may move the hand besides the window: streams, the gateway, a gamepad with its controls and actions.
 
 use crate::inputs::dds::ctrl::CtrlFault;
 use crate::inputs::follow::FollowPhase;
@@ -79,7 +79,7 @@ texts! {
     SINGLE: "One control must do this. Choose it at another control: the two change places.", "必须有一个控件执行此动作。请在另一个控件上选择它，两者会互换。";
     CHANGE: "Click to change what it does.", "点击可更改其动作。";
 
-    /// Where following stands.
+    /// State of following an input.
     fn phase(FollowPhase) {
         FollowPhase::Waiting => "arming", "使能中";
         FollowPhase::Following => "follows", "跟随中";
@@ -88,7 +88,7 @@ texts! {
         FollowPhase::Released => "not held to run", "未按住运行键";
     }
 
-    /// Why a line was refused.
+    /// Reason why a line was refused.
     fn fault(LineFault) {
         LineFault::TooLong => "Refused: too long", "拒绝：过长";
         LineFault::NotFinite => "Refused: NaN or infinite", "拒绝：NaN 或无穷大";
@@ -105,7 +105,7 @@ texts! {
         LineFault::OtherSender => "Refused: another sender", "拒绝：其他来源";
     }
 
-    /// Why a command over DDS was refused.
+    /// Reason why a command over DDS was refused.
     fn ctrl_fault(CtrlFault) {
         CtrlFault::Malformed => "Refused: not Unitree's message.", "拒绝：不是宇树的消息。";
         CtrlFault::Mode => "Refused: mode bits that do not exist.", "拒绝：模式位不存在。";
@@ -117,7 +117,7 @@ texts! {
         CtrlFault::OtherSender => "Refused: another sender is followed.", "拒绝：正在跟随其他来源。";
     }
 
-    /// What a control is called.
+    /// Name of a control.
     fn control(PadControl) {
         PadControl::South => "A (bottom)", "A（下）";
         PadControl::East => "B (right)", "B（右）";
@@ -140,7 +140,7 @@ texts! {
         PadControl::Home => "Home", "主页键";
     }
 
-    /// What a control does. A pose has its name in it.
+    /// Action of a control. A pose includes its name.
     fn action(&PadAction) {
         PadAction::Nothing => "Nothing", "无";
         PadAction::DeadMan => "Hold to run", "按住运行", "The dead-man: the hand follows while it is held, and stops when it is let go.", "按住时灵巧手跟随手柄；松开即停。";

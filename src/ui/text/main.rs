@@ -125,7 +125,7 @@ texts! {
         AngleUnit::Percent => "Percent", "百分比";
     }
 
-    /// The word for a state of the link.
+    /// Name of a link state.
     fn link_state(LinkState) {
         LinkState::Offline => "Offline", "离线";
         LinkState::Identifying => "Identifying", "识别中";

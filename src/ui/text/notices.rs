@@ -80,7 +80,7 @@ texts! {
     ACT_UNLOCK: "unlocked", "已解锁";
     NO_FAULT_BITS: "no fault", "无故障";
 
-    /// How much a message matters.
+    /// Severity of a message.
     fn level(Level) {
         Level::Info => "info", "信息";
         Level::Warn => "warning", "警告";
@@ -88,7 +88,7 @@ texts! {
     }
 }
 
-/// Title, cause and advice of what is wrong with a drive.
+/// Title, cause and advice of a drive's fault.
 pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
     match what {
         FaultKind::Fault(fault) => words::fault(fault, language),
@@ -96,7 +96,7 @@ pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
     }
 }
 
-/// The words of a fault's mark, `index: stall, over_current`, as the user reads them.
+/// Translated text of a fault's mark, `index: stall, over_current`.
 pub(crate) fn fault_mark(look: Look, mark: &str) -> String {
     let Some((joint, names)) = mark.split_once(": ") else {
         return look.say(panels::MARK_FAULT).to_owned();
@@ -129,7 +129,7 @@ fn disarmed(look: Look, why: Disarmed) -> String {
     }
 }
 
-/// What a latency timer does, and the one line that cures it.
+/// Effect of a latency timer, and the command line that fixes it.
 fn latency_timer(look: Look, port: &str, ms: Option<u16>) -> String {
     let said = match ms {
         Some(ms) => format!("{} {ms} ms.", look.say(panels::TIMER_TOLD)),
@@ -150,7 +150,7 @@ fn place(path: Option<&Path>) -> String {
         .unwrap_or_default()
 }
 
-/// A message, and of several hands the one that it is about.
+/// A message, preceded by its hand's name if there are several.
 pub(crate) fn notice_of(look: Look, notice: &Notice) -> String {
     let said = self::notice(look, &notice.what);
     match &notice.hand {
@@ -237,7 +237,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             Some(why) => look.fill(checkup::ENDED_EARLY, &[&tune::abort(look, *why)]),
         },
         NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
-        // The words of the graphics driver help whoever mends it.
+        // The graphics driver's text helps with the repair.
         NoticeKind::Unguarded { why } => told(panels::NOTICE_UNGUARDED, why),
         NoticeKind::DrawnWithoutOpenGl { reason } => match look.language {
             Language::En => told(panels::NOTICE_WITHOUT_OPENGL, &format!("({reason})")),
@@ -319,7 +319,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
     }
 }
 
-/// What happened to the file of a recording under way.
+/// Change to the file of a recording in progress.
 fn recording(look: Look, notice: &RecorderNotice) -> String {
     match notice {
         RecorderNotice::Moved { from, to: Some(to) } => {
@@ -335,7 +335,7 @@ fn recording(look: Look, notice: &RecorderNotice) -> String {
     }
 }
 
-/// Why a recording was not opened.
+/// Reason why a recording was not opened.
 fn not_opened(look: Look, why: &OpenError) -> String {
     let words = match why {
         OpenError::Unreadable { error } => return errors::system_error(look, error),

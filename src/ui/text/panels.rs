@@ -226,7 +226,7 @@ texts! {
     NOTE_SHOW: "Show the note", "显示标记", "Shows this moment in the plots.", "在曲线中显示该时刻。";
     NOTE_DELETE: "Delete the note", "删除标记", "Takes the note out of the plots.", "从曲线中删除该标记。";
 
-    /// What the built-in hand does, with the name that endpoints have for it.
+    /// Behaviour of the built-in hand, with its name in endpoints.
     fn scenario(Scenario) {
         Scenario::Idle => "Soft ball", "软球";
         Scenario::Free => "Nothing to hold", "无物体";
@@ -239,7 +239,7 @@ texts! {
         Scenario::Frozen => "Readings freeze in motion", "运动中读数冻结";
     }
 
-    /// What a finger, or the grasp, does to an object.
+    /// Grip state of a finger, or of the grasp.
     fn grip(GripState) {
         GripState::Unknown => "Unknown", "未知";
         GripState::Open => "Open", "张开";
@@ -251,7 +251,7 @@ texts! {
         GripState::TooHard => "Too hard", "过紧";
     }
 
-    /// How firmly a fingertip holds.
+    /// Firmness of a fingertip's hold.
     fn hold(FrictionState) {
         FrictionState::Unknown => "Not known", "未知";
         FrictionState::Loose => "No contact", "没有接触";
@@ -260,7 +260,7 @@ texts! {
         FrictionState::Slips => "Slips at this friction", "按此摩擦会打滑";
     }
 
-    /// What is read together.
+    /// Values that are read together.
     fn group(RateClass) {
         RateClass::Motion => "Angles, forces", "角度、受力";
         RateClass::Drives => "Currents, faults", "电流、故障";
@@ -269,7 +269,7 @@ texts! {
         RateClass::Settings => "Setpoints", "设定值";
     }
 
-    /// A way to reach a hand, by its part before the colon, and a hint to it.
+    /// Kind of endpoint, by its part before the colon, with a hint.
     fn kind(&str) {
         "rs485" => "RS485", "RS485", "As delivered: 115200 baud, id 1. If the port is refused on Linux, add yourself to the group dialout and log in again.", "出厂设置：波特率 115200，ID 1。Linux 下若无权限，请将用户加入 dialout 组后重新登录。";
         "tcp" => "Modbus TCP", "Modbus TCP", "As delivered: 192.168.11.210 port 6000, unit 255. This computer needs an address in the same network, for example 192.168.11.100. Anyone in that network can move the hand.", "出厂设置：192.168.11.210，端口 6000，单元标识符 255。本机需要同一网段的地址，例如 192.168.11.100。同一网络中的任何人都能控制灵巧手。";
@@ -281,7 +281,7 @@ texts! {
         _ => "Simulated", "仿真", "The built-in hand answers on a simulated RS485 wire. Nothing real moves.", "内置仿真手通过模拟的 RS485 线路应答，不会有真实动作。";
     }
 
-    /// What a part of an endpoint is called, by its key.
+    /// Name of an endpoint's part, by its key.
     fn setting(&str) {
         "port" => "Serial port", "串口";
         "host" => "Address", "网络地址";
@@ -296,7 +296,7 @@ texts! {
     }
 }
 
-/// Where the zero of a fingertip comes from, and how old it is.
+/// Source and age of a fingertip's zero.
 pub(crate) fn zero(look: Look, rest: TareZero, now: Moment) -> String {
     let since = now.since(rest.at);
     let (ago, kept) = match rest.source {
@@ -313,7 +313,7 @@ pub(crate) fn zero(look: Look, rest: TareZero, now: Moment) -> String {
     }
 }
 
-/// A taring that was kept.
+/// A stored taring.
 pub(crate) fn kept_tare(look: Look, age: Duration) -> String {
     let age = format::age(age);
     match look.language {

@@ -120,7 +120,7 @@ texts! {
     FIND: "Find poses", "查找姿态", "name or tag", "名称或标签";
     FIND_NONE: "No pose has these words in its name or tags.", "没有名称或标签含这些字的姿态。";
 
-    /// What a kind of grip is called.
+    /// Name of a kind of grip.
     fn kind(GripKind) {
         GripKind::Pinch => "Pinch", "捏", "Between the pads of thumb and index.", "在拇指与食指的指腹之间。";
         GripKind::ThreeFingers => "Three fingers", "三指";
@@ -128,7 +128,7 @@ texts! {
         GripKind::Around => "Around", "环握";
     }
 
-    /// Why a kind of grip has no gap.
+    /// Reason why a kind of grip has no gap.
     fn no_gap(NotOffered) {
         NotOffered::BesideMiddle => "There is no gap: the thumb faces the index only, and stays 25 mm beside the middle finger's pad.", "没有间距可言：拇指只正对食指，与中指指腹始终错开 25 mm。";
         NotOffered::BesideOthers => "There is no gap: the thumb faces the index only, and stays 46 mm beside the ring finger's pad and 66 mm beside the little finger's.", "没有间距可言：拇指只正对食指，与无名指指腹始终错开 46 mm，与小指指腹错开 66 mm。";

@@ -1,4 +1,4 @@
-//! Sentences of recordings: the list, the time line, the lamp in the header.
+//! Sentences of recordings: the list, the timeline, the lamp in the header.
 
 use crate::app::recordings::{RecordingForm, RecordingItem};
 use crate::app::settings::{Language, Settings};
@@ -119,7 +119,7 @@ texts! {
     DELETED: "Recordings deleted:", "已删除录制：";
     SIM_TOO: "Record built-in hands, too", "也录制仿真手", "Simulated hands are recorded, too, and their recordings are marked.", "仿真手也会被录制，其录制会有标记。";
 
-    /// The formats that a recording can be exported in.
+    /// Export formats of a recording.
     fn form(RecordingForm) {
         RecordingForm::Csv => "Table (CSV)", "表格（CSV）";
         RecordingForm::Parquet => "Table (Parquet)", "表格（Parquet）";
@@ -129,7 +129,7 @@ texts! {
     }
 }
 
-/// What a recording is of: its own name, else what was done in it or with which hand.
+/// Title of a recording: its own name, else the joints tried in it or its hand.
 pub(crate) fn what(look: Look, settings: &Settings, item: &RecordingItem) -> String {
     if !item.about.name.is_empty() {
         return item.about.name.clone();
@@ -155,7 +155,7 @@ pub(crate) fn what(look: Look, settings: &Settings, item: &RecordingItem) -> Str
     name.unwrap_or(look.say(hand)).to_owned()
 }
 
-/// When a recording began on the clock here, `today 20:21`; `None` if nobody knows.
+/// Local start time of a recording, `today 20:21`; `None` if it is unknown.
 pub(crate) fn when(look: Look, item: &RecordingItem, now_since_1970: Duration) -> Option<String> {
     if item.opening.is_imported() {
         return None;
@@ -172,7 +172,7 @@ pub(crate) fn when(look: Look, item: &RecordingItem, now_since_1970: Duration) -
     })
 }
 
-/// Both in one line.
+/// Title and start time in one line.
 pub(crate) fn title(look: Look, state: &State, item: &RecordingItem) -> String {
     let what = what(look, &state.settings, item);
     let when = when(look, item, state.recordings.looked_at);

@@ -1,4 +1,4 @@
-//! Sentences of looking for hands. Decides nothing.
+//! Sentences of scanning for hands. Decides nothing.
 
 use crate::app::scan::{IdRange, ScanStage, ScanState, ScanTarget};
 use crate::hand::register::BytePacking;
@@ -63,7 +63,7 @@ texts! {
     FIRST_MOVES: "whoever writes first may move it", "先写入者可控制";
     OTHER_HAND: "This hand answered differently last time; it may be another hand.", "本手与上次应答不同，可能是另一只手。";
 
-    /// What two sheets disagree about.
+    /// Fact on which two sheets disagree.
     fn fact(Fact) {
         Fact::HandId => "HAND_ID", "HAND_ID";
         Fact::BaudCode => "REDU_RATIO", "REDU_RATIO";
@@ -73,7 +73,7 @@ texts! {
     }
 
 
-    /// Its words.
+    /// Name of a touch variant.
     fn touch(TouchVariant) {
         TouchVariant::Capacitive => "capacitive", "电容式";
         TouchVariant::Resistive => "resistive: not decoded", "电阻式：本程序不支持";
@@ -84,7 +84,7 @@ texts! {
         TouchVariant::Unknown(TouchDoubt::Refused) => "unknown: not readable", "未知：无法读取";
     }
 
-    /// Its words.
+    /// Name of a byte packing.
     fn packing(BytePacking) {
         BytePacking::LowFirst => "low first", "低字节在前";
         BytePacking::HighFirst => "high first", "高字节在前";
@@ -92,7 +92,7 @@ texts! {
     }
 }
 
-/// Who moves a hand that another Handscope shares.
+/// Controller of a hand that another Handscope shares.
 pub(crate) fn mover(look: Look, owner: Owner) -> String {
     const THERE: Text = Text::new("moved by a person there", "由对方的人控制");
     const MOVED: Text = Text::new("moved by: {}", "控制者：{}");
@@ -102,7 +102,7 @@ pub(crate) fn mover(look: Look, owner: Owner) -> String {
     }
 }
 
-/// What else a scan has to say, as a sentence.
+/// Remark of a scan, as a sentence; empty for its results.
 pub(crate) fn remark(look: Look, remark: &ScanEvent) -> String {
     match remark {
         ScanEvent::Held { place } => format!("{place}: {}", look.say(HELD)),
@@ -117,7 +117,7 @@ pub(crate) fn progress(look: Look, book: &ScanState) -> String {
     if progress.total == 0 {
         return look.say(LISTING).into();
     }
-    // Never less than a second: what is nearly over is not worth a flicker.
+    // Never less than a second: almost finished is not worth a flicker.
     let left = progress.left.as_secs() + 1;
     format!(
         "{} / {} {}, {} {left} s",
@@ -128,7 +128,7 @@ pub(crate) fn progress(look: Look, book: &ScanState) -> String {
     )
 }
 
-/// What was found, or why there is nothing.
+/// Result of a scan, or the reason why there is none.
 pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
     let summary = match book.stage {
         ScanStage::Never | ScanStage::Running => return Err(NEVER),
@@ -156,7 +156,7 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
     })
 }
 
-/// What a typed address was recognised as, with what it says and what it leaves as delivered.
+/// Kind of a recognised address, with its settings and those that remain as delivered.
 pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
     let kind = look.say(panels::kind(endpoint.kind()));
     match endpoint {
@@ -180,7 +180,7 @@ pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
     }
 }
 
-/// The id where it is known, the way of speaking, and its speed.
+/// Protocol, speed, and the id if known.
 pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String {
     let kind = look.say(panels::kind(endpoint.kind()));
     let speed = match endpoint {

@@ -1,4 +1,4 @@
-//! Sentences of the traffic view: kinds of frames, what is wrong about them, names of their bytes. Decides nothing.
+//! Sentences of the traffic view: kinds of frames, their errors, names of their bytes. Decides nothing.
 
 use crate::app::settings::Language;
 use crate::link::traffic::fields::FieldName;
@@ -43,7 +43,7 @@ texts! {
     TOOK: "answered within", "应答用时";
     ALL_WELL: "Nothing wrong", "正常";
 
-    /// What a frame is, in a word.
+    /// Kind of a frame, in a word.
     fn kind(Kind) {
         Kind::Opened => "Wire opened", "线路打开";
         Kind::Closed => "Wire closed", "线路关闭";
@@ -60,7 +60,7 @@ texts! {
         Kind::Noise => "No frame", "非报文";
     }
 
-    /// What some bytes are, in a word.
+    /// Name of a frame's field, in a word.
     fn field(FieldName) {
         FieldName::Header => "Header", "帧头";
         FieldName::Id => "Hand id", "灵巧手 ID";
@@ -87,7 +87,7 @@ texts! {
     }
 }
 
-/// What is wrong about a frame, in a short sentence.
+/// Error of a frame, in a short sentence.
 pub(crate) fn wrong(look: Look, wrong: Wrong) -> String {
     if look.language == Language::En {
         let text = wrong.to_string();

@@ -1,4 +1,4 @@
-//! Sentences of the window's frame: status line, menu, rooms, the list of keys, and what became of files.
+//! Sentences of the window's frame: status line, menu, panels, the list of keys, and results of file operations.
 
 use crate::ui::style::phrase::texts;
 

@@ -28,7 +28,7 @@ pub(crate) const fn finger(finger: Finger) -> Text {
     }
 }
 
-/// Why the hand is no longer armed, as a Chinese sentence.
+/// Reason why the hand is no longer armed, as a Chinese sentence.
 pub(crate) const fn disarmed_zh(why: Disarmed) -> &'static str {
     match why {
         Disarmed::Stop => "已取消使能：按下了停止。",
@@ -48,7 +48,7 @@ pub(crate) const fn disarmed_zh(why: Disarmed) -> &'static str {
     }
 }
 
-/// Why arming is refused, as a sentence.
+/// Reason why arming is refused, as a sentence.
 pub(crate) fn refusal(look: Look, reason: ArmRefusal) -> String {
     match reason {
         ArmRefusal::Offline => look.say(main::REFUSED_OFFLINE).into(),
@@ -66,7 +66,7 @@ pub(crate) fn refusal(look: Look, reason: ArmRefusal) -> String {
     }
 }
 
-/// A setpoint that the hand holds, and what was written here.
+/// Conflict between the hand's setpoint and the one written here.
 pub(crate) fn setpoint(look: Look, conflict: &SetpointConflict) -> String {
     let (register, joint) = (conflict.register.name(), look.say(dof(conflict.dof)));
     let outside = || look.say(main::SETPOINT_OUTSIDE).to_owned();
@@ -95,7 +95,7 @@ pub(crate) const fn fault(fault: Fault, language: Language) -> Words {
     }
 }
 
-/// A fault's title where room is short.
+/// Short title of a fault.
 pub(crate) const fn fault_short(fault: Fault, language: Language) -> &'static str {
     match (language, fault) {
         (Language::En, Fault::OverTemperature) => "Too hot",
@@ -106,7 +106,7 @@ pub(crate) const fn fault_short(fault: Fault, language: Language) -> &'static st
     }
 }
 
-/// Writes a table of titles, causes and advice as the function that says them in Chinese.
+/// Writes a table of titles, causes and advice as a function that returns them in Chinese.
 macro_rules! chinese {
     ($(fn $name:ident($of:ty) { $($case:pat => $title:literal, $cause:literal, $advice:literal;)* })*) => {$(
         const fn $name(of: $of) -> Words {
@@ -142,7 +142,7 @@ chinese! {
     }
 }
 
-/// Who may move the hand, in words.
+/// Name of the owner that may move the hand.
 pub(crate) fn owner(look: Look, owner: Owner) -> String {
     const PERSON: Text = Text::new("This window", "本窗口");
     const TASK: Text = Text::new("A task of this window", "本窗口的任务");

@@ -1,13 +1,13 @@
-//! Every size of type, and the fonts and icons behind them. No colours.
+//! All font sizes, and the fonts and icons behind them. No colours.
 
 use egui::{FontFamily, FontId};
 
-/// Labels, hints, where room is short.
+/// Labels, hints, and narrow places.
 pub(crate) const fn small() -> FontId {
     FontId::proportional(13.0)
 }
 
-/// Running text and buttons.
+/// Body text and buttons.
 pub(crate) const fn body() -> FontId {
     FontId::proportional(14.0)
 }
@@ -17,12 +17,12 @@ pub(crate) const fn title() -> FontId {
     FontId::proportional(15.0)
 }
 
-/// The stop button, the badge of a state.
+/// The stop button, and state badges.
 pub(crate) const fn large() -> FontId {
     FontId::proportional(17.0)
 }
 
-/// Numbers, all digits of one width.
+/// Numbers, with digits of equal width.
 pub(crate) const fn number() -> FontId {
     FontId::monospace(13.0)
 }
@@ -32,9 +32,9 @@ pub(crate) fn icon() -> FontId {
     icon_of(16.0)
 }
 
-/// A sign that is about as high as this, points.
+/// An icon about this high, in points.
 pub(crate) fn icon_high(height: f32) -> FontId {
-    // The signs leave an edge free within their square.
+    // The icons leave a margin within their square.
     icon_of(height * 1.3)
 }
 
@@ -45,13 +45,13 @@ fn icon_of(size: f32) -> FontId {
     )
 }
 
-/// The fonts: egui's own, then the signs of Hack, then Chinese.
+/// The fonts: egui's own, then the symbols of Hack, then Chinese.
 pub(crate) fn fonts() -> egui::FontDefinitions {
     const CHINESE: &str = "NotoSansSC";
     let mut fonts = egui::FontDefinitions::default();
     let bytes: &'static [u8] = include_bytes!("../../../assets/fonts/NotoSansSC-subset.otf");
     let mut chinese = egui::FontData::from_static(bytes);
-    // Han signs hang lower than the Latin letters they stand beside.
+    // Han characters sit lower than adjacent Latin letters.
     chinese.tweak.y_offset_factor = -0.06;
     fonts
         .font_data
@@ -71,7 +71,7 @@ pub(crate) fn fonts() -> egui::FontDefinitions {
     fonts
 }
 
-/// A family of their own: an icon must never stand in for a letter that is missing.
+/// Adds the icons as a family of their own: an icon must never replace a missing letter.
 fn add_icons(fonts: &mut egui::FontDefinitions) {
     const ICONS: &str = "MaterialSymbols";
     let insert = egui_material_icons::font_insert();

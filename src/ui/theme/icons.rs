@@ -1,13 +1,13 @@
-//! The signs of the window, by what they mean. Drawn with [`crate::ui::theme::icon`].
+//! Icons of the window, by meaning. Drawn with [`crate::ui::theme::icon`].
 
 use egui_material_icons::icons;
 
-/// A sign of the icon font.
+/// A character of the icon font.
 pub(crate) type Icon = &'static str;
 
-/// Towards the left: fold a room at the left, unfold one at the right.
+/// To the left: collapses a panel at the left, expands one at the right.
 pub(crate) const TO_LEFT: Icon = icons::ICON_CHEVRON_LEFT.codepoint;
-/// Towards the right.
+/// To the right.
 pub(crate) const TO_RIGHT: Icon = icons::ICON_CHEVRON_RIGHT.codepoint;
 /// Upwards.
 pub(crate) const TO_TOP: Icon = icons::ICON_KEYBOARD_ARROW_UP.codepoint;
@@ -15,32 +15,32 @@ pub(crate) const TO_TOP: Icon = icons::ICON_KEYBOARD_ARROW_UP.codepoint;
 pub(crate) const TO_BOTTOM: Icon = icons::ICON_KEYBOARD_ARROW_DOWN.codepoint;
 /// Opens a menu.
 pub(crate) const MENU: Icon = icons::ICON_MENU.codepoint;
-/// Left alone.
+/// Locked: the joint does not move.
 pub(crate) const LOCKED: Icon = icons::ICON_LOCK.codepoint;
-/// Free to move.
+/// Unlocked: the joint may move.
 pub(crate) const UNLOCKED: Icon = icons::ICON_LOCK_OPEN.codepoint;
-/// What can be set.
+/// Settings.
 pub(crate) const TUNE: Icon = icons::ICON_TUNE.codepoint;
-/// Moves together.
+/// Joints that move together.
 pub(crate) const LINKED: Icon = icons::ICON_LINK.codepoint;
-/// Look at it.
+/// Needs attention.
 pub(crate) const WARNING: Icon = icons::ICON_WARNING.codepoint;
-/// Takes away.
+/// Removes or closes.
 pub(crate) const CLOSE: Icon = icons::ICON_CLOSE.codepoint;
-/// Stands still.
+/// Pauses.
 pub(crate) const PAUSE: Icon = icons::ICON_PAUSE.codepoint;
-/// Goes on.
+/// Resumes.
 pub(crate) const PLAY: Icon = icons::ICON_PLAY_ARROW.codepoint;
-/// Kept, whatever else goes.
+/// Starred: kept when other recordings are deleted.
 pub(crate) const STAR: Icon = icons::ICON_BOOKMARK_ADDED.codepoint;
-/// Could be kept.
+/// Not starred.
 pub(crate) const NO_STAR: Icon = icons::ICON_BOOKMARK.codepoint;
 /// The best of several.
 pub(crate) const BEST: Icon = icons::ICON_STAR.codepoint;
-/// More of the same.
+/// Opens further options.
 pub(crate) const MORE: Icon = icons::ICON_MORE_VERT.codepoint;
 
-/// Takes the last one back.
+/// Deletes the last character.
 pub(crate) const BACKSPACE: Icon = icons::ICON_BACKSPACE.codepoint;
 
 #[cfg(test)]

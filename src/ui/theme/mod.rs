@@ -1,4 +1,4 @@
-//! The one visual language: colours, sizes, type, icons. Nothing here knows what is drawn with them.
+//! The visual design: colours, sizes, fonts, icons. Independent of the content drawn.
 
 mod fonts;
 mod icons;

@@ -1,11 +1,11 @@
-//! Every colour of the window, dark and light, by what it is for. No sizes.
+//! All colours of the window, dark and light, by purpose. No sizes.
 
 use crate::app::settings::Theme;
 use crate::draw::figure::studio::{DARK_SIGNS, DARK_STUDIO, LIGHT_SIGNS, LIGHT_STUDIO, Studio};
 use crate::hand::{Fault, PerDof, Status};
 use egui::{Color32, Rgba};
 
-/// White and black are read equally well on a ground of this luminance.
+/// Background luminance at which white and black text have equal contrast.
 const HALF_BRIGHT: f32 = 0.179;
 
 /// Relative luminance as WCAG 2 defines it.
@@ -14,7 +14,7 @@ fn luminance(color: Color32) -> f32 {
     0.2126 * color.r() + 0.7152 * color.g() + 0.0722 * color.b()
 }
 
-/// All colours of one theme, by what they are for.
+/// All colours of one theme, by purpose.
 #[derive(Debug)]
 pub(crate) struct Palette {
     /// Behind everything.
@@ -23,52 +23,52 @@ pub(crate) struct Palette {
     pub(crate) card: Color32,
     /// Buttons at rest.
     pub(crate) control: Color32,
-    /// Buttons under the pointer.
+    /// Hovered buttons.
     pub(crate) control_hover: Color32,
-    /// Fields, rails, plot grounds.
+    /// Fields, rails, plot backgrounds.
     pub(crate) sunken: Color32,
     /// Edges of cards and fields.
     pub(crate) edge: Color32,
-    /// Lines of a plot's grid.
+    /// Grid lines of a plot.
     pub(crate) grid: Color32,
     pub(crate) text: Color32,
     /// Labels beside values.
     pub(crate) muted: Color32,
     /// Old values, disabled controls, hints.
     pub(crate) faint: Color32,
-    /// The one colour for "chosen" and "focused".
+    /// The colour of selection and focus.
     pub(crate) accent: Color32,
     /// Text on [`Self::accent`].
     pub(crate) on_accent: Color32,
     /// Text on [`Self::stop`].
     pub(crate) on_strong: Color32,
-    /// All is well.
+    /// Everything is fine.
     pub(crate) ok: Color32,
-    /// Look at it.
+    /// Needs attention.
     pub(crate) warn: Color32,
-    /// Act on it.
+    /// Needs action.
     pub(crate) bad: Color32,
-    /// The built-in hand, and nothing else.
+    /// The built-in hand only.
     pub(crate) simulated: Color32,
-    /// Setpoints pass.
+    /// Armed: setpoints pass.
     pub(crate) armed: Color32,
     /// Text on [`Self::armed`].
     pub(crate) on_armed: Color32,
     /// The stop button.
     pub(crate) stop: Color32,
-    /// The stop button under the pointer.
+    /// The hovered stop button.
     pub(crate) stop_hover: Color32,
-    /// The stop button's edge.
+    /// Edge of the stop button.
     pub(crate) stop_edge: Color32,
-    /// The handle of a track.
+    /// Handle of a slider.
     pub(crate) handle: Color32,
-    /// The dot in a handle.
+    /// Dot in a handle.
     pub(crate) handle_dot: Color32,
-    /// Lamps and materials of the drawn hand.
+    /// Lights and materials of the drawn hand.
     pub(crate) studio: &'static Studio,
-    /// The same for small pictures of poses.
+    /// Lights and materials for small pictures of poses.
     pub(crate) signs: &'static Studio,
-    /// The six joints; told apart by all common kinds of colour blindness.
+    /// The six joints; distinguishable with all common kinds of colour blindness.
     pub(crate) dof: PerDof<Color32>,
     /// The theme it belongs to.
     pub(crate) theme: Theme,
@@ -161,7 +161,7 @@ impl Palette {
         }
     }
 
-    /// What a drive says: its first fault, else its status.
+    /// Colour of a drive's state: its first fault, else its status.
     pub(crate) const fn drive(&self, fault: Option<Fault>, status: Option<Status>) -> Color32 {
         match (fault, status) {
             (Some(_), _) => self.bad,
@@ -173,7 +173,7 @@ impl Palette {
         }
     }
 
-    /// Text on any colour.
+    /// Text colour for any background.
     pub(crate) fn ink_on(ground: Color32) -> Color32 {
         if luminance(ground) > HALF_BRIGHT {
             Color32::BLACK
@@ -182,7 +182,7 @@ impl Palette {
         }
     }
 
-    /// A weak wash of a colour over a card.
+    /// A faint tint of a colour over a card.
     pub(crate) fn wash(&self, color: Color32) -> Color32 {
         color.gamma_multiply(if self.theme == Theme::Dark {
             0.16
@@ -191,11 +191,11 @@ impl Palette {
         })
     }
 
-    /// A colour of a scale from cool to warm, as no set of joints is; `part` is 0..=1 and is cut to it. What is drawn with
-    /// it is seen on the ground of a plot wherever it lies; the best of all is [`Self::ok`], which is no part of it.
+    /// Colour of a scale from cool to warm, distinct from the joints' colours; `part` is clamped to 0..=1. Visible everywhere on a
+    /// plot's background; the best value has [`Self::ok`], which is not on the scale.
     pub(crate) fn scale(&self, part: f64) -> Color32 {
         let part = part.clamp(0.0, 1.0);
-        // The ends that would vanish on the ground are left out.
+        // Omits the ends that would be invisible on the background.
         let level = match self.theme {
             Theme::Dark => 0.42 + 0.58 * part,
             Theme::Light => 0.58 * part,
@@ -204,10 +204,10 @@ impl Palette {
         Color32::from_rgb(color.r, color.g, color.b)
     }
 
-    /// A colour of the heat scale; `level` is 0..=1 and is cut to it.
+    /// Colour of the heat scale; `level` is clamped to 0..=1.
     pub(crate) fn heat(&self, level: f32) -> Color32 {
         let level = f64::from(level.clamp(0.0, 1.0));
-        // Rest must look calm on both grounds: dark on the dark skin, pale on the light one.
+        // Rest must look calm on both backgrounds: dark on the dark skin, pale on the light one.
         let color = if self.theme == Theme::Dark {
             colorous::INFERNO.eval_continuous(0.12 + 0.88 * level)
         } else {
@@ -226,7 +226,7 @@ mod tests {
         (one / other).max(other / one)
     }
 
-    /// What an eye with all its cones sees, and those without the cones for red or for green, in linear red, green and
+    /// Perceived colours for full colour vision, and without the cones for red or for green, in linear red, green and
     /// blue (Machado, Oliveira and Fernandes 2009, severity 1).
     const EYES: [(&str, f64, [[f64; 3]; 3]); 3] = [
         (
@@ -254,14 +254,14 @@ mod tests {
         ),
     ];
 
-    /// The best of a scale is drawn thicker than the others, too.
+    /// The best of a scale is also drawn thicker than the others.
     const BEST_APART: f64 = 0.05;
 
     fn product(rows: [[f64; 3]; 3], of: [f64; 3]) -> [f64; 3] {
         rows.map(|row| row.iter().zip(of).map(|(a, b)| a * b).sum())
     }
 
-    /// Lightness and the two axes of OKLab, in which equal distances look about equal; one of 0.02 is just seen.
+    /// Lightness and the two axes of OKLab, in which equal distances look about equal; a distance of 0.02 is just visible.
     fn lab(color: Color32, eye: [[f64; 3]; 3]) -> [f64; 3] {
         let color = Rgba::from(color);
         let linear = [color.r(), color.g(), color.b()].map(f64::from);

@@ -1,4 +1,4 @@
-//! egui's own widgets dressed in this program's colours and sizes.
+//! egui's own widgets in this program's colours and sizes.
 
 use crate::app::settings::Theme;
 use crate::ui::theme::fonts::{body, number, small, title};
@@ -7,7 +7,7 @@ use crate::ui::theme::sizes::{CONTROL, GAP, ROUND, ROUND_SMALL, STEP};
 use egui::style::{Selection, WidgetVisuals};
 use egui::{Color32, CornerRadius, Margin, Stroke, Style, TextStyle, vec2};
 
-/// egui's own widgets in this theme. Keeps what moves by itself as it was `before`.
+/// Style of egui's own widgets in this theme. Animation settings are copied from `before`.
 pub(crate) fn style(theme: Theme, before: &Style) -> Style {
     let palette = Palette::of(theme);
     let mut style = Style {

@@ -1,4 +1,4 @@
-//! From tactile counts to heat, on one scale for all fingers that never changes. Draws only the scale.
+//! Converts tactile counts to heat, on one fixed scale for all fingers. Draws only the scale.
 
 use crate::app::readings::Freshness;
 use crate::hand::{Finger, PerFinger};
@@ -7,19 +7,19 @@ use crate::ui::kit::{Label, Pane};
 use crate::ui::text::panels;
 use egui::{CornerRadius, Rect, Ui, vec2};
 
-/// Counts above the zero of the hottest colour: about a firm grip of 15 N on one pad.
+/// Counts above zero at the hottest colour: about a firm grip of 15 N on one pad.
 const FULL_COUNTS: i64 = 250_000;
-/// The scale of the sensor ends here, in counts.
+/// End of the sensor's scale, in counts.
 const MOST_COUNTS: u32 = 1 << 24;
-/// Steps in which the scale's bar is drawn.
+/// Number of steps in the drawn scale.
 const STEPS: u8 = 16;
 
-/// What is drawn of each fingertip; none where it was never read.
+/// Pictures of all fingertips; `None` for those never read.
 pub(crate) fn tips(pane: &Pane<'_>) -> PerFinger<Option<Tip>> {
     PerFinger::from_fn(|finger| tip(pane, finger))
 }
 
-/// The scale with what it runs over, from right to left; or that a fingertip has no zero.
+/// Draws the scale with its range, from right to left; or that a fingertip has no zero.
 pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let range = look.fill(panels::TOUCH_SCALE, &[&(FULL_COUNTS / 1000)]);
@@ -37,7 +37,7 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
     no_zero_ui(ui, pane);
 }
 
-/// That a fingertip has no zero yet, where that is so.
+/// Draws a note if a fingertip has no zero yet.
 pub(crate) fn no_zero_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (look, hand) = (pane.look, pane.hand());
     let touched = Finger::ALL.into_iter().any(|finger| {
@@ -50,7 +50,7 @@ pub(crate) fn no_zero_ui(ui: &mut Ui, pane: &Pane<'_>) {
     }
 }
 
-/// What is drawn of one fingertip; none if it was never read.
+/// Picture of one fingertip; `None` if it was never read.
 pub(crate) fn tip(pane: &Pane<'_>, finger: Finger) -> Option<Tip> {
     let block = pane.hand().readings.sample.tactile[finger]?.value;
     let mut heat = [None; 8];
@@ -69,12 +69,12 @@ pub(crate) fn tip(pane: &Pane<'_>, finger: Finger) -> Option<Tip> {
     })
 }
 
-/// Whether a channel says something: a live one rests near 3 million counts and ends below this.
+/// True if a channel has a valid value: a live one rests near 3 million counts and never exceeds [`MOST_COUNTS`].
 const fn known(raw: u32) -> bool {
     raw > 0 && raw <= MOST_COUNTS
 }
 
-/// Heat of a channel, 0..=1. By the root, so that a light touch is seen beside a firm grip.
+/// Heat of a channel, 0..=1. Uses the square root, so that a light touch is visible beside a firm grip.
 fn part(raw: u32, zero: u32) -> f32 {
     let above = counts_of(i64::from(raw) - i64::from(zero)).max(0.0);
     (above / counts_of(FULL_COUNTS)).sqrt().min(1.0)

@@ -1,4 +1,4 @@
-//! The five fingertips: small under the drawn hand in the overview, large beside it with one of them in detail.
+//! The five fingertips: small below the drawn hand in the overview, large beside it with one of them in detail.
 pub(crate) mod heat;
 pub(crate) mod table;
 pub(crate) mod tip_channels;
@@ -19,27 +19,27 @@ use egui::{
     WidgetInfo, vec2,
 };
 
-/// Name and force of a fingertip of the overview; the height of its picture, as a
-/// part of the card, and at least.
+/// Height of a fingertip's name and force in the overview; height of its picture, as a share of the card and at
+/// least.
 const FIGURES: f32 = 2.0 * theme::LIST_LINE;
 const TIP_PART: f32 = 0.13;
 const TIP_LEAST: f32 = 44.0;
-/// The hand has at least this height, whatever else there is no room for.
+/// Minimum height of the hand, even if nothing else fits.
 const HAND_LEAST: f32 = 272.0;
 
-/// What the user chose for the fingertips.
+/// View state of the fingertips.
 #[derive(Debug, Default)]
 pub(crate) struct TouchView {
     hand: HandPanel,
     detail: TipDetail,
     /// All numbers instead of one fingertip.
     numbers: bool,
-    /// The pass in which they were drawn large last.
+    /// Pass in which they were last drawn large.
     large_at: Option<u64>,
 }
 
 impl TouchView {
-    /// The card of the overview: the hand, and below it as much of the fingertips as leaves the hand its room.
+    /// Draws the card of the overview: the hand, and below it the fingertips, as far as the hand keeps its minimum height.
     pub(crate) fn small_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         kit::full_card_ui(ui, look, |ui| {
@@ -68,7 +68,7 @@ impl TouchView {
         });
     }
 
-    /// One fingertip of the overview: its name, its picture if it has a height, and its normal force.
+    /// Draws one fingertip of the overview: its name, its picture if it has a height, and its normal force.
     fn column_ui(
         &mut self,
         ui: &mut Ui,
@@ -99,7 +99,7 @@ impl TouchView {
         });
     }
 
-    /// The drawn hand alone.
+    /// Draws the hand alone.
     pub(crate) fn hand_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let clicked = self.hand.ui(ui, pane, &heat::tips(pane));
         if let Some(finger) = clicked {
@@ -107,7 +107,7 @@ impl TouchView {
         }
     }
 
-    /// In place of the plots: five large fingertips over the chosen one in detail, or all numbers.
+    /// Draws the view in place of the plots: five large fingertips above the chosen one in detail, or all numbers.
     pub(crate) fn large_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         self.large_at = Some(ui.ctx().cumulative_pass_nr());
@@ -133,7 +133,7 @@ impl TouchView {
         kit::full_card_ui(ui, look, |ui| self.lower_ui(ui, pane));
     }
 
-    /// Whether the large fingertips are drawn beside the hand.
+    /// True while the large fingertips are drawn beside the hand.
     fn is_large(&self, ui: &Ui) -> bool {
         let now = ui.ctx().cumulative_pass_nr();
         self.large_at.is_some_and(|at| at + 1 >= now)
@@ -171,7 +171,7 @@ impl TouchView {
         }
     }
 
-    /// A large fingertip: a button that chooses it, with its forces.
+    /// Draws a large fingertip: a button that selects it, with its forces.
     fn tip_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, place: Rect, finger: Finger) {
         let look = pane.look;
         let tip = heat::tip(pane, finger).unwrap_or_default();
@@ -194,7 +194,7 @@ impl TouchView {
             }
             (Sense::Fine, _) => {
                 let shear = format::newtons(block.map(|block| block.tangential_n));
-                // The arrow says the direction, too.
+                // The arrow also shows the direction.
                 (format!("{shear} N"), look.palette.muted)
             }
         };
@@ -229,7 +229,7 @@ impl TouchView {
         });
     }
 
-    /// Taring of all fingertips, of one, and back.
+    /// Draws the buttons that tare all fingertips or one, and that undo it.
     fn tare_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let hand = pane.hand();

@@ -1,25 +1,24 @@
-//! The numbers of the five fingertips in rows: forces, deltas, channels. Draws no picture.
+//! Numbers of the five fingertips in rows: forces, deltas, channels. Draws no picture.
 
 use crate::hand::{Finger, TactileBlock};
 use crate::ui::kit::{Label, Look, Pane, format};
 use crate::ui::text::{Text, panels, words};
 use egui::{Color32, Grid, Ui};
 
-/// One row of numbers.
+/// One row of the table.
 pub(crate) struct TouchRow {
     caption: Text,
     name: Text,
     value: fn(&TactileBlock, Look) -> String,
 }
 
-/// The normal force, which stands alone, too.
+/// The normal force, also used on its own.
 pub(crate) const NORMAL: TouchRow = TouchRow {
     caption: panels::TOUCH_NORMAL,
     name: panels::TOUCH_NORMAL_NAME,
     value: |block, _| format!("{} N", format::newtons(Some(block.normal_n))),
 };
 
-/// All rows.
 const LINES: [TouchRow; 7] = [
     NORMAL,
     TouchRow {
@@ -61,7 +60,7 @@ const LINES: [TouchRow; 7] = [
     },
 ];
 
-/// The direction in degrees, or why there is none.
+/// The direction in degrees, or the reason why there is none.
 fn direction(block: &TactileBlock, look: Look) -> String {
     match (block.direction_deg(), block.direction_raw) {
         (Some(degrees), _) => format!("{degrees}°"),
@@ -70,7 +69,7 @@ fn direction(block: &TactileBlock, look: Look) -> String {
     }
 }
 
-/// One number of one fingertip.
+/// Draws one number of one fingertip.
 pub(crate) fn value_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, line: &TouchRow) {
     let look = pane.look;
     let block = pane.hand().readings.sample.tactile[finger];
@@ -79,19 +78,19 @@ pub(crate) fn value_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, line: &Touc
     number_ui(ui, color(pane, finger), &name, text);
 }
 
-/// The colour of the numbers of a fingertip.
+/// Colour of a fingertip's numbers, by their freshness.
 fn color(pane: &Pane<'_>, finger: Finger) -> Color32 {
     let freshness = pane.tip_freshness(finger);
     pane.look.value(freshness, pane.look.palette.text)
 }
 
-/// A number that is known or not, named for accessibility.
+/// Draws a number or "-", with its accessible name.
 fn number_ui(ui: &mut Ui, color: Color32, name: &str, text: Option<String>) {
     let text = text.unwrap_or_else(|| format::UNKNOWN.to_owned());
     Label::new(&text, color).number().named(name).ui(ui);
 }
 
-/// Every value of all fingertips, under their names.
+/// Draws all values of all fingertips, below their names.
 pub(crate) fn all_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let muted = look.palette.muted;
@@ -126,7 +125,7 @@ pub(crate) fn all_ui(ui: &mut Ui, pane: &Pane<'_>) {
     });
 }
 
-/// A channel as sent, and its change from its zero.
+/// Raw value of a channel, and its change from zero.
 fn channel_text(pane: &Pane<'_>, finger: Finger, channel: usize) -> Option<String> {
     let hand = pane.hand();
     let raw = hand.readings.sample.tactile[finger]?.value.raw;

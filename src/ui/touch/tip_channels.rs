@@ -1,4 +1,4 @@
-//! The eight channels of one fingertip over time, as sent or from their zero.
+//! The eight channels of one fingertip over time, raw or relative to their zero.
 
 use crate::hand::Finger;
 use crate::history::Series;
@@ -10,21 +10,21 @@ use crate::ui::text::{Text, panels};
 use egui::{Color32, Ui};
 use egui_plot::LineStyle;
 
-/// What can be shown, in seconds, with its name.
+/// Time windows, in seconds, with their names.
 const WINDOWS: [(f64, Text); 3] = [
     (10.0, panels::LAST_10_S),
     (60.0, panels::LAST_MINUTE),
     (600.0, panels::LAST_10_MIN),
 ];
-/// Counts that are always shown: what stays between them is noise.
+/// Range of counts that is always visible: variations within it are noise.
 const LEAST: (f64, f64) = (-1000.0, 1000.0);
 
-/// How the channels are shown.
+/// View state of the channels.
 #[derive(Debug)]
 pub(crate) struct TipChannels {
-    /// From the zero, or as the hand sends them.
+    /// Relative to the zero instead of raw.
     tared: bool,
-    /// Seconds.
+    /// Visible time in seconds.
     window_s: f64,
     chart: ChartView,
 }
@@ -39,7 +39,7 @@ impl Default for TipChannels {
     }
 }
 
-/// One colour for each channel.
+/// Colour of a channel.
 fn color(look: Look, channel: usize) -> Color32 {
     let palette = look.palette;
     let joints = palette.dof.as_array();

@@ -1,4 +1,4 @@
-//! One fingertip in detail: how near its grip is to slipping, its forces and channels over time.
+//! One fingertip in detail: margin of its grip to slipping, its forces and channels over time.
 
 use crate::app::readings::Freshness;
 use crate::app::readings::friction::{FrictionState, FrictionUse, NEAR};
@@ -16,14 +16,14 @@ use crate::ui::touch::tip_channels::TipChannels;
 use egui::{Color32, Id, Painter, Pos2, Rect, Stroke, Ui, Vec2, vec2};
 use egui_plot::LineStyle;
 
-/// Friction that is taken until the user chooses one, in percent: rubber on smooth plastic is about this.
+/// Default friction in percent: about that of rubber on smooth plastic.
 const FRICTION_PERCENT: i16 = 50;
-/// The largest friction that can be chosen, in percent.
+/// Maximum friction that can be set, in percent.
 const FRICTION_MAX: i16 = 150;
-/// The compass ends at this many times the chosen friction.
+/// Range of the compass, as a multiple of the set friction.
 const COMPASS_END_RATIO: f32 = 1.5;
 
-/// Which fingertip, and what friction is reckoned with.
+/// View state: the fingertip shown, and the assumed friction.
 #[derive(Debug)]
 pub(crate) struct TipDetail {
     pub(crate) finger: Finger,
@@ -50,7 +50,7 @@ impl TipDetail {
         f32::from(self.friction_percent) / 100.0
     }
 
-    /// Follows all grips, so that an alarm neither flickers nor waits until its fingertip is chosen.
+    /// Updates the grip states of all fingertips, so that an alarm neither flickers nor waits until its fingertip is shown.
     pub(crate) fn follow(&mut self, pane: &Pane<'_>) {
         for finger in Finger::ALL {
             let block = pane.hand().readings.sample.tactile[finger];
@@ -61,12 +61,12 @@ impl TipDetail {
         }
     }
 
-    /// How the grip of a fingertip stood when it was looked at last.
+    /// Last grip state of a fingertip.
     pub(crate) fn hold(&self, finger: Finger) -> FrictionState {
         self.holds[finger]
     }
 
-    /// Compass, readings, forces and channels over time: as many as find room.
+    /// Draws compass, readings, forces and channels over time, as many as fit.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let room = ui.available_size();
         ui.horizontal_top(|ui| {
@@ -100,7 +100,7 @@ impl TipDetail {
         (block.map(|block| &block.value), freshness)
     }
 
-    /// Looking onto the fingertip, tip up: the ring is the friction, the dot the force as it is now.
+    /// Draws the fingertip seen from the front, tip up: the ring is the friction limit, the dot the current force.
     fn compass_ui(&self, ui: &Ui, rect: Rect, pane: &Pane<'_>) {
         let look = pane.look;
         let palette = look.palette;
@@ -223,7 +223,7 @@ impl TipDetail {
     }
 }
 
-/// The colour of how a grip stands.
+/// Colour of a grip state.
 const fn color_of(hold: FrictionState, palette: &theme::Palette) -> egui::Color32 {
     match hold {
         FrictionState::Unknown | FrictionState::Loose => palette.faint,

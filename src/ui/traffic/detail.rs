@@ -1,4 +1,4 @@
-//! One frame byte by byte: every byte with its name, its value, and which of them is wrong.
+//! One frame byte by byte, with names, values and errors.
 
 use crate::link::traffic::fields::Field;
 use crate::link::traffic::frame::{Frame, hex};
@@ -7,12 +7,12 @@ use crate::ui::text::traffic;
 use egui::Ui;
 use egui_extras::{Column, TableBuilder, TableRow};
 
-/// Bytes of a field that are shown; the list shows the whole frame.
+/// Maximum number of bytes shown of a field; the list shows the whole frame.
 const HEX_MAX: usize = 16;
-/// Widths of a field's place in the frame, and of its name.
+/// Widths of a field's position in the frame, and of its name.
 const WIDTHS: [f32; 2] = [58.0, 150.0];
 
-/// Draws the frame, or a hint where none or many are chosen.
+/// Draws the frame, or a hint unless exactly one is selected.
 pub(crate) fn detail_ui(ui: &mut Ui, look: Look, chosen: &[&Frame]) {
     let title = look.say(traffic::DETAIL);
     let text = match chosen {

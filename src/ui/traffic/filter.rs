@@ -1,4 +1,4 @@
-//! Which frames of the traffic view pass. Draws nothing.
+//! Filter of the traffic view. Draws nothing.
 
 use crate::hand::{REGISTERS, Span};
 use crate::link::traffic::frame::Frame;
@@ -6,23 +6,23 @@ use crate::record::Direction;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// What the user wants to see.
+/// Criteria that a frame must meet.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Filter {
     /// Part of a register's name, or bytes in hex; empty for all.
     pub(crate) text: String,
-    /// Only this way.
+    /// Only this direction; `None` for both.
     pub(crate) direction: Option<Direction>,
-    /// Only with something wrong.
+    /// Only frames with an error.
     pub(crate) wrong_only: bool,
     /// Without the regular reads.
     pub(crate) hide_polling: bool,
-    /// Only with a larger number: the list was cleared at this one.
+    /// Only frames with a larger number: the list was cleared at this one.
     pub(crate) cleared: u64,
 }
 
 impl Filter {
-    /// The frames that pass, in their order.
+    /// Frames that pass, in their order.
     pub(crate) fn passing(&self, frames: &VecDeque<Arc<Frame>>) -> VecDeque<Arc<Frame>> {
         let text = self.text.trim().to_ascii_uppercase();
         let named = REGISTERS.iter().filter(|row| row.name.contains(&text));
@@ -50,7 +50,7 @@ fn touches(frame: &Frame, row: &Span) -> bool {
     frame.span.is_some_and(within)
 }
 
-/// The bytes that pairs of hex digits stand for; none if the text is anything else. A digit without its pair waits for it.
+/// Bytes given by pairs of hex digits; empty if the text contains anything else. A final unpaired digit is ignored.
 fn bytes_of(text: &str) -> Vec<u8> {
     let digits = text.bytes().filter(|sign| *sign != b' ');
     let digits: Option<Vec<u8>> = digits
@@ -118,7 +118,7 @@ mod tests {
         let out = |filter: &mut Filter| filter.direction = Some(Direction::ToHand);
         assert_eq!(with(out), [ask.clone(), save.clone()]);
         assert_eq!(with(|filter| filter.cleared = 1).len(), 2);
-        // The read that got no answer is not plain polling.
+        // The unanswered read does not count as polling.
         assert_eq!(with(|filter| filter.hide_polling = true).len(), 3);
         assert!(with(|filter| filter.wrong_only = true).contains(&noise));
     }

@@ -1,4 +1,4 @@
-//! The table of frames: only the rows in sight are drawn. Which frames they are is decided elsewhere.
+//! The table of frames. Only visible rows are drawn; filtering is done elsewhere.
 
 use crate::link::traffic::compose::SnippetFormat;
 use crate::link::traffic::frame::{Frame, Kind};
@@ -12,10 +12,10 @@ use egui_extras::{Column, TableBuilder, TableRow};
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
 
-/// Widths of time, way, kind, and the sign that something is wrong.
+/// Widths of time, direction, kind, and error mark.
 const WIDTHS: [f32; 4] = [78.0, 20.0, 92.0, 16.0];
 
-/// The chosen frames, by number, and where the choice began.
+/// Selected frames by number, and the start of the selection.
 #[derive(Debug, Default)]
 pub(crate) struct ChosenFrames {
     pub(crate) numbers: BTreeSet<u64>,
@@ -40,7 +40,7 @@ impl ChosenFrames {
         }
     }
 
-    /// Goes one row up or down.
+    /// Moves the selection one row up or down.
     fn step(&mut self, by: isize, frames: &VecDeque<Arc<Frame>>) {
         let at = frames.iter().position(|frame| frame.number == self.anchor);
         let next = at.and_then(|at| at.checked_add_signed(by));
@@ -55,12 +55,12 @@ impl ChosenFrames {
 pub(crate) struct FrameList<'a> {
     pub(crate) frames: &'a VecDeque<Arc<Frame>>,
     pub(crate) choice: &'a mut ChosenFrames,
-    /// The newest is kept in sight.
+    /// Keeps the newest frame visible.
     pub(crate) follows: bool,
 }
 
 impl FrameList<'_> {
-    /// Draws the head and the rows. True if the user scrolls away from the newest.
+    /// Draws heading and rows. True if the user scrolls away from the newest.
     pub(crate) fn ui(self, ui: &mut Ui, pane: &Pane<'_>) -> bool {
         let look = pane.look;
         let Self {
@@ -76,7 +76,7 @@ impl FrameList<'_> {
             .id_salt("traffic rows")
             .auto_shrink(false)
             .animate_scrolling(false);
-        // The first cell draws the background of the whole row and takes its clicks, so it is not clipped.
+        // The first cell draws the background of the whole row and senses its clicks, so it is not clipped.
         for (nth, width) in WIDTHS.into_iter().enumerate() {
             table = table.column(Column::exact(width).clip(nth > 0));
         }
@@ -115,7 +115,7 @@ impl FrameList<'_> {
     }
 }
 
-/// The user turns the wheel back, or takes the scroll bar.
+/// True if the user scrolls up with the wheel, or drags the scroll bar.
 fn scrolls(ui: &Ui, body: Rect) -> bool {
     ui.rect_contains_pointer(body)
         && ui.input(|input| {
@@ -125,7 +125,7 @@ fn scrolls(ui: &Ui, body: Rect) -> bool {
         })
 }
 
-/// Up and down move a choice while no field and no track has the keyboard.
+/// The up and down keys move the selection while no widget has the focus.
 fn keys(ui: &Ui, frames: &VecDeque<Arc<Frame>>, choice: &mut ChosenFrames) {
     if choice.numbers.is_empty() || ui.memory(|memory| memory.focused().is_some()) {
         return;
@@ -141,7 +141,7 @@ fn keys(ui: &Ui, frames: &VecDeque<Arc<Frame>>, choice: &mut ChosenFrames) {
     }
 }
 
-/// One row; true if it was pressed.
+/// Draws one row; true if it was clicked.
 fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bool) -> bool {
     let look = pane.look;
     let palette = look.palette;
@@ -178,7 +178,7 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bo
     clicked
 }
 
-/// What lies under all cells of a row and is pressed. By the number of the frame: rows move up as others come.
+/// Draws the background of a row, which senses clicks. Its id is the frame's number, because rows move up as others arrive.
 fn ground_ui(ui: &Ui, look: Look, frame: &Frame, chosen: bool) -> Response {
     let palette = look.palette;
     let rect = ui.max_rect().with_max_x(ui.clip_rect().right());
@@ -194,7 +194,7 @@ fn ground_ui(ui: &Ui, look: Look, frame: &Frame, chosen: bool) -> Response {
     response
 }
 
-/// Copies one frame, also as lines of a program.
+/// Draws the menu that copies one frame, also as program code.
 fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, frame: &Frame) {
     ui.label(pane.look.say(traffic::COPY_AS));
     let endpoint = pane.hand().connection.endpoint.as_ref();
@@ -211,7 +211,7 @@ fn paint(ui: &Ui, text: &str, font: FontId, color: Color32) {
     Label::new(text, color).font(font).paint(ui, ui.max_rect());
 }
 
-/// What is wrong, else what it means.
+/// Error of a frame with its meaning, or the meaning alone.
 fn said(look: Look, frame: &Frame) -> String {
     match frame.wrong {
         None => frame.meaning(),

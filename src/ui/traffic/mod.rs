@@ -1,4 +1,4 @@
-//! The traffic view: what goes over the wire, with filter, pause, copy and export. Asks for files; reads no wire.
+//! The traffic view: frames on the wire, with filter, pause, copy and export. Requests files; reads no wire.
 pub(crate) mod detail;
 pub(crate) mod filter;
 pub(crate) mod list;
@@ -16,7 +16,7 @@ use egui::{Event, Ui, vec2};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// The frames as they were when the list was paused.
+/// Frames at the time when the list was paused.
 #[derive(Debug)]
 struct Paused {
     frames: VecDeque<Arc<Frame>>,
@@ -24,12 +24,12 @@ struct Paused {
     newest: u64,
 }
 
-/// What the view remembers.
+/// View state.
 #[derive(Debug, Default)]
 pub(crate) struct TrafficView {
     filter: Filter,
     passed: VecDeque<Arc<Frame>>,
-    /// What passed is of: another filter, or another frame, makes it anew.
+    /// Filter and frames that `passed` was computed from; it is recomputed when they change.
     of: Option<(Filter, u64, u64)>,
     choice: ChosenFrames,
     paused: Option<Paused>,
@@ -37,7 +37,7 @@ pub(crate) struct TrafficView {
 }
 
 impl TrafficView {
-    /// Draws the list above and the chosen frame below.
+    /// Draws the list above and the selected frame below.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         self.update(pane);
         let whole = ui.available_size();
@@ -56,7 +56,7 @@ impl TrafficView {
 
     fn update(&mut self, pane: &Pane<'_>) {
         let live = &pane.hand().connection.traffic;
-        // Another link counts its frames from the beginning.
+        // A new link numbers its frames from the beginning.
         if live.newest() < self.filter.cleared {
             self.filter.cleared = 0;
         }
@@ -142,7 +142,7 @@ impl TrafficView {
                 changes: live.changes(),
                 newest: live.newest(),
             });
-            // What is shown from now on has a history of its own.
+            // The list shown from now on has other frames.
             self.update(pane);
         }
         let follow = Button::said(look, traffic::FOLLOW).switch(!self.scrolls);
@@ -196,7 +196,7 @@ impl TrafficView {
         }
     }
 
-    /// Ctrl+C, unless a text field has the keyboard.
+    /// Copies on Ctrl+C, unless a text field has the focus.
     fn copy_by_key(&self, ui: &Ui) {
         let wished = ui.input(|input| input.events.contains(&Event::Copy));
         if wished && !self.choice.numbers.is_empty() && !ui.ctx().text_edit_focused() {

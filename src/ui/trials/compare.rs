@@ -1,5 +1,5 @@
-//! The results of trials: how the series goes or ended, curves over each other, what was measured, the map of overshoot
-//! and the best. Holds what is chosen, no trial.
+//! Results of trials: progress or end of the series, overlaid curves, measurements, the map of overshoot and the best setting.
+//! Holds the selection only, no trial.
 
 use crate::app::action::Action;
 use crate::app::state::State;
@@ -21,15 +21,15 @@ use crate::ui::trials::tune_live::{self, LiveChart};
 use egui::{Panel, ScrollArea, Ui, vec2};
 
 const NOTE_CHARS: usize = 300;
-/// From this width on the best stands beside curves and table, and from that one on beside the curves.
+/// Minimum width at which the best setting is beside curves and table, and at which it is beside the curves.
 const WIDE: f32 = 1500.0;
 const BESIDE: f32 = 640.0;
-/// Room that curves, their choices and the map of overshoot get before the table does.
+/// Minimum height of curves, their choices and the map of overshoot; the table yields.
 const CURVES_LEAST: f32 = 272.0;
-/// Most width of where a session lies.
+/// Maximum width of a session's path.
 const PLACE: f32 = 280.0;
 
-/// What the results need between frames.
+/// View state of the results.
 #[derive(Debug, Default)]
 pub(crate) struct ResultsView {
     chosen: ShownSessions,
@@ -37,16 +37,16 @@ pub(crate) struct ResultsView {
     curves: CurvesView,
     live: LiveChart,
     table: TableView,
-    /// The trial that stands out.
+    /// The highlighted trial.
     strong: Option<TrialKey>,
     best: BestView,
-    /// Whether what was measured of this hand is shown in place of trials.
+    /// Show the hand's measured overshoot in place of trials.
     is_of_hand: bool,
     map: OvershootView,
 }
 
 impl ResultsView {
-    /// Draws the results; `fold_ui` stands at the left end of their head.
+    /// Draws the results; `fold_ui` draws the left end of their heading.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
@@ -101,7 +101,7 @@ impl ResultsView {
         });
     }
 
-    /// Curves over the table, and the best beside them where there is room.
+    /// Draws the curves above the table, with the best setting beside them if it fits.
     fn session_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, focus: &TrialSession) {
         let mut comparison = self.comparison(pane, focus.id);
         comparison.judge(self.best.criterion());
@@ -114,7 +114,7 @@ impl ResultsView {
             self.comparison = Some(comparison);
             return;
         }
-        // What is armed cannot be given defaults: the best waits for the end.
+        // No defaults can be saved while the hand is armed: the best setting appears at the end.
         if !runs && room.x >= WIDE {
             self.best_ui(ui, pane, &comparison, focus);
         }
@@ -157,7 +157,7 @@ impl ResultsView {
         });
     }
 
-    /// The sessions side by side: reckoned again only when they changed.
+    /// Comparison of the shown sessions, recomputed only when they change.
     fn comparison(&mut self, pane: &Pane<'_>, focus: SessionId) -> Comparison {
         let trials = &pane.state.trials;
         let shown = &self.chosen.shown;
@@ -170,7 +170,7 @@ impl ResultsView {
         Comparison::of(trials, shown, focus)
     }
 
-    /// What is done with the files of the session at hand, from right to left.
+    /// Draws the file actions of the current session, from right to left.
     fn files_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
         let look = pane.look;
         let runs = pane.state.trials.running == Some(session.id);
@@ -183,7 +183,7 @@ impl ResultsView {
         open.on_click(ui, pane, Action::Trial(TrialAction::Open(None)));
     }
 
-    /// Where the session lies; a press saves it in a folder that is chosen.
+    /// Draws the path of the session's files; a click saves them in a folder that the user chooses.
     fn place_ui(
         &self,
         ui: &mut Ui,
@@ -217,7 +217,7 @@ impl ResultsView {
     }
 }
 
-/// How a series ended.
+/// Draws the outcome of a series.
 fn end_ui(ui: &mut Ui, pane: &Pane<'_>, session: &TrialSession) {
     let (look, palette) = (pane.look, pane.look.palette);
     let (ended, color) = match &session.head.aborted {
@@ -233,7 +233,7 @@ fn end_ui(ui: &mut Ui, pane: &Pane<'_>, session: &TrialSession) {
     kit::say_ui(ui, &words, color);
 }
 
-/// Note and tags of the session at hand, side by side.
+/// Draws note and tags of the current session, side by side.
 fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
     let look = pane.look;
     let (id, head) = (session.id, &session.head);
@@ -257,7 +257,7 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
     }
 }
 
-/// Nothing to show yet: why, and what to do.
+/// Draws the reason for an empty view, and the next step.
 fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     ui.vertical_centered(|ui| {
@@ -268,7 +268,7 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// The card of a session that is about to go and lies in no file.
+/// Card that confirms removing a session without a file.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let session = state.trials.session(state.trials.to_confirm?)?;
     let loses = look.fill(tune::FORGET_LOSES, &[&session.trials.len()]);

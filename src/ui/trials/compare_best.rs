@@ -1,5 +1,5 @@
-//! The map of overshoot over speed and threshold, and the best setting by what the user wants, which can be made the
-//! default. Writes nothing: a card asks first.
+//! The map of overshoot over speed and threshold, and the best setting by the user's criterion, which can be made the default.
+//! Writes nothing: a card asks first.
 
 use crate::app::trials::{Comparison, TrialSession};
 use crate::trials::Criterion;
@@ -14,17 +14,17 @@ use egui::{
     Align2, CornerRadius, Grid, Mesh, Role, ScrollArea, Sense, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
-/// Overshoot that the fastest may have, g.
+/// Maximum overshoot of the fastest setting, in grams.
 const OVERSHOOT_G: f64 = 100.0;
-/// The bar that shows the colours of the map, in so many steps.
+/// Size and number of steps of the map's colour bar.
 const SCALE: Vec2 = vec2(96.0, 8.0);
 const SCALE_STEPS: u8 = 16;
-/// Room for a speed or a threshold beside the map.
+/// Space for a speed or a threshold beside the map.
 const HEAD: Vec2 = vec2(44.0, 17.0);
-/// Between its cells.
+/// Gap between cells.
 const GAP: f32 = 2.0;
 
-/// What is best.
+/// Criterion chosen by the user.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Wanted {
     #[default]
@@ -32,7 +32,7 @@ enum Wanted {
     Fastest,
 }
 
-/// What is wanted of the best.
+/// View state of the best setting.
 #[derive(Debug, Default)]
 pub(crate) struct BestView {
     wanted: Wanted,
@@ -40,7 +40,7 @@ pub(crate) struct BestView {
 }
 
 impl BestView {
-    /// What is best.
+    /// Criterion of the best setting.
     pub(crate) fn criterion(&self) -> Criterion {
         let steady_g = self.steady_g;
         match self.wanted {
@@ -52,7 +52,7 @@ impl BestView {
         }
     }
 
-    /// Draws the choice, the best, and the map.
+    /// Draws the choice, the best setting, and the map.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
@@ -76,7 +76,7 @@ impl BestView {
         map_ui(ui, pane, comparison);
     }
 
-    /// By what the best is chosen.
+    /// Draws the choice of the criterion.
     fn choice_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ui.horizontal_wrapped(|ui| {
@@ -97,7 +97,7 @@ impl BestView {
     }
 }
 
-/// The best, and what makes it the default.
+/// Draws the best setting, and the button that makes it the default.
 pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison) {
     let (look, palette) = (pane.look, pane.look.palette);
     let best = comparison.best.as_ref();
@@ -125,7 +125,7 @@ pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison)
     promotion.end_ui(ui, pane);
 }
 
-/// Over which sessions map and best are, and why not over all.
+/// Draws the sessions covered by map and best setting, and the reason why not all are.
 fn of_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison, focus: &TrialSession) {
     let look = pane.look;
     let differences = comparison.differences.iter();
@@ -142,8 +142,8 @@ fn of_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison, focus: &TrialSes
     label.ui(ui).on_hover_text(look.tip(tune::ALONE));
 }
 
-/// Overshoot as colours with numbers: speeds below each other, thresholds side by side; the scale below spans what was
-/// measured.
+/// Draws overshoot as coloured numbers: one row per speed, one column per threshold. The colour scale below spans the measured
+/// range.
 fn map_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison) {
     let muted = pane.look.palette.muted;
     let scores = &comparison.scores;
@@ -200,7 +200,7 @@ fn map_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison) {
     }
 }
 
-/// Where a value lies between the least and the greatest that were measured.
+/// Position of a value within the measured range, 0..=1.
 fn part(value: f64, span: MetricSpread) -> f64 {
     let wide = span.max - span.min;
     if wide > 0.0 {
@@ -210,7 +210,7 @@ fn part(value: f64, span: MetricSpread) -> f64 {
     }
 }
 
-/// Draws the cells: one for each pair of speed and force threshold that was tried.
+/// Cells of the map: one for each tried pair of speed and force threshold.
 struct ScoreGrid<'a, 'p> {
     pane: &'a Pane<'p>,
     comparison: &'a Comparison,
@@ -252,7 +252,7 @@ impl ScoreGrid<'_, '_> {
     }
 }
 
-/// What the colours of the map stand for: the least at the left, the greatest at the right.
+/// Draws the colour scale of the map: minimum at the left, maximum at the right.
 fn scale_ui(ui: &mut Ui, pane: &Pane<'_>, span: MetricSpread) {
     let (look, palette) = (pane.look, pane.look.palette);
     let [least, most] = [span.min, span.max].map(|grams| format!("{grams:.0} g"));

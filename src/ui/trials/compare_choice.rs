@@ -1,21 +1,21 @@
-//! What is chosen in the comparison. Holds no trial.
+//! Selection in the comparison. Holds no trial.
 
 use crate::app::trials::{SessionId, TrialSession};
 
-/// A trial of a session, by its number.
+/// A trial of a session, by its index.
 pub(crate) type TrialKey = (SessionId, usize);
 
-/// The sessions that are shown, and the one whose words and files are at hand.
+/// The sessions shown, and the current one, whose words and files can be edited.
 #[derive(Debug, Default)]
 pub(crate) struct ShownSessions {
-    /// Over each other, the oldest first.
+    /// Overlaid sessions, the oldest first.
     pub(crate) shown: Vec<SessionId>,
     pub(crate) focus: Option<SessionId>,
     newest: Option<SessionId>,
 }
 
 impl ShownSessions {
-    /// What was begun or opened last is shown at once; what is not there any more is not.
+    /// Shows a newly begun or opened session at once, and drops sessions that no longer exist.
     pub(crate) fn follow(&mut self, sessions: &[TrialSession]) {
         let newest = sessions.iter().map(|session| session.id).max();
         let is_new = newest > self.newest;
@@ -30,7 +30,7 @@ impl ShownSessions {
         self.focus = self.focus.or(self.shown.last().copied());
     }
 
-    /// Makes a session the one at hand; alone, unless it is shown with others.
+    /// Makes a session the current one; shown alone, unless it is already shown with others.
     pub(crate) fn choose(&mut self, id: SessionId) {
         if !self.shown.contains(&id) {
             self.shown = vec![id];
@@ -38,7 +38,7 @@ impl ShownSessions {
         self.focus = Some(id);
     }
 
-    /// Puts a session over the others or takes it away. The last one stays.
+    /// Adds a session to the overlaid ones or removes it. The last one remains.
     pub(crate) fn toggle(&mut self, id: SessionId) {
         if !self.shown.contains(&id) {
             self.shown.push(id);

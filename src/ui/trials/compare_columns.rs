@@ -1,4 +1,4 @@
-//! The columns of the table of trials, and how what stands in them is said and ordered. Draws nothing.
+//! Columns of the trial table, with the text and order of their values. Draws nothing.
 
 use crate::hand::Status;
 use crate::trials::TrialSetting;
@@ -8,7 +8,7 @@ use crate::ui::kit::{Look, format};
 use crate::ui::text::{Text, tune, words};
 use std::cmp::Ordering;
 
-/// The head of a column, with its unit; `None` if the window has no room for it.
+/// Heading of a column with its unit; `None` if the window does not show it.
 const fn title(metric: Metric) -> Option<Text> {
     match metric {
         Metric::Overshoot => Some(tune::COLUMN_OVER),
@@ -25,13 +25,13 @@ const fn title(metric: Metric) -> Option<Text> {
     }
 }
 
-/// The columns that the window shows, with their heads.
+/// Columns shown in the window, with their headings.
 pub(crate) fn shown() -> impl Iterator<Item = (&'static TrialColumn, Text)> {
     let titled = |column: &'static TrialColumn| Some((column, title(column.metric)?));
     COLUMNS.iter().filter_map(titled)
 }
 
-/// By number; what is not known goes last.
+/// Orders numbers; unknown values go last.
 pub(crate) fn order(a: Option<f64>, b: Option<f64>, falling: bool) -> Ordering {
     match (a, b) {
         (Some(a), Some(b)) if falling => b.total_cmp(&a),
@@ -40,7 +40,7 @@ pub(crate) fn order(a: Option<f64>, b: Option<f64>, falling: bool) -> Ordering {
     }
 }
 
-/// What the drive said in the end, in words; a name that this program does not know stays as it is.
+/// Final state of the drive as text; an unknown name is returned unchanged.
 pub(crate) fn end_words(look: Look, name: Option<&str>) -> String {
     let Some(name) = name else {
         return format::UNKNOWN.to_owned();

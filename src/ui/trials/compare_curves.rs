@@ -1,5 +1,5 @@
-//! The curves of the sessions that are shown, over each other: colours for settings or joints, strokes for sessions, and
-//! which trial the pointer is at. Measures nothing.
+//! Overlaid curves of the shown sessions: colours for settings or joints, line styles for sessions, and the hovered trial.
+//! Measures nothing.
 
 use crate::app::trials::{
     ComparedLine, ComparedLines, ComparedRow, Comparison, LineGroup, RowKey, TrialQuantity,
@@ -17,13 +17,13 @@ use crate::ui::trials::compare_list;
 use egui::{Color32, Stroke, Ui};
 use egui_plot::LineStyle;
 
-/// The shortest time that is shown, s.
+/// Minimum visible time, in seconds.
 pub(crate) const LEAST_S: f64 = 0.1;
 
-/// Time before the common moment that is shown at first, s.
+/// Time before the common moment that is visible at first, in seconds.
 const LEAD_S: f64 = 0.5;
 
-/// Where the time of the curves begins.
+/// Zero of the curves' time axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Align {
     Command,
@@ -31,39 +31,39 @@ enum Align {
     Contact,
 }
 
-/// What the curves are of: another choice is thinned anew.
+/// Key of the drawn curves: another choice is decimated anew.
 type Drawn = (TrialQuantity, Option<TrialKey>);
 
-/// What the curves need between frames.
+/// View state of the curves.
 #[derive(Debug, Default)]
 pub(crate) struct CurvesView {
     shown: TrialQuantity,
     align: Align,
-    /// Thinned once, not each frame.
+    /// Decimated once, not in each frame.
     picture: Option<(Drawn, ComparedLines)>,
-    /// The line at the pointer.
+    /// Curve under the pointer.
     pointed: Option<RowKey>,
     pub(crate) chart: ChartView,
 }
 
-/// Lines of trials, and what they are of.
+/// Curves of trials, with their sources.
 #[derive(Clone, Copy)]
 struct DrawnTrials<'a> {
     pane: &'a Pane<'a>,
     comparison: &'a Comparison,
     picture: &'a ComparedLines,
-    /// The trial that stands out.
+    /// The highlighted trial.
     strong: Option<TrialKey>,
 }
 
 impl CurvesView {
-    /// The comparison is another one.
+    /// Resets the view for another comparison.
     pub(crate) fn forget(&mut self) {
         (self.picture, self.pointed) = (None, None);
         self.chart = ChartView::default();
     }
 
-    /// Draws what is chosen, and the choices. A pressed line stands out.
+    /// Draws the curves and their choices. A click on a curve highlights its trial.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
@@ -75,7 +75,7 @@ impl CurvesView {
         self.chart_ui(ui, pane, comparison, strong);
     }
 
-    /// Draws what is chosen. A pressed line stands out.
+    /// Draws the selected curves. A click on a curve highlights its trial.
     fn chart_ui(
         &mut self,
         ui: &mut Ui,
@@ -118,7 +118,7 @@ impl CurvesView {
     fn curves<'a>(&self, all: DrawnTrials<'a>) -> Vec<(RowKey, ChartCurve<'a>)> {
         let lines = &all.picture.lines;
         let any = lines.iter().any(|own| all.is_strong(own.key));
-        // Without any there is nothing to lay over each other.
+        // Without contacts there is nothing to align.
         let has_contact = lines.iter().any(|own| own.contact_s.is_some());
         let styled = lines.iter().filter_map(|own| {
             let mut curve = all.curve(own)?;
@@ -198,7 +198,7 @@ impl<'a> DrawnTrials<'a> {
         compare_list::style(self.comparison.sessions(), seen.session.id)
     }
 
-    /// A line with the colour of its setting, joint or session.
+    /// Curve in the colour of its setting, joint or session.
     fn curve(&self, own: &'a ComparedLine) -> Option<ChartCurve<'a>> {
         let seen = self.row(own.key)?;
         let color = color(self.pane, self.comparison, own.key, seen);
@@ -208,7 +208,7 @@ impl<'a> DrawnTrials<'a> {
         })
     }
 
-    /// The thresholds that were tried.
+    /// Levels of the tried thresholds.
     fn levels(&self) -> Vec<(f64, Color32)> {
         let forces = self.comparison.settings.iter();
         let mut levels: Vec<f64> = forces.map(|own| f64::from(own.force.get())).collect();
@@ -218,7 +218,7 @@ impl<'a> DrawnTrials<'a> {
         levels.into_iter().map(|level| (level, color)).collect()
     }
 
-    /// The trial that is meant, or what colours and strokes stand for.
+    /// Legend entry of the hovered or highlighted trial, else the meaning of colours and line styles.
     fn legend(&self, pointed: Option<RowKey>) -> Vec<LegendKey> {
         let mut drawn = self.picture.lines.iter().map(|line| line.key);
         let meant = pointed.or_else(|| drawn.find(|key| self.is_strong(*key)));
@@ -237,7 +237,7 @@ impl<'a> DrawnTrials<'a> {
         }]
     }
 
-    /// A key for each stroke, then for each colour.
+    /// One entry per line style, then one per colour.
     fn keys(&self) -> Vec<LegendKey> {
         let look = self.pane.look;
         let mut keys = Vec::new();
@@ -287,7 +287,7 @@ fn group_color(pane: &Pane<'_>, comparison: &Comparison, group: LineGroup) -> Co
     palette.scale(number(at) / number(count.saturating_sub(1).max(1)))
 }
 
-/// The colour of a line: of its setting, its joint or its session.
+/// Colour of a curve, by its setting, joint or session.
 pub(crate) fn color(
     pane: &Pane<'_>,
     comparison: &Comparison,
@@ -297,7 +297,7 @@ pub(crate) fn color(
     group_color(pane, comparison, comparison.group(place, seen))
 }
 
-/// Draws a chart over all the time of its lines; what was drawn, and the line at the pointer by its place in the list.
+/// Draws a chart over the whole time of its curves. Returns the chart, and the index of the curve under the pointer.
 pub(crate) fn trial_chart_ui(
     ui: &mut Ui,
     chart: Chart<'_>,
@@ -311,7 +311,7 @@ pub(crate) fn trial_chart_ui(
     });
     let (from_s, to_s) = spans.fold(None, scales::joined).unwrap_or_default();
     let to_s = to_s.max(from_s + LEAST_S);
-    // What comes long before a common contact is a flat line.
+    // The time long before a common contact is a flat line.
     let width = (to_s - from_s).min(to_s + LEAD_S);
     view.time.advance((from_s, to_s), width);
     let chart = Chart {

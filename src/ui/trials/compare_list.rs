@@ -1,4 +1,4 @@
-//! The list of sessions: which are shown, with which stroke, what each is of, and whether it lies in files. Keeps nothing.
+//! List of sessions: which are shown, with which line style, their content, and their files. Stores nothing.
 
 use crate::app::trials::comparison::SHOWN_MAX;
 use crate::app::trials::{SessionId, SessionOrigin, TrialSession, TrialsState};
@@ -11,11 +11,11 @@ use egui_extras::{Column, TableRow};
 use egui_plot::LineStyle;
 
 const ROW: f32 = 24.0;
-/// Width of tick, stroke and name, and of how many trials there are and whether they lie in files.
+/// Widths of check box, line style and name, and of trial count and file state.
 const LEFT: [f32; 3] = [20.0, 26.0, 92.0];
 const RIGHT: [f32; 2] = [72.0, 128.0];
 
-/// What the list is drawn from.
+/// Data of the list.
 #[derive(Clone, Copy)]
 pub(crate) struct SessionSheet<'a> {
     /// Colours and language.
@@ -28,14 +28,14 @@ pub(crate) fn name(look: Look, id: SessionId) -> String {
     look.fill(tune::SESSION, &[&id.0])
 }
 
-/// The stroke of a session that is shown: the newest has the plain one.
+/// Line style of a shown session: the newest has the solid one.
 pub(crate) fn style(shown: impl ExactSizeIterator<Item = SessionId>, id: SessionId) -> LineStyle {
     let count = shown.len();
     let at = shown.into_iter().position(|own| own == id);
     dash::nth(at.map_or(0, |at| count.saturating_sub(at + 1)))
 }
 
-/// Draws the list, the newest first.
+/// Draws the list, newest first.
 pub(crate) fn list_ui(ui: &mut Ui, sheet: SessionSheet<'_>, chosen: &mut ShownSessions) {
     let sessions = &sheet.trials.sessions;
     ui.scope(|ui| {
@@ -118,7 +118,7 @@ fn tick_ui(ui: &mut Ui, sheet: SessionSheet<'_>, id: SessionId, chosen: &mut Sho
     };
 }
 
-/// The day, the hand, the words. What was tried on the built-in hand belongs to no day.
+/// Day, hand, note and tags. Trials of the built-in hand have no day.
 fn about(session: &TrialSession) -> String {
     let head = &session.head;
     let day = if head.simulated { "" } else { &head.day };

@@ -1,4 +1,4 @@
-//! What was measured, one row a trial and joint. Sorts, measures nothing.
+//! Table of measurements, one row per trial and joint. Sorts, measures nothing.
 
 use crate::app::recordings::RecordingAction;
 use crate::app::settings::Language;
@@ -15,19 +15,19 @@ use crate::ui::trials::compare_list;
 use egui::{Color32, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
 use egui_extras::{Column, TableRow};
 
-/// Height of a row, and of the heads.
+/// Height of a row, and of the headings.
 const ROW: f32 = 20.0;
 const HEADS: f32 = 36.0;
-/// Least width of how a trial ended.
+/// Minimum width of a trial's outcome.
 const END: f32 = 88.0;
 
-/// Height of a table of so many rows, with the gap above it.
+/// Height of a table of this many rows, with the gap above it.
 pub(crate) fn height(rows: usize) -> f32 {
     let rows = f32::from(u16::try_from(rows).unwrap_or(u16::MAX));
     HEADS + rows * ROW + theme::GAP + theme::STEP
 }
 
-/// What rows can be sorted by.
+/// Sort key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum By {
     #[default]
@@ -36,44 +36,44 @@ enum By {
     End,
 }
 
-/// Where the rows begin, and which way they go.
+/// Sort key and direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Sorting {
     by: By,
     falling: bool,
 }
 
-/// What is kept between frames: sorting and grouping thousands of rows is not for each of them.
+/// Cached between frames: sorting and grouping thousands of rows in each frame is too slow.
 #[derive(Debug, Default)]
 pub(crate) struct TableView {
     sorting: Sorting,
-    /// The rows in the order of a sorting, in a language.
+    /// Rows in order, with the sorting and language they were sorted for.
     laid: Option<(Sorting, Language, Vec<RowKey>)>,
-    /// The comparison is another one than the rows were laid out for.
+    /// The rows were sorted for another comparison.
     is_old: bool,
 }
 
-/// What was pressed in it.
+/// Clicks in the table.
 struct Pressed<'a> {
     strong: &'a mut Option<TrialKey>,
     replay: Option<RecordingAction>,
 }
 
-/// What every part of the table is drawn with.
+/// Data for drawing the table.
 struct TrialSheet<'a, 'b> {
     pane: &'a Pane<'b>,
     comparison: &'a Comparison,
-    /// Columns of figures that there is room for.
+    /// Number of value columns that fit.
     columns: usize,
 }
 
 impl TableView {
-    /// The comparison is another one.
+    /// Marks the rows as outdated, for another comparison.
     pub(crate) const fn forget(&mut self) {
         self.is_old = true;
     }
 
-    /// Draws the table over all of `ui`. A pressed row stands out in the curves; what replays a trial is given back.
+    /// Draws the table over all of `ui`. A click on a row highlights its curves. Returns the action that replays a trial.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
@@ -124,7 +124,7 @@ impl TableView {
         pressed.replay
     }
 
-    /// Puts the rows in their order, only when something changed; what is new comes last while the pointer is on them.
+    /// Sorts the rows only when something changed; while the pointer is over the table, new rows are appended.
     fn sort(&mut self, sheet: &TrialSheet<'_, '_>, is_pointed: bool) {
         let (sorting, language) = (self.sorting, sheet.pane.look.language);
         let former = self.laid.take();
@@ -157,7 +157,7 @@ impl<'a> TrialSheet<'a, '_> {
         self.comparison.row(&self.pane.state.trials, place)
     }
 
-    /// The rows in the order that is asked for; what is not known goes last, whichever way the rest is sorted.
+    /// Rows in the order of `sorting`; unknown values go last in either direction.
     fn sorted(&self, sorting: Sorting) -> Vec<RowKey> {
         let value = |key: &RowKey| {
             let seen = self.seen(*key);
@@ -192,7 +192,7 @@ impl<'a> TrialSheet<'a, '_> {
         }
     }
 
-    /// All figures of a row, those without room too.
+    /// All values of a row, including those without a column.
     fn figures(&self, seen: ComparedRow<'_>) -> String {
         let figure = |(column, title): (&TrialColumn, Text)| {
             format!("{}: {}", self.pane.look.say(title), column.text(seen.joint))
@@ -209,12 +209,12 @@ impl<'a> TrialSheet<'a, '_> {
         }
     }
 
-    /// The head of a column over its unit. A click sorts by it.
+    /// Column heading above its unit. A click sorts by it.
     fn head_cell_ui(&self, ui: &mut Ui, by: By, title: Text, sorting: &mut Sorting) {
         let look = self.pane.look;
         let text = look.say(title);
         let is_own = sorting.by == by;
-        // The unit below its quantity, or nothing, so that all heads are of two lines.
+        // The unit below its quantity, or an empty line, so that all headings have two lines.
         let unit = text.split_once(", ").or_else(|| text.split_once(' '));
         let (name, unit) = unit.unwrap_or((text, ""));
         let (arrow, way) = match (is_own, sorting.falling) {
@@ -299,7 +299,7 @@ impl<'a> TrialSheet<'a, '_> {
     }
 }
 
-/// A number against the right edge of its cell.
+/// A right-aligned number in its cell.
 fn number_ui(ui: &mut Ui, label: &str, text: &str, color: Color32) {
     kit::right_ui(ui, |ui| {
         ui.add_space(theme::STEP);

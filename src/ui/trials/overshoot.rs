@@ -1,5 +1,5 @@
-//! What trials measured of this hand: how far each close went past its threshold over its speed, the closes in figures, and
-//! what is done with them. Measures nothing.
+//! Overshoot measured on this hand: how far each close exceeded its threshold over its speed, the values, and the actions on them.
+//! Measures nothing.
 
 use crate::app::action::Action;
 use crate::app::trials::TrialAction;
@@ -15,11 +15,11 @@ use egui_extras::{Column, TableRow};
 use egui_plot::{AxisHints, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
 
 const ROW: f32 = 20.0;
-/// Share of the height that the table gets at most.
+/// Maximum share of the height for the table.
 const TABLE_SHARE: f32 = 0.45;
-/// Least of what the axes span: units of SPEED_SET, and g.
+/// Minimum range of the axes: units of SPEED_SET, and grams.
 const LEAST: [f64; 2] = [50.0, 50.0];
-/// Points of the line of the other hand.
+/// Number of points on the other hand's curve.
 const STEPS: u32 = 60;
 const COLUMNS: [(Text, f32); 7] = [
     (tune::MAP_SPEED, 72.0),
@@ -31,17 +31,16 @@ const COLUMNS: [(Text, f32); 7] = [
     (tune::MAP_LAST, 96.0),
 ];
 
-/// What is chosen.
+/// View state.
 #[derive(Debug, Default)]
 pub(crate) struct OvershootView {
-    /// The joint that is shown alone.
+    /// Joint shown alone; `None` shows all.
     dof: Option<Dof>,
-    /// Whether it is asked if all is to be forgotten.
+    /// True while a confirmation to delete all measurements is shown.
     asks: bool,
 }
 
 impl OvershootView {
-    /// Draws it over all of `ui`.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let map = &pane.hand().overshoot.map;
         if map.is_empty() {
@@ -66,7 +65,7 @@ impl OvershootView {
         plot_ui(ui, pane, &kinds);
     }
 
-    /// The joints to choose from, and what is done with all of it.
+    /// Draws the choice of joints, and the actions on all measurements.
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, has: impl Fn(Dof) -> bool) {
         let look = pane.look;
         let all = Dof::ALL.into_iter().filter(|dof| has(*dof));
@@ -78,7 +77,7 @@ impl OvershootView {
         });
     }
 
-    /// What is done with all of it, from right to left.
+    /// Draws the actions on all measurements, from right to left.
     fn use_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let quiet = |text| Button::said(look, text).weight(Weight::Quiet);
@@ -95,14 +94,14 @@ impl OvershootView {
     }
 }
 
-/// Nothing was measured: what that means, and how it comes.
+/// Explains that there are no measurements, and how to obtain them.
 fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
     ui.vertical_centered(|ui| {
         no_trials_ui(ui, pane.look, tune::MAP_EMPTY, tune::MAP_EMPTY_BODY);
     });
 }
 
-/// What stands in a view without trials: the sign of tuning over a title and a body. The caller centres it.
+/// Draws an empty view: the icon of tuning above a title and a body. The caller centres it.
 pub(crate) fn no_trials_ui(ui: &mut Ui, look: Look, title: Text, body: Text) {
     ui.add_space(ui.available_height() * 0.24);
     let size = vec2(ui.available_width(), 64.0);
@@ -114,7 +113,7 @@ pub(crate) fn no_trials_ui(ui: &mut Ui, look: Look, title: Text, body: Text) {
     Label::muted(look, body).wrap().ui(ui);
 }
 
-/// Overshoot over speed, a point for each kind of close; the other hand's as a line.
+/// Plots overshoot over speed, with a point per kind of close and a curve for the other hand.
 fn plot_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
     let (look, palette) = (pane.look, pane.look.palette);
     let most = |of: fn(&MeasuredCloses) -> f64, least| {
@@ -195,7 +194,7 @@ fn plot_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
     }
 }
 
-/// All of one kind in a sentence.
+/// All closes of one kind, summarised as text.
 fn words_of(pane: &Pane<'_>, own: &MeasuredCloses) -> String {
     let (look, kind) = (pane.look, own.kind);
     let [most, mean] = [own.most_over_g, own.mean_over_g].map(|over| format!("{over:+.0}"));
@@ -227,7 +226,7 @@ const fn sign(stiffness: Stiffness) -> &'static str {
     }
 }
 
-/// The same in figures.
+/// Draws the values as a table.
 fn table_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
     let look = pane.look;
     ui.spacing_mut().item_spacing = egui::Vec2::ZERO;

@@ -1,4 +1,4 @@
-//! Settings that were tried, made the values after power-up: the button, what forbids it, and what became of it. Writes nothing: a
+//! Saves tried settings as the values after power-up: the button, the reason for a refusal, and the outcome. Writes nothing: a
 //! card asks first.
 
 use crate::app::action::Action;
@@ -15,14 +15,14 @@ use egui::Ui;
 /// Settings of joints that can be made the default.
 pub(crate) struct Promotion<'a> {
     values: Params,
-    /// Why they cannot now.
+    /// Reason why they cannot be saved now.
     refusal: Option<&'a str>,
-    /// It will pass by itself: only who asks is told.
+    /// The refusal is temporary: shown in the tooltip only.
     passes: bool,
 }
 
 impl<'a> Promotion<'a> {
-    /// Of these settings; `none` is why there are none.
+    /// Promotes these settings; `none` is the reason why there are none.
     pub(crate) fn of(
         pane: &Pane<'a>,
         settings: impl Iterator<Item = (Dof, TrialSetting)>,
@@ -36,7 +36,7 @@ impl<'a> Promotion<'a> {
         let refusal = hand
             .params
             .save_refusal_with(&values, &hand.connection.status);
-        // A hand that was just tried is soon seen to rest.
+        // A hand just used for a trial is soon known to be at rest.
         let passes = refusal == Some(ParamRefusal::Moving);
         let refusal = refusal.map(|why| pane.look.say(device::refusal(why)));
         Self {
@@ -46,7 +46,7 @@ impl<'a> Promotion<'a> {
         }
     }
 
-    /// The button: asks by the card of a save.
+    /// Draws the button, which asks for confirmation with the card of a save.
     pub(crate) fn button_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, text: Text) {
         let button = Button::said(pane.look, text).weight(Weight::Strong);
         if button.disabled(self.refusal).ui(ui, pane.look).clicked() {
@@ -55,7 +55,7 @@ impl<'a> Promotion<'a> {
         }
     }
 
-    /// Whether they are kept, and why they cannot be.
+    /// Draws whether the settings are saved, or the reason why they cannot be.
     pub(crate) fn end_ui(&self, ui: &mut Ui, pane: &Pane<'_>) {
         let palette = pane.look.palette;
         let book = &pane.hand().params;
@@ -74,7 +74,7 @@ impl<'a> Promotion<'a> {
     }
 }
 
-/// The values after power-up that this setting stands for.
+/// Values after power-up that correspond to this setting.
 fn defaults(dof: Dof, setting: TrialSetting) -> [(ParamId, Value); 2] {
     let speed = Value::Number(setting.speed.get().into());
     let force = Value::Number(setting.force.get().into());

@@ -1,5 +1,5 @@
-//! The search for settings: what is wanted as a sentence whose figures are fields, how far it is, and what it came to with what
-//! is done with it. Every change is one action with the whole goal.
+//! The search for settings: the goal as a sentence with number fields, the progress, and the result with its actions. Every
+//! change is one action with the whole goal.
 
 use crate::app::action::Action;
 use crate::app::trials::{Search, TrialAction};
@@ -17,7 +17,6 @@ use crate::ui::trials::tune_form::joints_ui;
 use egui::{ScrollArea, Ui};
 use std::ops::RangeInclusive;
 
-/// Draws it over all of `ui`.
 pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let hand = pane.hand();
     let runs = hand.runs_series() || hand.series_asked.is_some();
@@ -78,11 +77,11 @@ fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
     }
 }
 
-/// A number of the goal.
+/// A number of the goal: its name and range.
 struct GoalNumber(Text, RangeInclusive<i16>);
 
 impl GoalNumber {
-    /// Draws it; another, once one that can be taken was typed.
+    /// Draws it. Returns a new number once a valid one was typed.
     fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>, value: i16) -> Option<i16> {
         let look = pane.look;
         let Self(name, range) = self;
@@ -93,7 +92,7 @@ impl GoalNumber {
     }
 }
 
-/// How far it is, or what it came to.
+/// Draws the progress, or the result.
 fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
     let (look, palette) = (pane.look, pane.look.palette);
     let runs = pane.state.trials.running_search().is_some();
@@ -132,7 +131,7 @@ fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
     }
 }
 
-/// The claim, and what is done with it.
+/// Draws the result, with its actions.
 fn claim_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search, claim: &Claim) {
     let (look, palette) = (pane.look, pane.look.palette);
     kit::say_ui(ui, &search::claim(look, claim), palette.ok);
@@ -162,7 +161,7 @@ fn claim_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search, claim: &Claim) {
     promotion.end_ui(ui, pane);
 }
 
-/// The close that was found as poses: where it has two stages, the fast one first.
+/// The best close as poses: with two stages, the fast one first.
 fn poses(pane: &Pane<'_>, search: &Search, claim: &Claim) -> Vec<LibraryPose> {
     let (look, goal) = (pane.look, &search.goal);
     let pose = |name: Text, targets: PerDof<Option<Angle>>| LibraryPose {

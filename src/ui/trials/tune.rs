@@ -1,4 +1,4 @@
-//! The view of grasp trials: the plan at the left, what came and comes of it at the right. Holds text in progress only.
+//! The view of grasp trials: the plan at the left, results at the right. Holds text in progress only.
 
 use crate::app::action::Action;
 use crate::app::trials::{SeriesKind, TrialAction};
@@ -17,7 +17,7 @@ use crate::ui::trials::tune_form::TuneForm;
 use crate::ui::view::View;
 use egui::{Frame, Panel, Ui};
 
-/// What the view needs between frames.
+/// View state.
 #[derive(Debug, Default)]
 pub(crate) struct TuneView {
     kind: SeriesKind,
@@ -67,7 +67,7 @@ impl TuneView {
         self.results.ui(ui, pane, |_, _| ());
     }
 
-    /// Draws the results over all of `ui`, with the plan folded away.
+    /// Draws the results over all of `ui`, with the plan collapsed.
     pub(crate) fn results_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         self.results.ui(ui, pane, |ui, pane| {
             let unfold = Button::said(pane.look, tune::SHOW_PLAN).icon(theme::TO_RIGHT);
@@ -77,10 +77,10 @@ impl TuneView {
     }
 }
 
-/// What the button begins.
+/// Labels and actions of the start button.
 fn start_wish(pane: &Pane<'_>, kind: SeriesKind) -> StartWish {
     let wanted = pane.state.trials.planned(kind);
-    // What was typed and refused is not what would be tried.
+    // Refused text is not part of the plan that would run.
     let is_sound = wanted.is_sound() && pane.typing.refused.is_none();
     let unsound = (!is_sound).then_some(tune::PLAN_WRONG);
     let refusal = pane.hand().series_refusal(Some(&wanted.trials()));
@@ -93,7 +93,7 @@ fn start_wish(pane: &Pane<'_>, kind: SeriesKind) -> StartWish {
     }
 }
 
-/// What will happen, and how hard it may hit.
+/// Draws the size and duration of the series, and the expected overshoot.
 fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (look, palette) = (pane.look, pane.look.palette);
     let plan = &pane.state.trials.plan;

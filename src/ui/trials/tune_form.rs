@@ -1,5 +1,5 @@
-//! The plan of a series in sentences whose figures are fields, each with what is wrong below it. Every change is one
-//! action with the whole plan.
+//! The plan of a series as sentences with number fields, each with its error below. Every change is one action with the
+//! whole plan.
 
 use crate::app::action::Action;
 use crate::app::trials::TrialAction;
@@ -16,20 +16,20 @@ use egui::{ScrollArea, Ui, vec2};
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-/// Characters of a list or all tags, and of a note.
+/// Maximum characters of a list or of all tags, and of a note.
 const LIST_CHARS: usize = 80;
 const NOTE_CHARS: usize = 300;
-/// At most so wide is the field of a list.
+/// Maximum width of a list field.
 const LIST_WIDTH: f32 = 200.0;
-/// Speed of a fast part unless the user says otherwise: fast, and not rough yet.
+/// Default speed of a fast part: fast, but not rough yet.
 const FAST: i16 = 250;
 
-/// What the form needs between frames.
+/// View state of the form.
 #[derive(Debug)]
 pub(crate) struct TuneForm {
-    /// Where each joint closed to when it took part last.
+    /// Last close target of each joint.
     targets: PerDof<Angle>,
-    /// Speed of the fast part when there was one last.
+    /// Last speed of the fast part.
     fast: Speed,
 }
 
@@ -42,7 +42,7 @@ impl Default for TuneForm {
     }
 }
 
-/// A number of the plan or each of a list of them, with its name and its range.
+/// A number of the plan, or each of a list of them, with its name and range.
 struct PlanNumber(PlanField, Text, RangeInclusive<i32>);
 
 const SPEEDS: PlanNumber = PlanNumber(PlanField::Speeds, tune::SPEEDS, 1..=Speed::MAX.get() as i32);
@@ -64,7 +64,7 @@ struct Pass<'a, 'p> {
     disabled: Option<&'static str>,
 }
 
-/// A switch for each joint that can take part; the one that was pressed.
+/// Draws a switch for each joint that can take part. Returns the joint whose switch was clicked.
 pub(crate) fn joints_ui(
     ui: &mut Ui,
     look: Look,
@@ -94,7 +94,7 @@ pub(crate) fn joints_ui(
 }
 
 impl TuneForm {
-    /// Keeps what the user typed for choices that they may come back to.
+    /// Remembers the user's values for choices that they may return to.
     fn remember(&mut self, plan: &TrialPlan) {
         for (dof, target) in self.targets.iter_mut() {
             *target = plan.close[dof].unwrap_or(*target);
@@ -104,7 +104,7 @@ impl TuneForm {
         }
     }
 
-    /// Draws it over all of `ui`. What was changed is asked for.
+    /// Draws the form over all of `ui`. A change is pushed as an action.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let plan = pane.state.trials.plan.clone();
@@ -156,14 +156,14 @@ impl Pass<'_, '_> {
         matches!(&self.wrong, Some((at, _)) if *at == field)
     }
 
-    /// Which of the fields of a sentence is wrong, and why. Of two that are wrong together, the last.
+    /// Index of the invalid field of a sentence, and the reason. Of two fields that are invalid together, the last.
     fn wrong_of(&self, fields: &[PlanField]) -> Option<(usize, String)> {
         let (wrong, why) = self.wrong.as_ref()?;
         let at = fields.iter().rposition(|field| field == wrong)?;
         Some((at, why.clone()))
     }
 
-    /// Who closes.
+    /// Draws the joints that take part.
     fn joints_ui(&mut self, ui: &mut Ui) {
         let takes_part = self.plan.close.map(|target| target.is_some());
         if let Some(dof) = joints_ui(ui, self.pane.look, &takes_part, self.disabled) {
@@ -175,7 +175,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    /// From where to where each of them goes, and where others stand.
+    /// Draws start and target of each closing joint, and the position of the others that have one.
     fn ways_ui(&mut self, ui: &mut Ui) {
         let look = self.pane.look;
         for dof in Dof::ALL {
@@ -209,7 +209,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    /// Where a joint begins or ends.
+    /// Draws the start or target of a joint.
     fn angle_ui(&mut self, ui: &mut Ui, dof: Dof, side: PlanSide) {
         let look = self.pane.look;
         let is_wrong = self.is_wrong(PlanField::Way(dof));
@@ -225,7 +225,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    /// Starts and targets out of poses.
+    /// Draws the menus that set starts and targets from poses.
     fn poses_ui(&mut self, ui: &mut Ui) {
         let (look, state) = (self.pane.look, self.pane.state);
         for (side, text) in [
@@ -254,7 +254,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    /// What is tried, and how often.
+    /// Draws speeds, thresholds and repeats.
     fn grid_ui(&mut self, ui: &mut Ui) {
         let look = self.pane.look;
         let grid = &self.plan.grid;
@@ -292,7 +292,7 @@ impl Pass<'_, '_> {
         });
     }
 
-    /// A list of numbers; it, once one that can be taken was typed.
+    /// Draws a list of numbers. Returns it once a valid one was typed.
     fn list_ui(&mut self, ui: &mut Ui, number: &PlanNumber, numbers: &str) -> Option<Vec<i16>> {
         let look = self.pane.look;
         let &PlanNumber(field, name, ref range) = number;
@@ -303,7 +303,7 @@ impl Pass<'_, '_> {
         text.read_ui(ui, self.pane, numbers, read)
     }
 
-    /// A whole number; it, once one of its range was typed.
+    /// Draws a whole number. Returns it once one in its range was typed.
     fn number_ui(&mut self, ui: &mut Ui, number: &PlanNumber, value: i32) -> Option<i64> {
         let number = self.field(number);
         number.whole_ui(ui, self.pane, Some(value))
@@ -370,7 +370,7 @@ impl Pass<'_, '_> {
         self.plan.approach = Approach::TwoStage { fast, until };
     }
 
-    /// How long it holds and rests, and what ends it.
+    /// Draws hold and rest times, and the limits that end a trial.
     fn limits_ui(&mut self, ui: &mut Ui) {
         let look = self.pane.look;
         let (dwell, rest, limits) = (self.plan.dwell, self.plan.grid.rest, self.plan.limits);
@@ -410,7 +410,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    /// A line of text beside its name.
+    /// Draws a text field beside its name.
     fn text_ui(&mut self, ui: &mut Ui, name: Text, value: &str, max: usize) -> Option<String> {
         let look = self.pane.look;
         let field = TextField::new(look.say(name), max).hint(look.tip(name));

@@ -1,4 +1,4 @@
-//! The series that runs: how far it is, what the hand does, the force as it comes. Changes nothing.
+//! The running series: progress, state of the hand, and live force. Changes nothing.
 
 use crate::app::action::Action;
 use crate::app::trials::SeriesRun;
@@ -11,14 +11,14 @@ use crate::ui::text::{tune, words};
 use crate::ui::trials::compare_curves::LEAST_S;
 use egui::{Color32, Ui};
 
-/// The plot of one trial.
+/// Plot of one trial.
 #[derive(Debug, Default)]
 pub(crate) struct LiveChart {
     trial: usize,
     view: ChartView,
 }
 
-/// How far the series is, with what ends it; nothing without one.
+/// Draws the progress of the series, with its end button; nothing without a series.
 pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, palette) = (pane.look, pane.look.palette);
     let Some(run) = &pane.hand().series else {
@@ -58,7 +58,7 @@ pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     kit::progress_ui(ui, look, name, share);
 }
 
-/// The force as it comes.
+/// Draws the live force.
 pub(crate) fn force_ui(ui: &mut Ui, pane: &Pane<'_>, chart: &mut LiveChart) {
     let look = pane.look;
     let Some(run) = &pane.hand().series else {
@@ -96,7 +96,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &Pane<'_>, chart: &mut LiveChart) {
     force.ui(ui, view);
 }
 
-/// What lines and levels are.
+/// Draws the legend of curves and levels.
 fn levels_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
     let (look, palette) = (pane.look, pane.look.palette);
     for dof in run.plan.joints() {
@@ -111,7 +111,7 @@ fn levels_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
     Label::new(&ceiling, palette.bad).small().ui(ui);
 }
 
-/// The threshold; the ceiling where it is near enough not to flatten the curve.
+/// Levels of the threshold, and of the ceiling if it is near enough not to flatten the curve.
 fn levels(pane: &Pane<'_>, run: &SeriesRun, highest: f64) -> Vec<(f64, Color32)> {
     let palette = pane.look.palette;
     let threshold = run.view.setting;

@@ -1,4 +1,4 @@
-//! The open view beside the joints of the hand that is shown, and what the views remember between frames.
+//! The open view beside the joints of the shown hand, and the view state of all hands.
 
 use crate::app::layout::WindowRoom;
 use crate::app::slot::SlotId;
@@ -27,35 +27,35 @@ use crate::ui::window::status::StatusLine;
 use egui::{Align, Layout, Panel, Rect, Ui, UiBuilder, vec2};
 use std::collections::BTreeMap;
 
-/// The least width of the joints: every number in its place.
+/// Minimum width of the joints: every number fits.
 const JOINTS_LEAST: f32 = 384.0;
-/// The least width of the hand and its fingertips.
+/// Minimum width of the hand and its fingertips.
 const STAGE_LEAST: f32 = 288.0;
-/// The least width of the plots, and of what stands in their place.
+/// Minimum width of the plots, and of each view that replaces them.
 const PLOTS_LEAST: f32 = 320.0;
 const FAULTS_LEAST: f32 = 480.0;
 const FINGERTIP_LEAST: f32 = 640.0;
 const POSES_LEAST: f32 = 720.0;
-/// A replay shows poses, too, where the view is as high as this.
+/// Minimum height of the view at which a replay shows poses, too.
 const REPLAY_WITH_POSES: f32 = 480.0;
-/// Height of the strip of poses: a row of tiles under its head.
+/// Height of the strip of poses: a row of tiles below its heading.
 const STRIP: f32 = 136.0;
-/// In a low window, and its least one.
+/// Height in a low window, which is also the minimum.
 const STRIP_LEAST: f32 = 88.0;
 
-/// The views, and which one is open.
+/// All views, and the open one.
 #[derive(Debug, Default)]
 pub(super) struct Body {
     pub(super) view: View,
-    /// What was open last in the place of the hand as a device.
+    /// View opened last in the Hand tab.
     hand_view: Option<View>,
-    /// What is opened again when the faults are shut.
+    /// View to return to when the faults are closed.
     before_faults: View,
-    /// The slot of the hand that was shown last, what its views remember, and what those of the others do.
+    /// Slot of the hand shown last, its view state, and the view states of the other hands.
     slot: SlotId,
     pub(super) own: HandViews,
     others: BTreeMap<SlotId, HandViews>,
-    /// All hands are shown side by side in place of the live view.
+    /// Show all hands side by side in place of the live view.
     shows_all: bool,
     all: BesideView,
     rooms: Rooms,
@@ -64,7 +64,7 @@ pub(super) struct Body {
     recordings: RecordingsView,
 }
 
-/// What the views of one hand remember between frames. Nothing of it is taken for another hand's.
+/// View state of one hand. None of it is used for another hand.
 #[derive(Debug, Default)]
 pub(super) struct HandViews {
     pub(super) joints: JointsView,
@@ -80,7 +80,7 @@ pub(super) struct HandViews {
 }
 
 impl Body {
-    /// True if another hand is shown now: its views are as they were left.
+    /// Switches to the view state of the shown hand. True if another hand is shown now.
     pub(super) fn follow_shown(&mut self, state: &State) -> bool {
         let slot = state.hand().label.slot;
         if slot == self.slot {
@@ -90,7 +90,7 @@ impl Body {
         let is_new = next.is_none() && state.hand().connection.endpoint.is_none();
         let mut before = std::mem::replace(&mut self.own, next.unwrap_or_default());
         if is_new {
-            // Where the next hand is was typed before its place was made.
+            // The address of a new hand was typed before its slot existed.
             self.own.connection = std::mem::take(&mut before.connection);
         }
         self.others
@@ -105,12 +105,11 @@ impl Body {
         self.shows_all && self.view == View::Live
     }
 
-    /// Opens the live view with all hands side by side, or with the shown one alone.
+    /// Opens the live view, with all hands side by side or with the shown one alone.
     pub(super) const fn show_all(&mut self, on: bool) {
         (self.shows_all, self.view) = (on, View::Live);
     }
 
-    /// Opens a view.
     pub(super) fn show(&mut self, view: View) {
         if view == View::Faults && self.view != view {
             self.before_faults = self.view;
@@ -121,14 +120,14 @@ impl Body {
         }
     }
 
-    /// Opens a place with its first view, that of the hand as a device with its last one.
+    /// Opens a tab at its first view; the Hand tab at its last one.
     pub(super) fn show_place(&mut self, place: Place) {
         let first = place.views().first().copied().unwrap_or_default();
         let last = self.hand_view.filter(|_| place == Place::Hand);
         self.show(last.unwrap_or(first));
     }
 
-    /// Opens the faults, all of them alike, or what was open before.
+    /// Opens the faults of all drives, or returns to the view that was open before.
     pub(super) fn toggle_faults(&mut self) {
         self.own.faults.choose(None);
         let back = self.view == View::Faults;
@@ -139,7 +138,7 @@ impl Body {
         });
     }
 
-    /// Draws the joints, and beside them the open view.
+    /// Draws the joints, and the open view beside them.
     pub(super) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         self.rooms.begin(pane.layouts(ui));
         self.joints_ui(ui, pane);
@@ -147,7 +146,7 @@ impl Body {
         self.view_ui(ui, rect, pane);
     }
 
-    /// The joints at the left of `ui`: all of each where they are set, else a rail with what matters.
+    /// Draws the joints at the left of `ui`: in full where they can be set, else as a rail with their main values.
     fn joints_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let sets_joints = self.view.place() == Place::Live;
         if self.rooms.is_shut(WindowRoom::Joints) || !sets_joints {
@@ -191,7 +190,7 @@ impl Body {
         }
     }
 
-    /// The choice between the views of the hand as a device.
+    /// Draws the buttons for the views of the Hand tab.
     fn hand_views_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         ui.horizontal(|ui| {
             for view in Place::Hand.views() {
@@ -203,7 +202,7 @@ impl Body {
         ui.add_space(theme::STEP);
     }
 
-    /// All hands side by side, over the poses.
+    /// Draws all hands side by side, above the poses.
     fn all_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let strip = strip_size(ui.available_height());
         let Self { rooms, all, .. } = self;
@@ -219,7 +218,7 @@ impl Body {
         }
         let Self { rooms, own, .. } = self;
         let strip = strip_size(rect.height());
-        // Under a time line, a small window has room for what was measured only; no pose can be taken there anyway.
+        // Below a timeline, a small window has room for measurements only; no pose can be sent there anyway.
         let has_room = pane.state.timeline.is_none() || rect.height() >= REPLAY_WITH_POSES;
         if has_room && self.view != View::Poses {
             rooms.room_ui(ui, pane, strip, pose_tiles::strip_ui);
@@ -261,7 +260,7 @@ impl Body {
     }
 }
 
-/// Fades in the place that was just opened, over the animation time of the style; at once where that is zero.
+/// Fades in the tab that was just opened, over the animation time of the style; at once if that is zero.
 fn fade_in(ui: &mut Ui, open: Place) {
     for place in Place::ALL {
         let id = ui.scope_id().with(("fade", place));
@@ -272,7 +271,7 @@ fn fade_in(ui: &mut Ui, open: Place) {
     }
 }
 
-/// The way back to the plots, over what stands in their place.
+/// Draws the button that returns to the plots, above the view that replaces them.
 fn to_plots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let size = vec2(ui.available_width(), theme::CONTROL);
     let row = Layout::right_to_left(Align::Center);
@@ -282,7 +281,7 @@ fn to_plots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
-/// The strip of poses in a view as high as this.
+/// Size of the strip of poses in a view of this height.
 fn strip_size(view: f32) -> RoomSize {
     let designed = if view < 560.0 { STRIP_LEAST } else { STRIP };
     RoomSize {

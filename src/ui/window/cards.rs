@@ -1,4 +1,4 @@
-//! The card over the body of the window: one at a time.
+//! The card over the body of the window, one at a time.
 
 use crate::app::action::Action;
 use crate::app::state::State;
@@ -9,7 +9,6 @@ use crate::ui::recordings;
 use crate::ui::text::window;
 use crate::ui::trials::compare;
 
-/// True while a card covers the body of the window.
 pub(super) fn is_covered(state: &State) -> bool {
     state.hand().procedures.card.is_some()
         || state.hand().params.question.is_some()
@@ -18,7 +17,7 @@ pub(super) fn is_covered(state: &State) -> bool {
         || state.leave.is_some()
 }
 
-/// The card, if there is one. What would be lost is asked before all else.
+/// Returns the card to show. The question before closing takes precedence over all others.
 pub(super) fn card_of(state: &State, look: Look) -> Option<Card> {
     leave_card(state, look)
         .or_else(|| procedures::card_of(state, look))
@@ -27,7 +26,7 @@ pub(super) fn card_of(state: &State, look: Look) -> Option<Card> {
         .or_else(|| recordings::card_of(state, look))
 }
 
-/// The question before the window closes and something is lost.
+/// Question before the window closes, listing what would be lost.
 fn leave_card(state: &State, look: Look) -> Option<Card> {
     let question = state.leave?;
     let mut card = Card::new(look, window::LEAVE_TITLE);

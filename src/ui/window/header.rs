@@ -1,4 +1,4 @@
-//! The bar that is always there: which hand, how its link is, the five places, faults, arm, and STOP.
+//! The bar at the top of the window: hand, link, the five tabs, faults, arming, and STOP. Always visible.
 
 use crate::app::action::Action;
 use crate::app::hands::Hand;
@@ -14,12 +14,12 @@ use crate::ui::view::{Place, View};
 use crate::ui::window::rooms;
 use egui::{Color32, Rect, Response, Ui, pos2, vec2};
 
-/// Width of STOP.
+/// Width of STOP, in points.
 const STOP: f32 = 132.0;
-/// From this room on, lamps have words beside them.
+/// Minimum width at which lamps have labels.
 const WORDS: f32 = 860.0;
 
-/// Draws the bar. STOP can be pressed whatever card is open, the rest only if `is_free`.
+/// Draws the bar. STOP is enabled whatever card is open, the rest only if `is_free`.
 pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View, is_free: bool) {
     let is_wide = ui.available_width() - STOP > WORDS;
     kit::right_ui(ui, |ui| {
@@ -35,7 +35,7 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View, is_free: b
         faults_ui(ui, pane, is_wide);
         recording_ui(ui, pane, is_wide);
         kit::left_ui(ui, |ui| {
-            // First, so that they stay where they are whatever the hand says.
+            // Drawn first, so that they do not move when the hand's state changes.
             let gap = std::mem::take(&mut ui.spacing_mut().item_spacing.x);
             for place in Place::ALL {
                 place_ui(ui, pane, place, view.place() == place);
@@ -96,7 +96,7 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// The way back from a recording, where arming is otherwise.
+/// Draws the button that returns from a recording to the live hand, in place of the arm button.
 fn back_ui(ui: &mut Ui, pane: &mut Pane<'_>, needs_eyes: bool) {
     let look = pane.look;
     let text = if needs_eyes {
@@ -109,7 +109,7 @@ fn back_ui(ui: &mut Ui, pane: &mut Pane<'_>, needs_eyes: bool) {
     button.on_click(ui, pane, Action::Recording(RecordingAction::Close));
 }
 
-/// Whether this hand is recorded, and the switch for it.
+/// Recording state of this hand, and the switch for it.
 fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     if pane.state.timeline.is_some() || pane.hand().connection.endpoint.is_none() {
         return;
@@ -137,7 +137,7 @@ fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     }
 }
 
-/// Starts to record a hand that is not recorded, and ends the recording of one that is.
+/// Starts recording the hand, or ends the recording in progress.
 pub(super) fn toggle_recording(hand: &Hand) -> Action {
     let on = hand.recording.is_none();
     Action::Recording(if hand.connection.is_simulated() {
@@ -147,7 +147,7 @@ pub(super) fn toggle_recording(hand: &Hand) -> Action {
     })
 }
 
-/// How a recording goes, a line each.
+/// Status of a recording, one line per value.
 fn recording_words(look: Look, status: &RecorderStatus) -> String {
     let mega = |bytes: u64| format!("{:.1}", format::giga(bytes) * 1000.0);
     let path = status.path.as_ref().map(|path| path.display().to_string());
@@ -164,7 +164,7 @@ fn recording_words(look: Look, status: &RecorderStatus) -> String {
     lines.iter().map(|line| format!("\n{line}")).collect()
 }
 
-/// A button with a lamp before its words.
+/// A button with a lamp before its text.
 fn lamp_button_ui(ui: &mut Ui, look: Look, button: Button<'_>, lamp: Color32) -> Response {
     let words = match button.text {
         "" => 0.0,
@@ -180,7 +180,7 @@ fn lamp_button_ui(ui: &mut Ui, look: Look, button: Button<'_>, lamp: Color32) ->
     response
 }
 
-/// The drawer of faults, and how many of them nobody has seen yet.
+/// Button for the faults, with the number of unseen ones.
 fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     let look = pane.look;
     let pressed = match fault_entry::unseen_color(pane) {
@@ -206,7 +206,7 @@ fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     }
 }
 
-/// Which hand it is, how its link stands, and how well.
+/// Name of the hand, with state and quality of its link.
 fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     badge_ui(ui, pane);
     let look = pane.look;
@@ -226,13 +226,13 @@ fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// What went wrong on the wire since connecting.
+/// Number of wire errors since connecting.
 fn errors(pane: &Pane<'_>) -> u64 {
     let stats = &pane.hand().connection.stats;
     stats.timeouts + stats.checksum_errors + stats.resyncs + stats.foreign_replies + stats.refusals
 }
 
-/// How often is read, and what went wrong, a line each.
+/// Polling rates and error counts, one line each.
 fn link_tip(pane: &Pane<'_>) -> String {
     let look = pane.look;
     let connection = &pane.hand().connection;
@@ -251,7 +251,7 @@ fn link_tip(pane: &Pane<'_>) -> String {
     )
 }
 
-/// The badge of the built-in hand, or where the real one is.
+/// Badge of the built-in hand, or address of the real one.
 fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let palette = look.palette;
@@ -284,10 +284,10 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     }
 }
 
-/// Room that the link and what shares the hand need.
+/// Width that the link and the sharing indicator need, in points.
 const LINK: f32 = 220.0;
 
-/// A place, marked while it is open.
+/// A tab button, marked while its tab is open.
 fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, place: Place, is_open: bool) {
     let look = pane.look;
     let button = Button::said(look, place.title()).weight(Weight::Quiet);
@@ -304,7 +304,7 @@ fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, place: Place, is_open: bool) {
     }
 }
 
-/// What listens to others or serves them, as long as it does.
+/// Indicator of active inputs and servers of this hand; nothing if there are none.
 fn sharing_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let open = &pane.hand().inputs;

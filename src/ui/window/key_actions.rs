@@ -1,4 +1,4 @@
-//! What the user asks for by keys that act everywhere.
+//! Actions of the keys that work everywhere.
 
 use crate::app::action::Action;
 use crate::app::hand::HoldKey;
@@ -15,7 +15,7 @@ use crate::ui::window::cards::is_covered;
 use crate::ui::window::keys::{self, Wish};
 use egui::Ui;
 
-/// What a key asks for, under the same conditions as the control that does it.
+/// Returns the action of a key, under the same conditions as its control; `None` if it does not apply.
 pub(super) fn key_action(
     ui: &Ui,
     pane: &mut Pane<'_>,
@@ -26,7 +26,7 @@ pub(super) fn key_action(
     let armed = state.hand().connection.is_armed();
     let preset = |preset| armed.then_some(Action::Preset(preset));
     match wish {
-        // These are not the views' own: what opens something, and what goes ahead of all others at the end of the frame.
+        // Handled by the window: opening views, and actions that precede all others at the end of the frame.
         Wish::Opens(_) | Wish::Stop | Wish::HoldToRun => None,
         Wish::ArmOrNot if armed => Some(Action::Disarm),
         Wish::ArmOrNot => Some(Action::Arm),
@@ -51,7 +51,7 @@ pub(super) fn key_action(
             views.plots.view.time.toggle();
             None
         }
-        // With the pointer still held, the next hand would go on with what was begun at this one.
+        // While the pointer is pressed, a drag begun on this hand would continue on the next one.
         Wish::Hand(_) if ui.input(|input| input.pointer.any_down()) => None,
         Wish::Hand(at) if state.timeline.is_none() => {
             let hand = state.hands.iter().nth(at);
@@ -69,7 +69,8 @@ pub(super) fn key_action(
     }
 }
 
-/// What is done with the key that is held to run, if that is asked for.
+/// Action that reports the hold-to-run key. `None` if the setting is off, in a replay, and while the key is up and no hand
+/// counts it as held.
 pub(super) fn held_key_action(ui: &Ui, state: &State, wishes: &[Wish]) -> Option<Action> {
     if !state.settings.hold_to_run || state.timeline.is_some() {
         return None;
@@ -87,7 +88,7 @@ pub(super) fn held_key_action(ui: &Ui, state: &State, wishes: &[Wish]) -> Option
     (is_held || state.hands.iter().any(is_believed)).then_some(Action::HoldKey(key))
 }
 
-/// What the keys of the zoom did in the last frame, to be kept.
+/// Action that stores the zoom factor, if zoom keys changed it in the last frame.
 pub(super) fn zoom_action(ui: &Ui, state: &State) -> Option<Action> {
     let zoom = Zoom::from(ui.ctx().zoom_factor());
     (zoom != state.settings.zoom).then_some(Action::Zoom(zoom))

@@ -6,16 +6,16 @@ use crate::ui::theme;
 use crate::ui::window::keys::{COMMAND_NAME, ROWS, Wish, ZOOM};
 use egui::{Align2, Frame, Grid, Id, Margin, Rect, Stroke, Ui, Window};
 
-/// The list, shown or not.
+/// The list, shown or hidden.
 #[derive(Debug, Default)]
 pub(crate) struct KeyList {
     open: bool,
-    /// The press that opened it must not close it again.
+    /// Opened in this frame: the press that opened it must not close it again.
     fresh: bool,
 }
 
 impl KeyList {
-    /// Shows it, or hides it.
+    /// Shows or hides the list.
     pub(crate) fn toggle(&mut self) {
         self.open = !self.open;
         self.fresh = self.open;
@@ -26,12 +26,12 @@ impl KeyList {
         self.open
     }
 
-    /// Shows it no more.
+    /// Hides the list.
     pub(crate) fn hide(&mut self) {
         self.open = false;
     }
 
-    /// Draws it in the middle of a place, if it is shown. A click beside it hides it.
+    /// Draws it in the middle of `place`, if it is shown. A click beside it hides it.
     pub(crate) fn ui(&mut self, ui: &Ui, place: Rect, look: Look) {
         if !self.open {
             return;
@@ -59,19 +59,19 @@ impl KeyList {
     }
 }
 
-/// The groups of the list, column by column.
+/// Groups of the list, by column.
 const COLUMNS: [&[Text]; 3] = [
     &[window::KEY_MOTION, window::KEY_MEASURING],
     &[window::KEY_JOINTS, window::KEY_HANDS],
     &[window::KEY_WINDOW],
 ];
 
-/// The keys of a group, and what they do.
+/// Keys of a group, with their descriptions.
 fn rows(group: Text) -> Vec<(String, Text)> {
     let wishes = ROWS.iter().map(|row| row.wish);
     let mut wishes: Vec<Wish> = wishes.filter(|wish| wish.group() == group).collect();
     wishes.dedup();
-    // One stands for all.
+    // The first hand's key represents those of all hands.
     wishes.retain(|wish| !matches!(wish, Wish::Hand(1..)));
     let rows = wishes.into_iter().map(|wish| (wish.keys(), wish.words()));
     let mut rows: Vec<(String, Text)> = rows.collect();
@@ -84,7 +84,7 @@ fn rows(group: Text) -> Vec<(String, Text)> {
     rows
 }
 
-/// True if it is to be hidden.
+/// Draws the list. True if the user closes it.
 fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
     let shut = kit::head_ui(ui, look, look.say(window::KEYS), |ui| {

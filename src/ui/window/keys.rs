@@ -1,5 +1,5 @@
-//! Every key that acts everywhere: one table for what it does, what it is called, and the list that shows it. Keys of
-//! one control, such as the arrows of a track, are that control's own. Carries nothing out.
+//! All keys that work everywhere: one table of key, effect and name, which the key list also shows. Keys of a single control,
+//! such as the arrows of a track, belong to that control. Executes nothing.
 
 use crate::app::hand::HoldKey;
 use crate::hand::Dof;
@@ -9,55 +9,55 @@ use crate::ui::text::{Text, main, panels, window, words};
 use crate::ui::view::{Place, View};
 use egui::{Event, InputState, Key, Modifiers, Ui};
 
-/// What a key asks for.
+/// Effect of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wish {
     /// Hold now.
     Stop,
     /// Arm, or disarm.
     ArmOrNot,
-    /// The hand moves while this key is held, if that is asked for.
+    /// The hand may move while this key is held, if the setting is on.
     HoldToRun,
-    /// All joints open.
+    /// Open all joints.
     Open,
-    /// All joints half closed.
+    /// Close all joints halfway.
     Half,
-    /// All joints bent.
+    /// Bend all joints.
     Close,
-    /// The hand with this index, from 0.
+    /// Show the hand with this index, from 0.
     Hand(usize),
-    /// The pose or demo of this key.
+    /// Run the pose or demo assigned to this key.
     Entry(EntryKey),
-    /// The keyboard goes to this joint's angle.
+    /// Focus this joint's angle.
     Joint(Dof),
-    /// The four fingers move together, or not.
+    /// Link or unlink the four fingers.
     LinkFingers,
-    /// The next unit of angles.
+    /// Switch to the next unit of angles.
     AngleUnit,
     /// Tare all fingertips.
     Tare,
-    /// Take the last taring back.
+    /// Undo the last taring.
     UndoTare,
-    /// Let the plots stand, or follow.
+    /// Pause or resume the plots.
     Pause,
-    /// The other language.
+    /// Switch the language.
     Language,
-    /// The other colours.
+    /// Switch the colours.
     Theme,
-    /// Opens something.
+    /// Open a view or overlay.
     Opens(ViewRequest),
 }
 
-/// What Esc does.
+/// Effect of Esc.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Escape {
-    /// It stops the hand, and may close something besides.
+    /// Stops the hand, and may close an overlay as well.
     Stops,
-    /// It only closes what is open.
+    /// Only closes what is open.
     Closes,
 }
 
-/// One key and what it asks for.
+/// One key and its effect.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct KeyRow {
     pub(crate) modifiers: Modifiers,
@@ -78,14 +78,14 @@ const fn opens(modifiers: Modifiers, key: Key, opens: ViewRequest) -> KeyRow {
 }
 
 const NONE: Modifiers = Modifiers::NONE;
-/// What may let the hand move wants two keys, so that a book on the keyboard moves nothing.
+/// Keys that may cause motion require two keys, so that a book on the keyboard moves nothing.
 const SHIFT: Modifiers = Modifiers::SHIFT;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 const ALT: Modifiers = Modifiers::ALT;
-/// What is held to run.
+/// The hold-to-run key.
 const HOLD_TO_RUN: Key = Key::H;
 
-/// All of them, in the order of the list. Where two rows have the same key, the one with more modifiers stands first.
+/// All keys, in the order of the list. Of two rows with the same key, the one with more modifiers comes first.
 pub(crate) static ROWS: [KeyRow; 38] = [
     row(NONE, Key::Space, Wish::Stop),
     row(NONE, Key::Escape, Wish::Stop),
@@ -127,14 +127,14 @@ pub(crate) static ROWS: [KeyRow; 38] = [
     opens(COMMAND, Key::K, ViewRequest::Palette),
 ];
 
-/// Name of the key that egui takes for commands.
+/// Name of egui's command modifier.
 pub(crate) const COMMAND_NAME: &str = if cfg!(target_os = "macos") {
     "Cmd"
 } else {
     "Ctrl"
 };
 
-/// Keys by which, with that for commands held, egui itself zooms the whole window.
+/// Keys with which, together with the command modifier, egui itself zooms the window.
 pub(crate) const ZOOM: [(char, Text); 3] = [
     ('+', window::KEY_ZOOM_IN),
     ('-', window::KEY_ZOOM_OUT),
@@ -142,7 +142,7 @@ pub(crate) const ZOOM: [(char, Text); 3] = [
 ];
 
 impl KeyRow {
-    /// As it stands on the keyboard: `Shift+A`.
+    /// Name as printed on the keyboard: `Shift+A`.
     pub(crate) fn name(self) -> String {
         let key = match self.key {
             Key::Escape => "Esc",
@@ -157,7 +157,7 @@ impl KeyRow {
         }
     }
 
-    /// A stop is meant whatever else is held down.
+    /// True for a stop key, whatever modifiers are held.
     fn is_stop(self, event: &Event) -> bool {
         matches!(event, Event::Key { key, .. } if *key == self.key && self.wish == Wish::Stop)
     }
@@ -166,7 +166,7 @@ impl KeyRow {
         match event {
             Event::Key { key, modifiers, .. } => {
                 let plain = self.modifiers == NONE && self.key != Key::Questionmark;
-                // A letter with Shift is another key than without.
+                // A letter with Shift is a different key.
                 let alone = !plain || !modifiers.shift && !modifiers.command && !modifiers.alt;
                 *key == self.key && alone && modifiers.matches_logically(self.modifiers)
             }
@@ -176,7 +176,7 @@ impl KeyRow {
 }
 
 impl Wish {
-    /// What it does, in words.
+    /// Description.
     pub(crate) const fn words(self) -> Text {
         match self {
             Self::Stop => window::KEY_STOP,
@@ -205,7 +205,7 @@ impl Wish {
         }
     }
 
-    /// True if a hand may move because of it, now or later.
+    /// True if it may move a hand, now or later.
     pub(crate) const fn moves(self) -> bool {
         matches!(
             self,
@@ -221,7 +221,7 @@ impl Wish {
         )
     }
 
-    /// Its group in the list of keys.
+    /// Group in the list of keys.
     pub(crate) const fn group(self) -> Text {
         match self {
             Self::Stop
@@ -240,7 +240,7 @@ impl Wish {
         }
     }
 
-    /// The names of its keys, for tips and the list.
+    /// Names of its keys, for tooltips and the list.
     pub(crate) fn keys(self) -> String {
         let own = ROWS.iter().filter(|row| row.wish == self);
         let names: Vec<String> = own.map(|row| row.name()).collect();
@@ -248,14 +248,14 @@ impl Wish {
     }
 }
 
-/// Takes the keys that act everywhere out of the input before any control sees them; what they ask for, in their order.
-/// Letters and Space belong to a text field that has the keyboard; Esc only while the hand rests.
+/// Removes the keys that work everywhere from the input before any control sees them. Returns their effects, in order.
+/// Letters and Space go to a focused text field; Esc only while the hand is at rest.
 pub(crate) fn take(ui: &Ui, escape: Escape) -> Vec<Wish> {
     let typing = ui.ctx().text_edit_focused();
     ui.input_mut(|input| take_from(input, typing, escape))
 }
 
-/// What is done with the key that is held to run.
+/// State of the hold-to-run key.
 pub(crate) fn hold_key(ui: &Ui, wishes: &[Wish]) -> HoldKey {
     let typing = ui.ctx().text_edit_focused();
     let is_down = ui.input(|input| input.focused && input.key_down(HOLD_TO_RUN));
@@ -268,8 +268,8 @@ pub(crate) fn hold_key(ui: &Ui, wishes: &[Wish]) -> HoldKey {
     }
 }
 
-/// While a series of trials runs any key is a stop: all are taken out of the input. A key that was held down before does
-/// not count, and Esc goes on to close what is open.
+/// While a series of trials runs, any key is a stop: removes all keys from the input. Auto-repeat of a key held before does
+/// not count, and Esc stays in the input to close what is open.
 pub(crate) fn take_any(ui: &Ui) -> Vec<Wish> {
     ui.input_mut(take_any_from)
 }
@@ -317,11 +317,11 @@ fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> 
             wishes.push(row.wish);
             opens_a_field |= row.wish == Wish::Opens(ViewRequest::Note);
         }
-        // Esc goes on: it also closes menus and dialogs.
+        // Esc stays in the input: it also closes menus and dialogs.
         row.key == Key::Escape
     });
     if opens_a_field {
-        // The same press must not write its letter into the field that it opens.
+        // The same press must not type its letter into the field that it opens.
         input
             .events
             .retain(|event| !matches!(event, Event::Text(_)));
@@ -329,7 +329,7 @@ fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> 
     wishes
 }
 
-/// The key of a pose or demo: Shift and a letter or digit that is no other key.
+/// Key of a pose or demo: Shift and a letter or digit that has no other effect.
 fn entry_key(event: &Event) -> Option<EntryKey> {
     let Event::Key {
         key,
@@ -342,7 +342,7 @@ fn entry_key(event: &Event) -> Option<EntryKey> {
         return None;
     };
     let alone = modifiers.shift && !modifiers.command && !modifiers.ctrl && !modifiers.alt;
-    // With Shift the digits of many keyboards are other characters.
+    // With Shift, the digits of many keyboards are other characters.
     let names = [Some(*key), *physical_key].into_iter().flatten();
     let mut keys = names.filter_map(|key| EntryKey::try_from(key.name().to_owned()).ok());
     keys.next().filter(|_| alone)

@@ -1,4 +1,4 @@
-//! The whole window: where each part stands, which keys act everywhere. Holds view state only, no hand.
+//! The whole window: layout of its parts, and the keys that work everywhere. Holds view state only, no hand.
 //!
 //! ```text
 //! +----------------------------------------------------------+
@@ -11,7 +11,7 @@
 //! |          +----------------+----------------------------- |
 //! |          | poses and demos                               |
 //! +----------+-----------------------------------------------+
-//! | time line of a replay                                    |
+//! | timeline of a replay                                     |
 //! +----------------------------------------------------------+
 //! ```
 mod body;
@@ -48,27 +48,27 @@ use crate::ui::window::stop_first::stop_first;
 use egui::{Frame, Key, Margin, Panel, Stroke, Ui};
 use std::time::Duration;
 
-/// So long after a field had the keyboard a key may be meant for it.
+/// Time after a field lost the focus in which a key may still be meant for it.
 const ASTRAY: Duration = Duration::from_secs(1);
 
-/// What the window remembers between frames: the open tab, text in progress, what is hidden.
+/// View state of the window between frames: the open tab, text in progress, hidden parts.
 #[derive(Debug, Default)]
 pub struct Window {
     body: Body,
     installed: Option<(Theme, Language)>,
-    /// When a field had the keyboard last, in seconds of the window's time.
+    /// Last time at which a field had the focus, in seconds of the window's time.
     typed_at: Option<f64>,
     typing: Typing,
-    /// A field had the keyboard in the last frame: Esc takes it away before anybody can ask.
+    /// A field had the focus in the last frame: Esc removes it before the window can check.
     typed: bool,
     key_list: KeyList,
     palette: CommandPalette,
     cards: CardView,
-    /// The page that is shown in place of all else.
+    /// Exhibit page, shown in place of everything else.
     exhibit: Option<ExhibitPage>,
 }
 
-/// Puts fonts and style into a context. The window does it itself when the settings change.
+/// Installs fonts and style into a context. The window does this itself when the settings change.
 pub fn install(ctx: &egui::Context, theme: Theme, _language: Language) {
     ctx.set_fonts(theme::fonts());
     restyle(ctx, theme);
@@ -94,7 +94,7 @@ impl Window {
         self.body.show_all(true);
     }
 
-    /// Lets the plots show just this stretch of time, in seconds.
+    /// Limits the plots to this time range, in seconds.
     pub const fn show_stretch(&mut self, stretch: (f64, f64)) {
         self.body.own.plots.pin(stretch);
     }
@@ -104,14 +104,14 @@ impl Window {
         self.body.view
     }
 
-    /// Draws the window over all of `ui` and returns what the user asked for, stop first.
+    /// Draws the window over all of `ui` and returns the requested actions, stop first.
     pub fn ui(&mut self, ui: &mut Ui, state: &State) -> Vec<Action> {
         if let Some(exhibit) = &state.exhibit {
             self.install_if_changed(ui, state);
             let page = self.exhibit.get_or_insert_default();
             return page.ui(ui, state, exhibit);
         }
-        // What is kept holds from the second frame on.
+        // The stored zoom applies from the second frame on.
         let zoomed = match self.exhibit.take() {
             Some(_) => {
                 exhibit::leave(ui.ctx(), state.settings.zoom);
@@ -180,14 +180,14 @@ impl Window {
         stop_first(actions, stopped)
     }
 
-    /// True if what is pressed may be meant for a field that had the keyboard a moment ago.
+    /// True if a key may be meant for a field that had the focus a moment ago.
     fn may_be_typed(&self, ui: &Ui) -> bool {
         let now = ui.input(|input| input.time);
         self.typed_at
             .is_some_and(|at| now - at < ASTRAY.as_secs_f64())
     }
 
-    /// What Esc does now: it closes what is open, and stops unless each hand rests for certain.
+    /// Effect of Esc now: it closes what is open, and stops unless every hand is known to be at rest.
     fn escape(&mut self, ui: &Ui, state: &State) -> Escape {
         let is_open = self.key_list.is_open()
             || self.palette.is_open()
@@ -196,7 +196,7 @@ impl Window {
             || self.typed
             || egui::Popup::is_any_open(ui.ctx());
         let closes = is_open && state.hands.iter().all(|hand| rests(hand, state.now));
-        // Popups, fields and cards do so themselves. A note that is being written outlives a stop.
+        // Popups, fields and cards close themselves. A note being written survives a stop.
         if ui.input(|input| input.key_pressed(Key::Escape)) {
             self.key_list.hide();
             self.palette.hide();
@@ -211,7 +211,7 @@ impl Window {
         }
     }
 
-    /// What a key or a command asks for.
+    /// Executes the effect of a key or command.
     fn obey(&mut self, ui: &Ui, pane: &mut Pane<'_>, wish: Wish) {
         if let Wish::Opens(opens) = wish {
             self.open(opens, pane.state.now);
@@ -249,17 +249,17 @@ impl Window {
         ui.set_style(style);
     }
 
-    /// Draws all parts; gives what was chosen in the palette.
+    /// Draws all parts; returns the command chosen in the palette.
     fn parts_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<Command> {
         let palette = pane.look.palette;
         ui.painter().rect_filled(ui.max_rect(), 0.0, palette.window);
         let is_free = !is_covered(pane.state);
         if !is_free {
-            // The card's own veil dims what is below it; what is above stays bright.
+            // The card's own veil dims the part below it; the bars above stay bright.
             ui.visuals_mut().disabled_alpha = 1.0;
         }
         self.bars_ui(ui, pane, is_free);
-        // What is below is covered by a card; what is above stays bright.
+        // Area that a card covers, below the bars.
         let covered = ui.available_rect_before_wrap();
         if !is_free {
             self.key_list.hide();
@@ -283,7 +283,7 @@ impl Window {
         self.palette.ui(ui, below, pane)
     }
 
-    /// The bars at the top. STOP can be pressed in them whatever card is open, the rest only if `is_free`.
+    /// Draws the bars at the top. STOP is enabled whatever card is open, the rest only if `is_free`.
     fn bars_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) {
         let palette = pane.look.palette;
         let header = Frame::new()
@@ -313,12 +313,12 @@ impl Window {
         }
     }
 
-    /// Draws the plots and nothing else, over all of `ui`, into a context of their own: for a picture.
+    /// Draws the plots alone over all of `ui`, into a context of their own: for pictures.
     pub fn plots_alone_ui(&mut self, ui: &mut Ui, state: &State) {
         alone_ui(ui, state, |ui, pane| self.body.own.plots.ui(ui, pane));
     }
 
-    /// Draws the hand and nothing else, over all of `ui`: for pictures and measurements.
+    /// Draws the hand alone over all of `ui`: for pictures and measurements.
     pub fn hand_alone_ui(&mut self, ui: &mut Ui, state: &State) {
         alone_ui(ui, state, |ui, pane| self.body.own.touch.hand_ui(ui, pane));
     }
@@ -327,12 +327,12 @@ impl Window {
 const MARGIN: Margin = Margin::same(8);
 const STRIPS_MARGIN: Margin = Margin::symmetric(12, 4);
 
-/// A row of the window of this name and height, over its whole width.
+/// A row of the window with this name and height, over its whole width.
 fn top_bar(name: &'static str, height: f32, frame: Frame) -> Panel {
     kit::bare(Panel::top(name), height, Margin::ZERO).frame(frame)
 }
 
-/// A recording whose file was dropped onto the window is to be replayed.
+/// Action that opens a recording dropped onto the window, if there is one.
 fn dropped_recording(ui: &Ui) -> Option<Action> {
     ui.input(|input| {
         let files = input.raw.dropped_files.iter();
@@ -342,7 +342,7 @@ fn dropped_recording(ui: &Ui) -> Option<Action> {
     })
 }
 
-/// Nothing that was begun at one hand goes on at another.
+/// Cancels drags, focus and popups, so that nothing begun on one hand continues on another.
 fn let_go(ui: &Ui) {
     ui.ctx().stop_dragging();
     ui.memory_mut(|memory| {
@@ -353,7 +353,7 @@ fn let_go(ui: &Ui) {
     egui::Popup::close_all(ui.ctx());
 }
 
-/// Gives one part of the window the whole place. What it asks for goes nowhere.
+/// Draws one part of the window over the whole area. Its actions are discarded.
 fn alone_ui(ui: &mut Ui, state: &State, part: impl FnOnce(&mut Ui, &mut Pane<'_>)) {
     let style = theme::style(state.settings.theme, ui.style());
     ui.set_style(style);

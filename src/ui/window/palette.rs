@@ -1,5 +1,5 @@
-//! The command palette: everything that has a key, each view, pose and demo, and the settings of the window, found by a part of
-//! its name in either language. Carries nothing out.
+//! The command palette: all keys, views, poses, demos and settings of the window, found by a part of their name in either
+//! language. Executes nothing.
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
@@ -17,36 +17,36 @@ use crate::ui::window::key_list::cap_ui;
 use crate::ui::window::keys::{ROWS, Wish};
 use egui::{Align2, Frame, Id, Key, Modifiers, Rect, Stroke, Ui, Window};
 
-/// Most commands that are shown at once; a longer name finds the others.
+/// Maximum number of commands shown at once; a longer query finds the others.
 const SHOWN_MAX: usize = 10;
-/// Points.
+/// Width in points.
 const WIDTH: f32 = 520.0;
 
-/// What is chosen in the palette.
+/// A command chosen in the palette.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Command {
-    /// What a key asks for.
+    /// Effect of a key.
     Wish(Wish),
     /// A pose, demo or reaction.
     Entry(EntryId),
-    /// What has no key.
+    /// An action without a key.
     Act(Action),
 }
 
-/// A command as it is listed.
+/// A command as listed.
 #[derive(Debug)]
 struct Listed {
     command: Command,
-    /// In the window's language.
+    /// Name in the window's language.
     name: String,
-    /// In both languages and lower case, to be searched.
+    /// Names in both languages and lower case, for searching.
     names: String,
-    /// What is found there, to be searched after the names.
+    /// Keywords of its content, searched after the names.
     about: String,
     keys: String,
 }
 
-/// The palette, shown or not.
+/// The palette, shown or hidden.
 #[derive(Debug, Default)]
 pub(super) struct CommandPalette {
     query: Option<Query>,
@@ -55,14 +55,14 @@ pub(super) struct CommandPalette {
 #[derive(Debug, Default)]
 struct Query {
     text: String,
-    /// Which of the listed ones Enter takes.
+    /// Index of the command that Enter chooses.
     chosen: usize,
-    /// It was drawn before: a click beside it hides it.
+    /// Drawn before: from now on a click beside it hides it.
     drawn: bool,
 }
 
 impl CommandPalette {
-    /// Shows it, or hides it.
+    /// Shows or hides the palette.
     pub(super) fn toggle(&mut self) {
         self.query = match self.query {
             None => Some(Query::default()),
@@ -75,12 +75,12 @@ impl CommandPalette {
         self.query.is_some()
     }
 
-    /// Shows it no more.
+    /// Hides the palette.
     pub(super) fn hide(&mut self) {
         self.query = None;
     }
 
-    /// Draws it at the top of a place, if it is shown, and gives what was chosen.
+    /// Draws it at the top of `place`, if it is shown. Returns the chosen command.
     pub(super) fn ui(&mut self, ui: &Ui, place: Rect, pane: &Pane<'_>) -> Option<Command> {
         let query = self.query.as_mut()?;
         let (look, unready) = (pane.look, pane.unready());
@@ -118,7 +118,7 @@ impl CommandPalette {
 }
 
 impl Query {
-    /// Draws the field and what it finds; gives what was clicked.
+    /// Draws the query field and the results. Returns the command clicked.
     fn ui(
         &mut self,
         ui: &mut Ui,
@@ -135,7 +135,7 @@ impl Query {
             kit::say_ui(ui, look.say(window::COMMANDS_NONE), look.palette.muted);
         }
         let (mut clicked, mut why_not) = (None, None);
-        // A few around the chosen one.
+        // Scrolls so that the selected command is visible.
         let from = self.chosen.saturating_sub(SHOWN_MAX - 1);
         for (place, listed) in found.iter().enumerate().skip(from).take(SHOWN_MAX) {
             ui.horizontal(|ui| {
@@ -166,7 +166,7 @@ impl Query {
 }
 
 impl Command {
-    /// True for what is offered only while the hand is armed.
+    /// True for commands that require an armed hand.
     const fn needs_arming(&self) -> bool {
         matches!(
             self,
@@ -175,7 +175,7 @@ impl Command {
     }
 }
 
-/// What it is called outside the list of keys.
+/// Name outside the list of keys.
 const fn name(wish: Wish) -> Text {
     match wish {
         Wish::Opens(ViewRequest::Keys) => window::KEYS,
@@ -183,7 +183,7 @@ const fn name(wish: Wish) -> Text {
     }
 }
 
-/// What has no key: settings of the window, recording, exhibitions. None of it moves a hand.
+/// Commands without a key: settings of the window, recording, exhibitions. None of them moves a hand.
 fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
     let settings = &pane.state.settings;
     let hand = pane.hand();
@@ -215,7 +215,7 @@ fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
     acts
 }
 
-/// Words of what is found behind a command, beside its name.
+/// Keywords of a command's content, in addition to its name.
 fn about(wish: Wish) -> String {
     let more = match wish {
         Wish::Opens(ViewRequest::View(view)) => view_words(view),
@@ -254,7 +254,7 @@ const fn place_words(place: Place) -> Text {
     }
 }
 
-/// All commands whose names have each word that was typed; those that begin with the first stand first.
+/// All commands whose names contain each typed word; those that begin with the first word come first.
 fn found(ui: &Ui, pane: &Pane<'_>, typed: &str) -> Vec<Listed> {
     let look = pane.look;
     let (poses, settings) = (&pane.state.poses, &pane.state.settings);
@@ -270,11 +270,11 @@ fn found(ui: &Ui, pane: &Pane<'_>, typed: &str) -> Vec<Listed> {
     };
     let places = Place::ALL.map(|place| Wish::Opens(ViewRequest::Place(place)));
     let views = View::ALL.into_iter();
-    // The faults have a key, and their place the name of its first view.
+    // The faults have a key, and a tab shares the name of its first view.
     let views = views.filter(|view| *view != View::Faults && view.place().title() != view.title());
     let views = views.map(|view| Wish::Opens(ViewRequest::View(view)));
     let views: Vec<Wish> = views.collect();
-    // What is held, what stands for many, and what the keyboard goes to has a key only.
+    // Hold-to-run, keys that represent many, and focus changes are available as keys only.
     let is_act = |wish: &Wish| {
         !matches!(
             wish,

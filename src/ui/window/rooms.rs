@@ -1,5 +1,5 @@
-//! The rooms beside the open view: panels whose border is dragged, that are shut and opened, and the menu that lists them.
-//! Where they stand is kept in the settings.
+//! Panels beside the open view, which the user resizes, closes and opens, and the menu that lists them. Their layout is
+//! stored in the settings.
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
@@ -10,27 +10,27 @@ use crate::ui::text::{Text, exhibit, main, window};
 use crate::ui::theme;
 use egui::{Frame, Panel, Popup, Ui};
 
-/// How large a room is, points.
+/// Size of a panel, in points.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RoomSize {
     pub(crate) room: WindowRoom,
-    /// As it first opens.
+    /// Initial size.
     pub(crate) designed: f32,
-    /// What it needs.
+    /// Minimum size.
     pub(crate) least: f32,
-    /// What everything beside it needs.
+    /// Space that everything beside it needs.
     pub(crate) rest: f32,
 }
 
-/// What the panels need between frames.
+/// View state of the panels.
 #[derive(Debug, Default)]
 pub(crate) struct Rooms {
     layouts: RoomLayouts,
-    /// Counts how often the layout was put back: panels with a new id begin as they were designed.
+    /// Counts layout resets: panels with a new id start at their initial size.
     resets: u32,
 }
 
-/// What a room is called.
+/// Title of a panel.
 const fn title(room: WindowRoom) -> Text {
     match room {
         WindowRoom::Joints => main::JOINTS,
@@ -40,7 +40,7 @@ const fn title(room: WindowRoom) -> Text {
 }
 
 impl Rooms {
-    /// Begins a frame in which the rooms stand so.
+    /// Begins a frame with these layouts.
     pub(crate) fn begin(&mut self, layouts: RoomLayouts) {
         let is_put_back = WindowRoom::ALL.into_iter().any(|room| {
             self.layouts.room(room).share.is_some() && layouts.room(room).share.is_none()
@@ -49,12 +49,12 @@ impl Rooms {
         self.layouts = layouts;
     }
 
-    /// True if only a room's name is shown.
+    /// True if the panel is collapsed to its name.
     pub(crate) const fn is_shut(&self, room: WindowRoom) -> bool {
         self.layouts.room(room).shut
     }
 
-    /// A room at its side of what is left of `ui`; nothing where it is shut.
+    /// Draws a panel at its side of the rest of `ui`; its content is hidden while it is closed.
     pub(crate) fn room_ui(
         &self,
         ui: &mut Ui,
@@ -66,7 +66,7 @@ impl Rooms {
         let is_upright = room != WindowRoom::Strip;
         let extent = along(ui.available_size(), is_upright);
         let standing = self.layouts.room(room);
-        // In another window, or with another share, a panel begins anew.
+        // In a window of another size, or with another share, the panel starts anew.
         let share = standing.share.map(f32::to_bits);
         let salt = (room, self.resets, share, extent.to_bits());
         let (panel, gap) = if is_upright {
@@ -110,7 +110,7 @@ fn along(size: egui::Vec2, is_upright: bool) -> f32 {
     if is_upright { size.x } else { size.y }
 }
 
-/// The window's menu: which rooms are open, colours, language, keys, exhibitions.
+/// The window's menu: open panels, colours, language, keys, exhibitions.
 pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let button = Button::said(look, window::MENU)

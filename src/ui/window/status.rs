@@ -1,5 +1,5 @@
-//! The line below the header that every view has: the worst that is to be warned of, what moves the hand now with its end in
-//! reach, the newest message, and the note being written. It has its place always, so nothing moves when it changes.
+//! The status line below the header: the worst warning, the mover of the hand with a button to end it, the newest message,
+//! and the note being written. The line is always visible, so nothing shifts when its content changes.
 
 use crate::app::action::Action;
 use crate::app::hands::{Mover, rests};
@@ -22,22 +22,22 @@ use egui::{Color32, Frame, Key, TextEdit, Ui, vec2};
 use std::fmt::Display;
 use std::time::Duration;
 
-/// Height of the line.
+/// Height of the line, in points.
 pub(crate) const HEIGHT: f32 = 28.0;
-/// A hand that answers sooner is there before a word could be read.
+/// Delay before a connection attempt is announced: a hand that answers sooner is connected before the text could be read.
 const ANNOUNCE_DELAY: Duration = Duration::from_millis(500);
-/// How long the newest message is shown.
+/// Display time of the newest message.
 const NEWS_DURATION: Duration = Duration::from_secs(10);
 
-/// What helps against a warning.
+/// Remedy for a warning.
 enum Help {
-    /// A view, and the button that opens it.
+    /// A view, and the text of the button that opens it.
     View(View, Text),
-    /// It was read.
+    /// Dismisses the notice with this id.
     Dismiss(u64),
 }
 
-/// Something that the user must know now.
+/// A condition that the user must know about now.
 struct Warning {
     title: Text,
     body: String,
@@ -47,7 +47,7 @@ struct Warning {
 }
 
 impl Warning {
-    /// A title over what its tip says.
+    /// A warning with the tip of `title` as its body.
     fn new(pane: &Pane<'_>, title: Text, color: Color32) -> Self {
         Self {
             title,
@@ -58,13 +58,13 @@ impl Warning {
         }
     }
 
-    /// Says this behind the rest.
+    /// Appends to the body.
     fn more(mut self, more: impl Display) -> Self {
         self.body = format!("{} {more}", self.body).trim_start().to_owned();
         self
     }
 
-    /// Says first which hand it is about, if that is to be said.
+    /// Puts the name of the hand first, if given.
     fn of(mut self, pane: &Pane<'_>, hand: Option<&str>) -> Self {
         if let Some(hand) = hand {
             self.body = pane.look.pair(hand, &self.body);
@@ -72,7 +72,7 @@ impl Warning {
         self
     }
 
-    /// Tells when the link is tried again.
+    /// Adds the state of reconnecting.
     fn retried(mut self, pane: &Pane<'_>) -> Self {
         self.aside = match pane.hand().connection.status.dialling {
             Dialling::Idle => String::new(),
@@ -91,7 +91,7 @@ impl Warning {
     }
 }
 
-/// The warnings of now, worst first.
+/// Current warnings, worst first.
 fn warnings(pane: &Pane<'_>) -> Vec<Warning> {
     let all = [
         unsent(pane),
@@ -109,7 +109,7 @@ fn warnings(pane: &Pane<'_>) -> Vec<Warning> {
     all.into_iter().flatten().collect()
 }
 
-/// A stop that could not be sent, until it was read or the hand answers again.
+/// A stop that could not be sent, until it is dismissed or the hand answers again.
 fn unsent(pane: &Pane<'_>) -> Option<Warning> {
     let mut all = pane.state.notices.iter();
     let notice = all.find(|notice| notice.what == NoticeKind::StopNotSent)?;
@@ -119,7 +119,7 @@ fn unsent(pane: &Pane<'_>) -> Option<Warning> {
     Some(unsent.of(pane, hand).help(help))
 }
 
-/// The shown hand, or another, that does not stop.
+/// The shown hand, or else another one, that does not stop.
 fn alarm(pane: &Pane<'_>) -> Option<Warning> {
     let shown = pane.hand();
     let mut hands = std::iter::once(shown).chain(pane.state.hands.iter());
@@ -134,7 +134,7 @@ fn alarm(pane: &Pane<'_>) -> Option<Warning> {
     Some(alarm.of(pane, is_several.then_some(&hand.label.name)))
 }
 
-/// Another hand than the shown one, lost while it may have been moving.
+/// A hand other than the shown one, lost while it may have been moving.
 fn lost_elsewhere(pane: &Pane<'_>) -> Option<Warning> {
     let shown = pane.hand().label.slot;
     let mut others = pane.state.hands.iter();
@@ -153,7 +153,7 @@ fn lost(pane: &Pane<'_>) -> Option<Warning> {
         return None;
     }
     let cause = errors::trouble(pane.look, link.trouble.as_ref()?);
-    // A hand that has answered may be moving; one that never did is only not reached.
+    // A hand that has answered may be moving; one that never did is merely unreachable.
     let (title, color) = match pane.hand().readings.sample.angle {
         Some(_) => (main::LOST_TITLE, pane.look.palette.bad),
         None => (main::UNREACHABLE_TITLE, pane.look.palette.warn),
@@ -188,7 +188,7 @@ fn other_controller(pane: &Pane<'_>) -> Option<Warning> {
     Some(match &link.foreign_setpoint {
         Some(foreign) => {
             let foreign = words::setpoint(pane.look, foreign);
-            // What it did comes first: a short line shows that.
+            // The effect comes first, so that a short line still shows it.
             let wrote = pane.look.fill(main::OTHER_WROTE, &[&foreign]);
             let body = format!("{wrote} {}", warning.body);
             Warning { body, ..warning }
@@ -208,7 +208,7 @@ fn not_taken(pane: &Pane<'_>) -> Option<Warning> {
 fn stale(pane: &Pane<'_>) -> Option<Warning> {
     let asked = pane.hand().readings.sample.angle?.asked;
     let link = &pane.hand().connection.status;
-    // While the hand saves, nobody asks it: whoever wanted that sees it where it was wanted.
+    // While the hand saves, it is not polled: the view that requested the save shows this.
     let expected = link.state.is_live() && !link.line_left;
     let is_stale = expected && pane.freshness(Some(asked)) == Freshness::Stale;
     let age = format::age(pane.state.now.since(asked));
@@ -216,12 +216,12 @@ fn stale(pane: &Pane<'_>) -> Option<Warning> {
     is_stale.then(|| stale().more(age))
 }
 
-/// A hand that is asked for the first time, and has not said no yet.
+/// A first connection attempt that has not failed yet.
 fn connecting(pane: &Pane<'_>) -> Option<Warning> {
     let link = &pane.hand().connection.status;
     let hand = pane.hand().connection.endpoint.as_ref()?;
     let asks = matches!(link.state, LinkState::Offline | LinkState::Identifying);
-    // One that answers at once is not announced.
+    // A hand that answers at once is not announced.
     let waited = pane.state.now.since(link.since) >= ANNOUNCE_DELAY;
     let warning = || Warning::new(pane, main::CONNECTING_TITLE, pane.look.palette.accent);
     let help = Help::View(View::Connection, main::EMPTY_OPEN);
@@ -236,14 +236,14 @@ fn empty(pane: &Pane<'_>) -> Option<Warning> {
     is_none.then(|| warning().help(help))
 }
 
-/// An armed hand that is asked nothing any more.
+/// An armed hand that no longer receives commands.
 fn idle(pane: &Pane<'_>) -> Option<Warning> {
     let idle = pane.hand().connection.idle(pane.state.now)?;
     let warning = Warning::new(pane, main::IDLE_TITLE, pane.look.palette.warn);
     Some(warning.more(format::duration(idle)))
 }
 
-/// What moves the hand, in words, and what ends it.
+/// Description of the mover of the hand, and the action that ends it; `None` if nothing moves the hand.
 fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
     let look = pane.look;
     let say = |text: Text| look.say(text).to_owned();
@@ -292,17 +292,17 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
     })
 }
 
-/// The line, and the note that is being written in it.
+/// The status line, with the note being written in it.
 #[derive(Debug, Default)]
 pub(crate) struct StatusLine {
-    /// When the note's key was pressed; `None` while none is written.
+    /// Time at which the note was begun; `None` while none is being written.
     note_at: Option<Moment>,
     note: String,
     is_new: bool,
 }
 
 impl StatusLine {
-    /// Opens a note of this moment; one that is being written stays.
+    /// Begins a note for this moment, unless one is being written.
     pub(crate) fn open_note(&mut self, at: Moment) {
         if self.note_at.is_none() {
             *self = Self {
@@ -313,20 +313,19 @@ impl StatusLine {
         }
     }
 
-    /// True while a note is written.
+    /// True while a note is being written.
     pub(crate) const fn writes_note(&self) -> bool {
         self.note_at.is_some()
     }
 
-    /// The note that is written is not wanted.
+    /// Discards the note being written.
     pub(crate) fn drop_note(&mut self) {
         *self = Self::default();
     }
 
-    /// Draws the line.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let warnings = warnings(pane);
-        // That there is no hand yet is less than a message about it.
+        // A missing hand is less important than a message about it.
         let is_told = news(pane).is_some_and(|notice| notice.level > Level::Info);
         let hides = |worst: &&Warning| worst.color == pane.look.palette.accent && is_told;
         let worst = warnings.first().filter(|worst| !hides(worst));
@@ -383,7 +382,7 @@ impl StatusLine {
     }
 }
 
-/// What moves the hand, at the right; nothing where the line has it at the left.
+/// Draws the mover's end button at the right, with its description if `is_aside`.
 fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
     let look = pane.look;
     let Some((words, end)) = mover(pane) else {
@@ -399,13 +398,13 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
     }
 }
 
-/// The newest message that nobody read and that is still so, while it is new. A fault has a warning and a list of its own.
+/// Newest unread message that still applies, while it is recent. Faults have a warning and a list of their own.
 fn news<'a>(pane: &Pane<'a>) -> Option<&'a Notice> {
     let now = pane.state.now;
     let all = pane.state.notices.iter();
     let mut new = all.take_while(|notice| now.since(notice.at) < NEWS_DURATION);
     let newest = new.next()?;
-    // That the hand rests is not news beside why it was stopped.
+    // A confirmed hold is less important than the cause of the stop.
     let is_rest = matches!(newest.what, NoticeKind::HoldConfirmed { .. });
     let why = new.next().filter(|why| is_rest && why.level > newest.level);
     let shown = why.unwrap_or(newest);
@@ -413,7 +412,7 @@ fn news<'a>(pane: &Pane<'a>) -> Option<&'a Notice> {
     (shown.level > Level::Info || !moves).then_some(shown)
 }
 
-/// Without a warning: the newest message, else what moves the hand, else that nothing does.
+/// Without a warning: draws the newest message, else the mover of the hand, else that the hand is at rest.
 fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
     let look = pane.look;
     let palette = look.palette;
@@ -437,7 +436,7 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
     Label::new(&words, palette.text).ui(ui);
 }
 
-/// The worst of the warnings, and how many more there are.
+/// Draws the worst warning, with the number of further ones.
 fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]) {
     let look = pane.look;
     let palette = look.palette;
@@ -461,7 +460,7 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
     });
 }
 
-/// Title and sentence as far as there is room; the whole in the tooltip.
+/// Draws title and sentence as far as they fit, with the whole text in the tooltip.
 fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     let look = pane.look;
     let title = Label::new(look.say(warning.title), warning.color);

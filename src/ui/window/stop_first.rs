@@ -1,8 +1,8 @@
-//! What passes of all that was asked for in one frame in which somebody wants to stop.
+//! Filters the actions of a frame that contains a stop.
 
 use crate::app::action::Action;
 
-/// Stop goes ahead of everything, and nothing that moves the hand passes in the same frame.
+/// Puts the stop before all other actions, and drops those that must not pass with a stop, such as motion.
 pub(super) fn stop_first(mut actions: Vec<Action>, stopped: bool) -> Vec<Action> {
     if !stopped && !actions.contains(&Action::Stop) {
         return actions;

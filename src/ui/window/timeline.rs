@@ -1,4 +1,4 @@
-//! The time line of a replayed recording: which moment is shown, how time goes on, what happened when.
+//! The timeline of a replayed recording: current moment, playback speed, and events.
 
 use crate::app::action::Action;
 use crate::app::recordings::{RecordingAction, Timeline};
@@ -16,11 +16,11 @@ use egui::{
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// Height of the whole.
+/// Height of the timeline with its controls, in points.
 pub(crate) const HEIGHT: f32 = 84.0;
-/// Height of the line.
+/// Height of the line alone.
 const LINE: f32 = 36.0;
-/// How fast time can go.
+/// Playback speeds.
 const PACES: [(f32, &str); 6] = [
     (0.1, "0.1x"),
     (0.5, "0.5x"),
@@ -29,10 +29,9 @@ const PACES: [(f32, &str); 6] = [
     (5.0, "5x"),
     (10.0, "10x"),
 ];
-/// Draws it.
 pub(crate) fn timeline_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     if line.runs || line.waits {
-        // No news of a live hand may come meanwhile.
+        // A live hand may send no updates meanwhile.
         ui.ctx().request_repaint();
     }
     ui.vertical(|ui| {
@@ -103,14 +102,14 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     }
 }
 
-/// What recording it is.
+/// Name and origin of the recording.
 fn about_ui(ui: &mut Ui, look: Look, line: &Timeline) {
     let words = format!("{}   {}   {}", line.title, line.began, line.hand);
     let label = Label::new(&words, look.palette.muted).small().right();
     label.ui(ui).on_hover_text(line.path.display().to_string());
 }
 
-/// One entry of the list of marks. Its words are made where they are seen: a long recording has a hundred thousand.
+/// One entry of the list of marks. Its text is built when it is visible: a long recording has a hundred thousand marks.
 #[derive(Clone, Copy)]
 struct TimelineEntry<'a> {
     at: Moment,
@@ -133,7 +132,7 @@ impl TimelineEntry<'_> {
     }
 }
 
-/// All marks, and the notes in force; not in the order of time.
+/// All marks, and the notes in force; not in time order.
 fn entries(look: Look, line: &Timeline) -> impl Iterator<Item = TimelineEntry<'_>> {
     let marks = line.marks.iter();
     let marks = marks.filter(|mark| mark.kind != EventKind::Note);
@@ -155,7 +154,7 @@ fn entries(look: Look, line: &Timeline) -> impl Iterator<Item = TimelineEntry<'_
     marks.chain(notes)
 }
 
-/// The colour of each column of points that has a mark: of several in one, that of the first of the worst kind.
+/// Colour of each one-point column with a mark: of several in a column, that of the first of the worst kind.
 fn columns(look: Look, place: Rect, line: &Timeline) -> BTreeMap<i32, (u8, Color32)> {
     let rank = |kind| match kind {
         EventKind::Fault | EventKind::LinkLost => 0,
@@ -214,7 +213,7 @@ fn entry_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline, entry: TimelineEn
     });
 }
 
-/// The line itself: force, marks, the stretch that is looped, and the moment that is shown.
+/// Draws the line: force, marks, the looped time range, and the current moment.
 fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let look = pane.look;
     let size = vec2(ui.available_width(), LINE);
@@ -253,7 +252,7 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     }
 }
 
-/// Where the user drags it, or let it go. In a slow frame the pointer may have gone on after that.
+/// Position to which the user drags, or at which the button was released. In a slow frame the pointer may have moved since then.
 fn dragged_to(ui: &Ui, response: &Response) -> Option<Pos2> {
     let now = response.interact_pointer_pos()?;
     let let_go = ui.input(|input| {

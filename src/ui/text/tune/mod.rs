@@ -1,4 +1,4 @@
-//! Sentences of the plan of grasp trials, its running, and what was measured.
+//! Sentences of grasp trials: plan, progress, and measurements.
 
 pub(crate) mod search;
 
@@ -213,7 +213,7 @@ texts! {
     TOGETHER: "Over all sessions shown", "统计所有显示的轮次";
     STATE: "{}: saved", "{}的保存状态";
 
-    /// How stiff an object was.
+    /// Stiffness of an object.
     fn stiffness(Stiffness) {
         Stiffness::Soft => "soft", "软";
         Stiffness::Firm => "firm", "中等";
@@ -221,7 +221,7 @@ texts! {
         Stiffness::Unknown => "not told", "未知";
     }
 
-    /// What the hand does in a series.
+    /// Stage of a series.
     fn stage(Stage) {
         Stage::Resting => "resting", "间隔";
         Stage::Preparing => "going to the start", "正在回到起点";
@@ -232,7 +232,7 @@ texts! {
         Stage::Over => "over", "已结束";
     }
 
-    /// How the object is reached.
+    /// Approach to the object.
     fn approach(Approach) {
         Approach::OneStage => "One speed all the way", "全程同一速度";
         Approach::TwoStage { until: Until::Measured { .. }, .. } => "Fast to the measured contact", "快速到实测接触处";
@@ -241,7 +241,7 @@ texts! {
         Approach::TwoStage { until: Until::Touch(_), .. } => "Fast until first touch", "快速到首次触碰";
     }
 
-    /// What cannot be watched.
+    /// Value that cannot be monitored.
     fn group(&str) {
         "angle" => "angle", "角度";
         "force" => "force", "力";
@@ -257,7 +257,7 @@ texts! {
         TrialQuantity::Touch => "Touch, N", "触觉 N";
     }
 
-    /// What keeps sessions from being compared.
+    /// Difference that prevents comparing sessions.
     fn difference(SessionDifference) {
         SessionDifference::Hand => "hand", "灵巧手";
         SessionDifference::Joints => "joints", "自由度";
@@ -267,7 +267,7 @@ texts! {
     }
 }
 
-/// Why something ended early. A file tells it in its own words.
+/// Reason why a series or trial ended early. A file holds it as text.
 pub(crate) fn ended(look: Look, why: &EarlyEnd) -> String {
     match why {
         EarlyEnd::Here(why) => abort(look, *why),
@@ -275,7 +275,7 @@ pub(crate) fn ended(look: Look, why: &EarlyEnd) -> String {
     }
 }
 
-/// Why a trial ended early.
+/// Reason why a trial ended early.
 pub(crate) fn abort(look: Look, why: Abort) -> String {
     let joint = |dof: Dof| look.say(words::dof(dof));
     match why {
@@ -327,7 +327,7 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
     }
 }
 
-/// Why readings are missing or old, by the age of the last and the time in which the program did not run.
+/// Reason why readings are missing or old, from the age of the last one and the time for which the program was stalled.
 fn not_read(
     look: Look,
     what: &'static str,
@@ -342,7 +342,7 @@ fn not_read(
     }
 }
 
-/// Why a plan cannot be run.
+/// Reason why a plan cannot be run.
 pub(crate) fn plan_error(look: Look, error: &PlanError) -> String {
     let joint = |dof: Dof| look.say(words::dof(dof));
     match *error {
@@ -366,7 +366,7 @@ pub(crate) fn plan_error(look: Look, error: &PlanError) -> String {
     }
 }
 
-/// What a field of the plan is called.
+/// Name of a field of the plan.
 const fn plan_field(field: PlanField) -> Text {
     match field {
         PlanField::Joints | PlanField::Way(_) => JOINTS,
@@ -382,7 +382,7 @@ const fn plan_field(field: PlanField) -> Text {
     }
 }
 
-/// Why a list of numbers is not taken.
+/// Reason why a list of numbers is rejected.
 pub(crate) fn list_error(look: Look, error: ListError) -> String {
     match error {
         ListError::NotInRange { most } => look.fill(LIST_RANGE, &[&most]),
@@ -391,7 +391,7 @@ pub(crate) fn list_error(look: Look, error: ListError) -> String {
     }
 }
 
-/// On which hand a figure was measured.
+/// Hand on which a value was measured.
 pub(crate) fn measured_on(look: Look, on: &MeasuredOn) -> String {
     match on {
         MeasuredOn::AnotherHand => look.say(MEASURED_ELSEWHERE).to_owned(),

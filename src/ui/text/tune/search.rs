@@ -1,4 +1,4 @@
-//! Sentences of the search for settings: its goal, how far it is, and what it came to.
+//! Sentences of the search for settings: goal, progress, and result.
 
 use crate::hand::Dof;
 use crate::trials::search::{
@@ -68,7 +68,7 @@ texts! {
     UNTOLD_DISTRIBUTION: "whether the peaks are normally distributed, on which the bound rests", "峰值是否服从上界所依据的正态分布";
 }
 
-/// What is wrong with a goal.
+/// Error in a goal.
 pub(crate) fn goal_error(look: Look, error: GoalError) -> String {
     match error {
         GoalError::Limit { .. } => look.say(BAD_LIMIT).into(),
@@ -79,7 +79,7 @@ pub(crate) fn goal_error(look: Look, error: GoalError) -> String {
     }
 }
 
-/// What a search does.
+/// Stage of a search.
 pub(crate) fn stage(look: Look, stage: SearchStage) -> String {
     match stage {
         SearchStage::Probing => look.say(PROBING).into(),
@@ -89,7 +89,7 @@ pub(crate) fn stage(look: Look, stage: SearchStage) -> String {
     }
 }
 
-/// What was found, in a sentence.
+/// Result of a search, in a sentence.
 pub(crate) fn claim(look: Look, claim: &Claim) -> String {
     let names: Vec<&str> = claim
         .joints
@@ -114,7 +114,7 @@ pub(crate) fn claim(look: Look, claim: &Claim) -> String {
     look.fill(CLAIM, &parts)
 }
 
-/// Why nothing was found.
+/// Reason why nothing was found.
 pub(crate) fn no_claim(look: Look, why: NoClaim) -> String {
     let joint = |dof: Dof| look.say(words::dof(dof));
     let grams = |grams: f64| format!("{grams:.0}");
@@ -157,7 +157,7 @@ pub(crate) fn no_claim(look: Look, why: NoClaim) -> String {
     }
 }
 
-/// What could not be told.
+/// Question that the measurements left open.
 pub(crate) fn untold(look: Look, what: Untold) -> String {
     let joint = |dof: Dof| look.say(words::dof(dof));
     match what {
@@ -176,7 +176,7 @@ pub(crate) fn untold(look: Look, what: Untold) -> String {
     }
 }
 
-/// What a drive was found to compare its threshold with; `None` where that makes no difference or is not known.
+/// Value that a drive compares its threshold with; `None` if that makes no difference or is not known.
 pub(crate) fn compared(look: Look, own: &ComparedThreshold) -> Option<String> {
     let sentence = match own.compared.filter(|_| own.is_notable())? {
         Compared::AsRead => AS_READ,
