@@ -3,9 +3,9 @@
 /// One page of the manual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HelpTopic {
-    /// The word a reader types after `handscope help`; also the name of the file.
+    /// Topic word after `handscope help`; also the name of the file.
     pub name: &'static str,
-    /// What the page is about, in a few words, for the list of topics.
+    /// Subject of the page, in a few words, for the list of topics.
     pub about: &'static str,
     /// The page, as Markdown in lines of at most 80 characters.
     pub text: &'static str,
@@ -48,7 +48,7 @@ topics! {
     figures: "how fast it is, and what each wire can carry";
 }
 
-/// The topic of this name.
+/// The topic of this name; `None` if it is unknown.
 pub fn topic(name: &str) -> Option<&'static HelpTopic> {
     TOPICS.iter().find(|topic| topic.name == name)
 }

@@ -1,4 +1,4 @@
-//! What the operating system said, as a value: an `io::Error` can be neither copied nor compared.
+//! An error of the operating system as a value: an `io::Error` can be neither copied nor compared.
 
 use std::io;
 
@@ -6,11 +6,10 @@ use std::io;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{words}")]
 pub struct SystemError {
-    /// Its kind.
     pub kind: io::ErrorKind,
-    /// The system's number for it, if it came from the system itself.
+    /// The system's error number, if the error came from the system itself.
     pub code: Option<i32>,
-    /// Its words, in the system's language.
+    /// Error text, in the system's language.
     pub words: String,
 }
 

@@ -4,36 +4,36 @@ use crate::hand::register::TOUCH;
 use crate::hand::{RegisterWrite, Span};
 use arrayvec::ArrayVec;
 
-/// Most bytes that one frame carries.
+/// Maximum number of data bytes in one frame.
 pub const PIECE_MAX: u16 = 8;
 /// Largest id of a hand: 14 bits (manual 2.3).
 pub const HAND_ID_MAX: u16 = 0x3FFF;
 /// Largest address: 12 bits (manual 2.3).
 pub const ADDRESS_MAX: u16 = 0x0FFF;
-/// Bytes of Linux's `struct can_frame`.
+/// Size of Linux's `struct can_frame`, in bytes.
 pub const RECORD_LEN: usize = 16;
-/// Pieces of the longest run that one read may ask for: 252 bytes cut at even addresses, and some more of shorts.
+/// Maximum number of pieces of one read: 252 bytes cut at even addresses, plus a margin for shorter pieces.
 pub const PIECES_MAX: usize = 64;
 
 /// Identifiers have 29 bits.
 const ID_MASK: u32 = 0x1FFF_FFFF;
-/// Linux marks 29-bit identifiers, remote frames and error frames in the identifier's upper bits.
+/// Upper identifier bits by which Linux marks 29-bit identifiers, remote frames and error frames.
 const EXTENDED: u32 = 0x8000_0000;
 const REMOTE: u32 = 0x4000_0000;
 const ERROR: u32 = 0x2000_0000;
-/// Classes of Linux's error frames: the controller's state (byte 1 tells), and bus-off.
+/// Classes of Linux's error frames: controller state (given in byte 1), and bus-off.
 const ERROR_CONTROLLER: u32 = 0x0000_0004;
 const ERROR_BUS_OFF: u32 = 0x0000_0040;
-/// Bits of an error frame's byte 1: receiver or transmitter is error-passive; back to error-active.
+/// Bits of an error frame's byte 1: receiver or transmitter error-passive; back to error-active.
 const PASSIVE: u8 = 0x30;
 const ACTIVE: u8 = 0x40;
 
 /// The data bytes of one frame.
 pub type CanData = ArrayVec<u8, 8>;
-/// A run of memory cut into what single frames carry.
+/// A memory range, cut into pieces that fit single frames.
 pub type ReadPieces = ArrayVec<Span, PIECES_MAX>;
 
-/// What a frame is about: bits 26 to 28 of the identifier. The wrist's flags (4, 5) are not this hand's.
+/// Operation of a frame: bits 26 to 28 of the identifier. The wrist's flags (4, 5) do not apply to this hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CanFunction {
     /// Flag 0.
@@ -42,7 +42,7 @@ pub enum CanFunction {
     Write,
 }
 
-/// A data frame with a 29-bit identifier, the only kind that the hand knows.
+/// A data frame with a 29-bit identifier, the only kind that the hand understands.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct CanFrame {
     /// 0..=0x1FFF_FFFF.
@@ -54,16 +54,16 @@ pub struct CanFrame {
 /// The parts of an identifier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CanId {
-    /// Whether the frame reads or writes memory.
+    /// Operation: read or write.
     pub way: CanFunction,
-    /// First byte's address, 0..=4095.
+    /// Address of the first byte, 0..=4095.
     pub address: u16,
     /// Id of the hand, 0..=16383.
     pub hand: u16,
 }
 
 impl CanId {
-    /// The identifier; `None` if the hand or the address has too many bits.
+    /// Encodes the identifier; `None` if the hand id or the address has too many bits.
     pub fn raw(self) -> Option<u32> {
         if self.hand > HAND_ID_MAX || self.address > ADDRESS_MAX {
             return None;
@@ -75,7 +75,7 @@ impl CanId {
         Some((way << 26) | (u32::from(self.address) << 14) | u32::from(self.hand))
     }
 
-    /// The parts of a 29-bit identifier; `None` for the wrist's flags and unknown ones.
+    /// Decodes a 29-bit identifier; `None` for the wrist's flags and unknown flags.
     pub fn from_raw(id: u32) -> Option<Self> {
         let way = match id >> 26 {
             0 => CanFunction::Read,
@@ -90,7 +90,7 @@ impl CanId {
     }
 }
 
-/// The request that reads 1 to 8 bytes (manual 2.3.1): one byte of data, which is the length.
+/// Builds the request that reads 1 to 8 bytes (manual 2.3.1); its only data byte is the length.
 pub fn read_request(hand: u16, span: Span) -> Option<CanFrame> {
     if span.len == 0 || span.len > PIECE_MAX {
         return None;
@@ -99,14 +99,14 @@ pub fn read_request(hand: u16, span: Span) -> Option<CanFrame> {
     frame(CanFunction::Read, hand, span.address, &[len])
 }
 
-/// A frame about this address: the reply to a read, a write (manual 2.3.2) or its reply; `None` for more than 8 bytes.
+/// Builds a read reply, a write (manual 2.3.2) or a write reply for this address; `None` for more than 8 bytes.
 pub fn frame(way: CanFunction, hand: u16, address: u16, data: &[u8]) -> Option<CanFrame> {
     let id = CanId { way, address, hand }.raw()?;
     let data = CanData::try_from(data).ok()?;
     Some(CanFrame { id, data })
 }
 
-/// The frames that write these bytes, in the order of addresses; each is answered by itself.
+/// Builds the frames that write these bytes, in address order; the hand answers each one separately.
 pub fn write_requests(hand: u16, write: &RegisterWrite) -> Option<ArrayVec<CanFrame, 4>> {
     let span = write.span();
     split(span)?
@@ -122,9 +122,9 @@ pub fn write_requests(hand: u16, write: &RegisterWrite) -> Option<ArrayVec<CanFr
         .collect()
 }
 
-/// Cuts a run into pieces of 1 to 8 bytes, never through a short, nor through a number of a fingertip block (manual 2.6.21).
-/// `None` for an empty run, one past address 4095, or one of more than [`PIECES_MAX`] pieces.
-// Manual: 2.3 says nothing of more than 8 bytes; others cut by address too.
+/// Cuts a range into pieces of 1 to 8 bytes, never through a short or a number of a fingertip block (manual 2.6.21).
+/// `None` for an empty range, one past address 4095, or one of more than [`PIECES_MAX`] pieces.
+// Manual: 2.3 does not cover more than 8 bytes; other drivers also split by address.
 pub fn split(span: Span) -> Option<ReadPieces> {
     let end = u16::try_from(span.end()).ok()?;
     if span.len == 0 || end > ADDRESS_MAX + 1 {
@@ -144,7 +144,7 @@ pub fn split(span: Span) -> Option<ReadPieces> {
     Some(pieces)
 }
 
-/// True if no number lies across this address.
+/// True if no number spans this address.
 pub fn may_cut(at: u16) -> bool {
     if at <= TOUCH.address || u32::from(at) >= TOUCH.end() {
         return at.is_multiple_of(2);
@@ -156,22 +156,22 @@ pub fn may_cut(at: u16) -> bool {
     }
 }
 
-/// What a CAN interface says.
+/// Record received from a CAN interface.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum CanRecord {
-    /// A frame of the kind that the hand knows.
+    /// A data frame with a 29-bit identifier.
     Frame(CanFrame),
-    /// The controller gave the bus up: it sends no more until it is restarted.
+    /// The controller is bus-off: it sends nothing until it is restarted.
     BusOff,
-    /// The controller met so many errors that it hardly takes part any more.
+    /// The controller is error-passive after too many errors.
     ErrorPassive,
-    /// The controller takes part again.
+    /// The controller is error-active again.
     ErrorActive,
-    /// Frames of other kinds.
+    /// Any other frame.
     Other,
 }
 
-/// The frame as Linux's `struct can_frame`.
+/// Encodes a frame as Linux's `struct can_frame`.
 pub fn to_record(frame: &CanFrame) -> [u8; RECORD_LEN] {
     let mut record = [0; RECORD_LEN];
     let id = ((frame.id & ID_MASK) | EXTENDED).to_ne_bytes();
@@ -186,7 +186,7 @@ pub fn to_record(frame: &CanFrame) -> [u8; RECORD_LEN] {
     record
 }
 
-/// What a `struct can_frame` says.
+/// Decodes a `struct can_frame`.
 pub fn from_record(record: &[u8; RECORD_LEN]) -> CanRecord {
     let [a, b, c, d, len, _, _, _, data @ ..] = record;
     let id = u32::from_ne_bytes([*a, *b, *c, *d]);

@@ -1,10 +1,10 @@
-//! Whole Modbus TCP messages out of a stream (manual 2.5). What the functions mean is not known here.
+//! Splits a stream into whole Modbus TCP messages (manual 2.5). Does not interpret their functions.
 
 use arrayvec::ArrayVec;
 
-/// The longest message: six bytes of header and 254 that its length field counts.
+/// Maximum length of a message: six header bytes and the 254 that its length field can count.
 pub const ADU_LEN_MAX: usize = 260;
-/// Bytes that the splitter keeps: one message and the beginning of the next.
+/// Capacity of the splitter's buffer: one message and the beginning of the next.
 pub const BUFFER_LEN: usize = 2 * ADU_LEN_MAX;
 
 /// Bytes before those that the length field counts.
@@ -17,7 +17,7 @@ const LENGTH_MAX: u16 = 254;
 /// One Modbus TCP message: header, unit and PDU.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Adu {
-    /// The number by which a reply belongs to its request.
+    /// Transaction id, which matches a reply to its request.
     pub transaction: u16,
     /// Unit id.
     pub unit: u8,
@@ -31,12 +31,12 @@ impl Adu {
         self.pdu().first().copied().unwrap_or_default()
     }
 
-    /// What it says: function code and data.
+    /// PDU: function code and data.
     pub fn pdu(&self) -> &[u8] {
         self.bytes.get(HEADER_LEN + 1..).unwrap_or_default()
     }
 
-    /// The message that answers this one as `unit`, saying `pdu`.
+    /// Builds a reply to this message from `unit`, with this PDU.
     pub fn reply(&self, unit: u8, pdu: &[u8]) -> Vec<u8> {
         let len = u16::try_from(pdu.len() + 1).unwrap_or(u16::MAX);
         let head = [self.transaction, 0, len].map(u16::to_be_bytes);
@@ -44,7 +44,7 @@ impl Adu {
     }
 }
 
-/// Why the stream is no Modbus TCP. It cannot be found again in the same connection.
+/// Reason why the stream is not Modbus TCP. The splitter cannot resynchronise; the connection must be closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MbapError {
     /// The protocol id is not 0.
@@ -61,24 +61,24 @@ pub enum MbapError {
     },
 }
 
-/// Cuts a stream into messages, however it was split or merged on its way.
+/// Splits a stream into messages, regardless of how it was split or merged in transit.
 #[derive(Debug, Clone, Default)]
 pub struct MbapSplitter {
     buffer: ArrayVec<u8, BUFFER_LEN>,
 }
 
 impl MbapSplitter {
-    /// Takes bytes as they come; returns how many. The rest is given again after [`Self::next`] said `Ok(None)`.
+    /// Accepts received bytes and returns how many fit. Push the rest again after [`Self::next`] returned `Ok(None)`.
     pub fn push(&mut self, bytes: &[u8]) -> usize {
         let taken = bytes.len().min(self.buffer.remaining_capacity());
         self.buffer.extend(bytes.iter().take(taken).copied());
         taken
     }
 
-    /// The next whole message; `None` if more bytes are needed.
+    /// Returns the next whole message; `None` if more bytes are needed.
     ///
     /// # Errors
-    /// A header that cannot be one, as soon as it is seen, and again at each further call: the connection must be closed.
+    /// An invalid header, as soon as it is seen, and again at each further call: the connection must be closed.
     #[expect(
         clippy::should_implement_trait,
         reason = "None is not the end: more may come after a push"
@@ -110,12 +110,12 @@ impl MbapSplitter {
         }))
     }
 
-    /// Forgets all bytes, for a new connection.
+    /// Discards all buffered bytes, for a new connection.
     pub fn clear(&mut self) {
         self.buffer.clear();
     }
 
-    /// Bytes kept because their message is not whole.
+    /// Buffered bytes of an incomplete message.
     pub const fn buffered(&self) -> usize {
         self.buffer.len()
     }

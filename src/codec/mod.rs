@@ -10,13 +10,13 @@ pub mod rs485;
 pub mod slcan;
 pub mod usbcan;
 
-/// What a decoder met apart from good replies, lines or packets. Counts only grow.
+/// Errors that a decoder met between good replies, lines or packets. Counters never decrease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct NoiseCounts {
-    /// Replies or packets whose check was wrong.
+    /// Replies or packets with a wrong checksum.
     pub checksum_errors: u64,
-    /// Runs of bytes that had to be skipped to find the next good one.
+    /// Runs of bytes skipped to find the next good frame.
     pub resyncs: u64,
-    /// Bytes skipped because no frame began with them.
+    /// Skipped bytes.
     pub skipped_bytes: u64,
 }

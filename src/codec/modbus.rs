@@ -1,39 +1,39 @@
-//! Between bytes in the hand's memory and Modbus' 16-bit words (manual 2.5). No framing, no sending.
+//! Converts between bytes in the hand's memory and Modbus' 16-bit words (manual 2.5). No framing, no sending.
 
 use crate::hand::register::{BytePacking, Element, by_address};
 use crate::hand::{RegisterWrite, Span};
 use arrayvec::ArrayVec;
 
-/// Most words that one read can ask for (manual 2.5.1).
+/// Maximum number of words in one read (manual 2.5.1).
 pub const READ_WORDS_MAX: u16 = 125;
-/// Joints, and so elements of the one-byte groups.
+/// Number of joints, and so of elements in the one-byte groups.
 const GROUP_LEN: usize = 6;
 
 /// The bytes of one read.
 pub type WordBytes = ArrayVec<u8, 250>;
 
-/// A run of 16-bit words as Modbus asks for it.
+/// A range of 16-bit words of a Modbus request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WordSpan {
-    /// The manual's byte address of the first word.
+    /// Byte address of the first word, as in the manual.
     pub address: u16,
     /// Number of words.
     pub count: u16,
 }
 
-/// The words that hold these bytes; an odd length takes one byte more.
+/// Returns the words that cover these bytes; an odd length is rounded up.
 pub const fn words_for(span: Span) -> WordSpan {
-    // Manual: 2.5 does not say what an address counts; drivers of real hands agree on bytes, two a word.
+    // Manual: 2.5 does not define the address unit; drivers of real hands use bytes, two per word.
     WordSpan {
         address: span.address,
         count: span.len.div_ceil(2),
     }
 }
 
-/// Memory bytes of the words that begin at `address`; words past [`READ_WORDS_MAX`] cannot come and are left out.
+/// Returns the memory bytes of the words that begin at `address`; words past [`READ_WORDS_MAX`] are ignored.
 ///
-/// The low byte comes first, but in registers of single bytes where [`BytePacking::HighFirst`] says otherwise. Words of
-/// [`BytePacking::OnePerWord`] are read by [`group_bytes`].
+/// The low byte comes first, except in byte registers with [`BytePacking::HighFirst`]. For words packed as [`BytePacking::OnePerWord`]
+/// use [`group_bytes`].
 pub fn bytes_from_words(address: u16, words: &[u16], packing: BytePacking) -> WordBytes {
     let addresses = (0u16..).map(|nth| address.saturating_add(2 * nth));
     words
@@ -51,14 +51,14 @@ fn holds_bytes(address: u16) -> bool {
     by_address(address).is_some_and(|row| row.element == Element::Byte)
 }
 
-/// A write as Modbus says it.
+/// A write in Modbus terms.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ModbusWrite {
-    /// Function 6 (manual 2.5.2), for one-byte registers: the value as a number at the byte address.
+    /// Function 6 (manual 2.5.2), for one-byte registers: the value at its byte address.
     Single {
-        /// Address in the hand's memory, which counts bytes.
+        /// Byte address in the hand's memory.
         address: u16,
-        /// The byte, 0..=255.
+        /// Byte value, 0..=255.
         value: u16,
     },
     /// Function 16 (manual 2.5.3).
@@ -70,7 +70,7 @@ pub enum ModbusWrite {
     },
 }
 
-/// The Modbus form of a write: one byte by function 6, words by function 16.
+/// Returns the Modbus form of a write: function 6 for one byte, function 16 for words.
 pub fn words_from_write(write: &RegisterWrite) -> ModbusWrite {
     let address = write.address();
     match write.bytes() {
@@ -93,10 +93,10 @@ pub fn words_from_write(write: &RegisterWrite) -> ModbusWrite {
     }
 }
 
-/// Judges by the word at HAND_ID and six words at TEMP; `None` if they fit no packing, or more than one.
+/// Detects the packing from the word at HAND_ID and six words at TEMP; `None` if they match no packing, or more than one.
 ///
-/// Temperatures tell packed words from single ones. The id, whose neighbour 1001 is unused, tells which byte of a
-/// word comes first: a hand 1 says 1 or 256.
+/// Temperatures distinguish packed words from one byte per word. The id, whose neighbour 1001 is unused, shows the byte order: hand 1
+/// reads as 1 or 256.
 pub fn detect_packing(word_at_id: u16, words_at_temp: &[u16; 6]) -> Option<BytePacking> {
     let [first, second, third, behind @ ..] = words_at_temp;
     let small = words_at_temp.iter().all(|word| *word <= 0xFF);
@@ -111,7 +111,7 @@ pub fn detect_packing(word_at_id: u16, words_at_temp: &[u16; 6]) -> Option<ByteP
     }
 }
 
-/// Words that hold one group of six.
+/// Number of words that hold a group of six bytes.
 pub const fn words_per_group(packing: BytePacking) -> u16 {
     match packing {
         BytePacking::LowFirst | BytePacking::HighFirst => 3,
@@ -119,8 +119,8 @@ pub const fn words_per_group(packing: BytePacking) -> u16 {
     }
 }
 
-/// The six bytes of a group from the words that begin at its address; `None` if there are too few words,
-/// or a word of [`BytePacking::OnePerWord`] holds no byte.
+/// Returns the six bytes of a group from the words that begin at its address; `None` if there are too few words, or if a word of
+/// [`BytePacking::OnePerWord`] exceeds 255.
 pub fn group_bytes(packing: BytePacking, words: &[u16]) -> Option<[u8; GROUP_LEN]> {
     let words = words.get(..usize::from(words_per_group(packing)))?;
     let bytes: ArrayVec<u8, GROUP_LEN> = match packing {

@@ -1,29 +1,29 @@
-//! Whole Modbus RTU replies out of a stream that may hold noise (manual 2.4). What the registers mean is not known here.
+//! Splits a stream that may contain noise into whole Modbus RTU replies (manual 2.4). Does not interpret registers.
 
 use crate::codec::NoiseCounts;
 use arrayvec::ArrayVec;
 
-/// The longest frame: unit, 253 bytes of function and data, check.
+/// Maximum length of a frame: unit, 253 bytes of function and data, CRC.
 pub const FRAME_LEN_MAX: usize = 256;
-/// Bytes that the splitter keeps: one frame and the beginning of the next.
+/// Capacity of the splitter's buffer: one frame and the beginning of the next.
 pub const BUFFER_LEN: usize = 2 * FRAME_LEN_MAX;
 
-/// Bytes of the check at a frame's end.
+/// Length of the CRC at the end of a frame.
 const CHECK_LEN: usize = 2;
-/// Unit, function, exception code, check.
+/// Unit, function, exception code, CRC.
 const EXCEPTION_LEN: usize = 5;
-/// Unit, function, address, count or value, check.
+/// Unit, function, address, count or value, CRC.
 const WRITTEN_LEN: usize = 8;
-/// Unit, function, address, count or value, check.
+/// Unit, function, address, count or value, CRC.
 const REQUEST_LEN: usize = 8;
 /// Unit, function, address, count, number of bytes.
 const WRITE_HEAD_LEN: usize = 7;
 /// Unit, function, number of bytes.
 const READ_HEAD_LEN: usize = 3;
-/// Most bytes that a read reply can hold: 125 words (manual 2.5.1).
+/// Maximum number of bytes in a read reply: 125 words (manual 2.5.1).
 const READ_BYTES_MAX: u8 = 250;
 
-/// The check over all bytes before it; on the wire its low byte comes first (manual 2.4: CRC).
+/// CRC over all preceding bytes; sent low byte first (manual 2.4: CRC).
 pub fn crc16(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |mut crc, byte| {
         crc ^= u16::from(*byte);
@@ -34,15 +34,15 @@ pub fn crc16(bytes: &[u8]) -> u16 {
     })
 }
 
-/// One whole reply whose check is right.
+/// One whole reply with a valid CRC.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RtuReply {
-    /// All bytes, unit and check included.
+    /// All bytes, including unit and CRC.
     pub bytes: ArrayVec<u8, FRAME_LEN_MAX>,
 }
 
 impl RtuReply {
-    /// Memory bytes in the reply to a read; `None` for all others.
+    /// Number of memory bytes in a read reply; `None` for other replies.
     pub fn read_len(&self) -> Option<u16> {
         match self.bytes.as_slice() {
             [_, 3, len, ..] => Some(u16::from(*len)),
@@ -51,45 +51,45 @@ impl RtuReply {
     }
 }
 
-/// Requests that were on the line: ours, given back by an adapter, or another controller's.
+/// Requests seen on the line: our own, echoed by an adapter, or another controller's.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct RtuRequests {
-    /// Those that were announced by [`RtuSplitter::expect_echo`].
+    /// Requests announced by [`RtuSplitter::expect_echo`].
     pub echoes: u64,
-    /// All others that could be told from replies.
+    /// Other requests that could be distinguished from replies.
     pub foreign: u64,
 }
 
-/// Cuts a stream into the replies of one unit. RTU marks no beginning, only a silence that adapters do not keep, so
-/// a reply is where unit, function, length and check agree; bytes that fit none are skipped.
+/// Splits a stream into the replies of one unit. RTU marks the start of a frame only by a silence, which adapters do not preserve, so a
+/// reply is found where unit, function, length and CRC agree; other bytes are skipped.
 #[derive(Debug, Clone)]
 pub struct RtuSplitter {
     unit: u8,
     buffer: ArrayVec<u8, BUFFER_LEN>,
     noise: NoiseCounts,
-    /// Within a run of skipped bytes, which counts once.
+    /// True within a run of skipped bytes, which counts once.
     skipping: bool,
-    /// The request whose echo may come; empty if none may.
+    /// Request whose echo may arrive; empty if no echo is expected.
     echo: ArrayVec<u8, FRAME_LEN_MAX>,
     requests: RtuRequests,
 }
 
-/// What the bytes at the front can be.
+/// Possible interpretation of the bytes at the front of the buffer.
 enum ReplyStart {
-    /// A reply of so many bytes, whole and good.
+    /// A whole, valid reply of this many bytes.
     Good(usize),
-    /// Looks like a reply, but its check is wrong.
+    /// Looks like a reply, but its CRC is wrong.
     Bad,
-    /// What was sent, given back, of so many bytes.
+    /// Echo of our own request, of this many bytes.
     Echo(usize),
-    /// Too few bytes to tell.
+    /// Too few bytes to decide.
     Open,
-    /// No reply begins so.
+    /// Not the start of a reply.
     None,
 }
 
 impl RtuSplitter {
-    /// Replies of this unit; those of others are skipped.
+    /// Creates a splitter for replies of this unit; those of other units are skipped.
     pub const fn new(unit: u8) -> Self {
         Self {
             unit,
@@ -108,30 +108,30 @@ impl RtuSplitter {
         }
     }
 
-    /// This request goes out now, and the first bytes like it are no reply: an adapter may give it back. Not to be
-    /// called for function 06 unless it surely does so, because there the reply is like the request.
+    /// Announces that `request` is being sent and that an adapter may echo it. For function 06, whose reply equals its request, call this
+    /// only if the adapter is known to echo.
     pub fn expect_echo(&mut self, request: &[u8]) {
         self.echo = request.iter().copied().take(FRAME_LEN_MAX).collect();
     }
 
-    /// No echo is reckoned with any more.
+    /// Cancels the expected echo.
     pub fn expect_no_echo(&mut self) {
         self.echo.clear();
     }
 
-    /// Requests met so far.
+    /// Requests seen so far.
     pub const fn requests(&self) -> RtuRequests {
         self.requests
     }
 
-    /// Takes bytes as they come; returns how many. The rest is given again after [`Self::next`] said `None`.
+    /// Accepts received bytes and returns how many fit. Push the rest again after [`Self::next`] returned `None`.
     pub fn push(&mut self, bytes: &[u8]) -> usize {
         let taken = bytes.len().min(self.buffer.remaining_capacity());
         self.buffer.extend(bytes.iter().take(taken).copied());
         taken
     }
 
-    /// The next whole reply; `None` if more bytes are needed.
+    /// Returns the next whole reply; `None` if more bytes are needed.
     #[expect(
         clippy::should_implement_trait,
         reason = "None is not the end: more may come after a push"
@@ -152,7 +152,7 @@ impl RtuSplitter {
         }
     }
 
-    /// The line is silent, so nothing unfinished will be finished: skips to the next whole reply, or everything.
+    /// Reports that the line is silent, so a partial frame stays incomplete: skips to the next whole reply, or everything.
     pub fn flush_pending(&mut self) {
         while !self.buffer.is_empty() {
             match self.start() {
@@ -164,12 +164,12 @@ impl RtuSplitter {
         }
     }
 
-    /// What was skipped so far.
+    /// Noise skipped so far.
     pub const fn noise(&self) -> NoiseCounts {
         self.noise
     }
 
-    /// Bytes kept because their reply is not whole.
+    /// Buffered bytes of an incomplete reply.
     pub const fn buffered(&self) -> usize {
         self.buffer.len()
     }
@@ -212,7 +212,7 @@ impl RtuSplitter {
         self.buffer.drain(..len);
     }
 
-    /// Takes a whole request of another controller from the front, if one stands there where no reply does.
+    /// Removes another controller's whole request from the front of the buffer; returns false if there is none.
     fn take_foreign(&mut self) -> bool {
         let bytes = self.buffer.as_slice();
         let len = match bytes {
@@ -327,7 +327,7 @@ mod tests {
         assert_eq!(noise.resyncs, 1);
     }
 
-    /// What comes out of a stream in pieces, with an echo reckoned with.
+    /// Replies and request counts of a stream that is pushed in pieces, with an expected echo.
     fn sorted(stream: &[u8], piece: usize, echo: &[u8]) -> (Vec<Vec<u8>>, RtuRequests) {
         let mut splitter = RtuSplitter::new(1);
         splitter.expect_echo(echo);

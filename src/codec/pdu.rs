@@ -1,11 +1,10 @@
-//! What a Modbus message says once its envelope is off, both sides, and how long it is (manual 2.4, 2.5). RTU and TCP
-//! put their own envelope around it.
+//! Contents and length of a Modbus PDU, for both sides (manual 2.4, 2.5). RTU and TCP add their own envelope.
 
 use crate::hand::ModbusException;
 
-/// Most bytes of memory in one message: 125 words (manual 2.5.1).
+/// Maximum number of memory bytes in one message: 125 words (manual 2.5.1).
 const BYTES_MAX: u8 = 250;
-/// Most bytes that one write carries: 123 words, by the standard.
+/// Maximum number of bytes in one write: 123 words, by the standard.
 const WRITTEN_MAX: u8 = 246;
 
 /// Side of the conversation that sends a PDU.
@@ -17,72 +16,72 @@ pub enum ModbusRole {
     Server,
 }
 
-/// What a message says. Addresses are the manual's byte addresses, bytes stand as on the wire: high byte first.
+/// Parsed PDU. Addresses are the manual's byte addresses; bytes are in wire order, high byte first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pdu<'a> {
-    /// Function 03, asked.
+    /// Request of function 03.
     Read {
-        /// First byte's address.
+        /// Address of the first byte.
         address: u16,
         /// Number of words.
         count: u16,
     },
-    /// Function 03, answered.
+    /// Reply to function 03.
     Words(&'a [u8]),
-    /// Function 06, asked or answered.
+    /// Request or reply of function 06.
     WriteOne {
-        /// Address in the hand's memory, which counts bytes.
+        /// Byte address in the hand's memory.
         address: u16,
         /// The word.
         value: u16,
     },
-    /// Function 16, asked.
+    /// Request of function 16.
     Write {
-        /// First byte's address.
+        /// Address of the first byte.
         address: u16,
-        /// Words that are announced.
+        /// Announced number of words.
         count: u16,
-        /// The words as they stand in the PDU, high byte first.
+        /// Words in wire order, high byte first.
         words: &'a [u8],
     },
-    /// Function 16, answered.
+    /// Reply to function 16.
     Written {
-        /// First byte's address.
+        /// Address of the first byte.
         address: u16,
         /// Number of words.
         count: u16,
     },
-    /// The hand said no.
+    /// The hand rejected the request.
     Exception {
-        /// The function that was asked, without the top bit.
+        /// Function code of the request, without the top bit.
         function: u8,
         /// Exception code.
         code: u8,
     },
-    /// A function that this hand does not know, or one of the wrong length.
+    /// A function that this hand does not support, or a PDU of the wrong length.
     Other {
         /// Function code of the request.
         function: u8,
     },
 }
 
-/// The message that says so, in answer to this function.
+/// Builds the exception reply to this function.
 pub const fn exception_reply(exception: ModbusException, function: u8) -> [u8; 2] {
     [function | 0x80, exception.code()]
 }
 
-/// How many bytes a message has.
+/// Length of a PDU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Len {
-    /// So many, function code included.
+    /// Total number of bytes, including the function code.
     Known(usize),
-    /// More bytes are needed to tell.
+    /// More bytes are needed.
     Open,
-    /// No message of this side begins so.
+    /// Not the start of a PDU of this side.
     None,
 }
 
-/// The length of the message that begins here.
+/// Returns the length of the PDU that begins here.
 pub fn len(side: ModbusRole, pdu: &[u8]) -> Len {
     match (side, pdu) {
         (_, []) => Len::Open,
@@ -105,7 +104,7 @@ const fn is_words(bytes: u8, max: u8) -> bool {
     bytes.is_multiple_of(2) && bytes >= 2 && bytes <= max
 }
 
-/// What a whole message says.
+/// Parses a whole PDU.
 pub fn parse(side: ModbusRole, pdu: &[u8]) -> Pdu<'_> {
     let word = |high: &u8, low: &u8| u16::from_be_bytes([*high, *low]);
     match (side, pdu) {

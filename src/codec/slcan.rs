@@ -4,64 +4,64 @@ use crate::codec::NoiseCounts;
 use crate::codec::can::{CanData, CanFrame};
 use arrayvec::ArrayVec;
 
-/// The longest line without its CR: `T`, 8 digits, length, 16 digits, 4 of time stamp.
+/// Maximum length of a line without its CR: `T`, 8 digits, length, 16 digits, 4 of time stamp.
 pub const LINE_MAX: usize = 30;
 /// Bit rates that have a code, `S0` first.
 pub const BITRATES: [u32; 9] = [
     10_000, 20_000, 50_000, 100_000, 125_000, 250_000, 500_000, 800_000, 1_000_000,
 ];
 
-/// Ends a line; alone from an adapter it means "done".
+/// End of a line; alone from an adapter it acknowledges a command.
 const CR: u8 = b'\r';
-/// From an adapter: "could not".
+/// Error response of an adapter.
 const BEL: u8 = 0x07;
 
-/// A line to send, with its CR.
+/// A line to send, including its CR.
 pub type SlcanLine = ArrayVec<u8, { LINE_MAX + 1 }>;
 
-/// What an adapter is told.
+/// Command to an adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum SlcanCommand {
-    /// `O`: take part in the bus.
+    /// `O`: join the bus.
     Open,
     /// `C`: leave the bus.
     Close,
-    /// `S0` to `S8`: the bit rate, by its place in [`BITRATES`].
+    /// `S0` to `S8`: set the bit rate, an index into [`BITRATES`].
     Bitrate(u8),
     /// `T`: send a data frame with a 29-bit identifier.
     Send(CanFrame),
-    /// `t`, `r` or `R`: send a frame that no hand knows, with 11 bits or without data.
+    /// `t`, `r` or `R`: send a frame that the hand does not support, with an 11-bit identifier or without data.
     SendOther(u8),
-    /// `L`: listen to the bus without taking part.
+    /// `L`: open the bus in listen-only mode.
     Listen,
-    /// `s`: the bit rate by the controller's two timing registers.
+    /// `s`: set the bit rate by the controller's two timing registers.
     Timing(u16),
-    /// Anything else that is well-formed: versions, flags, filters.
+    /// Any other well-formed command: versions, flags, filters.
     Other(u8),
 }
 
-/// One answer of an slcan adapter.
+/// Response of an slcan adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum SlcanAnswer {
-    /// CR alone: the command was carried out.
+    /// CR alone: the command succeeded.
     Done,
     /// BEL: the command was rejected.
     Failed,
-    /// `z` or `Z`: the frame is on its way.
+    /// `z` or `Z`: the frame was accepted for sending.
     Sent,
-    /// `T`: a data frame with a 29-bit identifier was on the bus.
+    /// `T`: a data frame with a 29-bit identifier was received from the bus.
     Frame(CanFrame),
-    /// Anything else that is well-formed: versions, status flags, 11-bit and remote frames.
+    /// Any other well-formed line: versions, status flags, 11-bit and remote frames.
     Other(u8),
 }
 
-/// The code of a bit rate, if it has one.
+/// Returns the code of a bit rate; `None` if it has none.
 pub fn bitrate_code(bitrate: u32) -> Option<u8> {
     let at = BITRATES.iter().position(|known| *known == bitrate)?;
     u8::try_from(at).ok()
 }
 
-/// The line that says this to an adapter; `None` for codes past 8, and for what is told by its letter alone.
+/// Encodes a command; `None` for codes past 8, and for [`SlcanCommand::SendOther`] and [`SlcanCommand::Other`].
 pub fn encode_command(command: &SlcanCommand) -> Option<SlcanLine> {
     let mut line = SlcanLine::new();
     match command {
@@ -82,7 +82,7 @@ pub fn encode_command(command: &SlcanCommand) -> Option<SlcanLine> {
     Some(line)
 }
 
-/// What an adapter sends for this; `None` for [`SlcanAnswer::Other`].
+/// Encodes an adapter's response; `None` for [`SlcanAnswer::Other`].
 pub fn encode_answer(answer: &SlcanAnswer) -> Option<SlcanLine> {
     let mut line = SlcanLine::new();
     match answer {
@@ -116,7 +116,7 @@ fn digits(byte: u8) -> [u8; 2] {
     })
 }
 
-/// A line that is not whole yet.
+/// An incomplete line.
 #[derive(Debug, Clone, Default)]
 struct Collector {
     line: ArrayVec<u8, LINE_MAX>,
@@ -125,7 +125,7 @@ struct Collector {
 }
 
 impl Collector {
-    /// Takes a byte of a line. What is longer than any line keeps its newest bytes: the good part may stand last.
+    /// Adds a byte. An over-long line retains its newest bytes, since a valid frame may come last.
     fn keep(&mut self, byte: u8) {
         if self.line.is_full() {
             self.line.remove(0);
@@ -135,7 +135,7 @@ impl Collector {
         self.line.push(byte);
     }
 
-    /// Reads the line and begins the next one.
+    /// Parses the line and starts the next one.
     fn end<T>(&mut self, parse: impl Fn(&[u8]) -> Option<T>) -> Option<T> {
         let line = std::mem::take(&mut self.line);
         let too_long = std::mem::take(&mut self.too_long);
@@ -144,7 +144,7 @@ impl Collector {
             return whole;
         }
         self.counts.resyncs += 1;
-        // Noise in front of a frame: `T` is no digit, so the last one begins it.
+        // Noise before a frame: `T` is not a hex digit, so the last one starts the frame.
         let from = line.iter().rposition(|byte| *byte == b'T');
         let found = from.and_then(|from| Some((from, parse(line.get(from..)?)?)));
         let skipped = found.as_ref().map_or(line.len(), |(from, _)| *from);
@@ -153,12 +153,12 @@ impl Collector {
     }
 }
 
-/// Reads what an adapter sends.
+/// Decodes an adapter's output.
 #[derive(Debug, Clone, Default)]
 pub struct AnswerDecoder(Collector);
 
 impl AnswerDecoder {
-    /// Takes the next byte; gives what it completes.
+    /// Accepts the next byte; returns the response that it completes.
     pub fn push(&mut self, byte: u8) -> Option<SlcanAnswer> {
         match byte {
             CR => self.0.end(parse_answer),
@@ -175,18 +175,18 @@ impl AnswerDecoder {
         }
     }
 
-    /// What was no good line.
+    /// Errors met so far.
     pub const fn counts(&self) -> NoiseCounts {
         self.0.counts
     }
 }
 
-/// Reads what an adapter is sent.
+/// Decodes the commands sent to an adapter.
 #[derive(Debug, Clone, Default)]
 pub struct CommandDecoder(Collector);
 
 impl CommandDecoder {
-    /// Takes the next byte; gives what it completes. An unreadable line is an error, which an adapter answers with BEL.
+    /// Accepts the next byte; returns the command that it completes. An adapter answers an unreadable line with BEL.
     pub fn push(&mut self, byte: u8) -> Option<Result<SlcanCommand, Unreadable>> {
         match byte {
             // Clients clear the line with empty commands, and some end lines with both characters.
@@ -200,13 +200,13 @@ impl CommandDecoder {
         }
     }
 
-    /// What was no good line.
+    /// Errors met so far.
     pub const fn counts(&self) -> NoiseCounts {
         self.0.counts
     }
 }
 
-/// A line that is no command.
+/// Error for a line that is not a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the line is no command of a serial CAN adapter")]
 pub struct Unreadable;
@@ -246,13 +246,13 @@ fn parse_command(line: &[u8]) -> Option<SlcanCommand> {
     }
 }
 
-/// How a frame is written.
+/// Format of a frame's text.
 #[derive(Debug, Clone, Copy)]
 struct Shape {
-    /// Digits of the identifier.
+    /// Number of hex digits of the identifier.
     digits: usize,
     id_max: u32,
-    /// A remote frame has a length and no data.
+    /// True for a remote frame, which has a length and no data.
     is_remote: bool,
 }
 
@@ -278,7 +278,7 @@ fn other_frame(letter: u8, text: &[u8], shape: Shape) -> Option<SlcanCommand> {
     parse_frame(text, shape).map(|_| SlcanCommand::SendOther(letter))
 }
 
-/// Identifier, length, data and perhaps a time stamp.
+/// Parses identifier, length, data and an optional time stamp.
 fn parse_frame(text: &[u8], shape: Shape) -> Option<CanFrame> {
     let (digits, rest) = text.split_at_checked(shape.digits)?;
     let id = number(digits)?;

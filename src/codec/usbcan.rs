@@ -1,70 +1,70 @@
-//! The packets of the maker's own USB-CAN adapter, alike in both directions. No port, no clock.
+//! The packets of the maker's own USB-CAN adapter, identical in both directions. No port, no clock.
 //!
-//! Known, from the maker's public CAN demos and from records of a hand behind such an adapter: `AA AA`, the identifier
-//! (4 bytes, low byte first), 8 bytes of data of which the length counts, the length, `00 01 00`, the sum of all these,
-//! `55 55`; from the adapter, AA, 55 and A5 between head and tail come with A5 before them; the serial side has
-//! 115200 bit/s. The adapters of Robotell, which python-can knows, have the same packets; there the three bytes are the
-//! channel (FF: the adapter's own settings), 29 or 11 bits, and data or remote frame, and A5 is put in both ways.
+//! Known from the maker's public CAN demos and from records of a hand behind such an adapter: `AA AA`, the identifier (4 bytes, low byte
+//! first), 8 data bytes of which the first `length` are valid, the length, `00 01 00`, the sum of all these, `55 55`; from the adapter,
+//! AA, 55 and A5 between head and tail are escaped by a preceding A5; the serial side runs at 115200 bit/s. Robotell adapters, which
+//! python-can supports, use the same packets; there the three bytes are the channel (FF: the adapter's own settings), 29 or 11 bits, and
+//! data or remote frame, and both directions are escaped.
 //!
-//! Not known: whether the maker's adapter takes settings at all, such as a bit rate; what it says when the bus does not
-//! take a frame; and whether it wants A5 put in: the demos put none, and so both are read here. Settings are never sent.
+//! Not known: whether the maker's adapter accepts settings at all, such as a bit rate; its report when the bus rejects a frame; and
+//! whether it requires escaping: the demos do not escape, so both forms are accepted here. Settings are never sent.
 
 use crate::codec::NoiseCounts;
 use crate::codec::can::{CanData, CanFrame};
 use arrayvec::ArrayVec;
 
-/// The longest packet: each byte between head and tail with A5 before it.
+/// Maximum length of a packet: every byte between head and tail escaped.
 pub const PACKET_MAX: usize = 2 * AROUND + 2 * BODY;
-/// Bytes of a packet without any A5.
+/// Length of a packet without escapes.
 pub const PACKET_MIN: usize = 2 * AROUND + BODY;
 
-/// Head or tail.
+/// Length of the head or the tail.
 const AROUND: usize = 2;
 /// Identifier, data, length, channel, bits, kind, sum.
 const BODY: usize = 17;
 const HEAD: u8 = 0xAA;
 const TAIL: u8 = 0x55;
-/// Comes before a byte that is data, though it looks like head, tail or itself.
+/// Escape byte before a data byte that equals head, tail or the escape itself.
 const ESCAPE: u8 = 0xA5;
-/// The channel of the adapter's own settings.
+/// Channel of the adapter's own settings.
 const SETTINGS: u8 = 0xFF;
-/// The 29-bit kind of identifier, and the kind of frame that carries data.
+/// Kind byte of a 29-bit identifier, and of a data frame.
 const LONG_ID: u8 = 1;
 const DATA: u8 = 0;
 
-/// A packet as it is sent.
+/// A packet ready to send.
 pub type Packet = ArrayVec<u8, PACKET_MAX>;
 
-/// Content of one packet from the adapter.
+/// Content of a packet from the adapter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PacketContent {
     /// A data frame with a 29-bit identifier.
     Frame(CanFrame),
-    /// Anything else that is well-formed: 11-bit and remote frames, the adapter's settings.
+    /// Any other well-formed packet: 11-bit and remote frames, the adapter's settings.
     Other,
 }
 
-/// What stands at the beginning of some bytes.
+/// Result of [`inspect`]: interpretation of the leading bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PacketStart {
-    /// A packet of so many bytes.
+    /// A valid packet of this many bytes.
     Packet(usize, PacketContent),
-    /// One of so many bytes whose sum is wrong.
+    /// A packet with a wrong checksum.
     BadSum {
-        /// Its bytes.
+        /// Length in bytes.
         len: usize,
-        /// Checksum in the packet.
+        /// Received checksum.
         got: u8,
         /// Checksum computed over the packet.
         want: u8,
     },
-    /// Too few bytes to tell.
+    /// Too few bytes to decide.
     Open,
-    /// No packet begins here.
+    /// Not the start of a packet.
     Nothing,
 }
 
-/// The packet that carries a frame.
+/// Builds the packet that carries a frame.
 pub fn encode(frame: &CanFrame) -> Packet {
     let len = u8::try_from(frame.data.len()).unwrap_or_default();
     let data = frame.data.iter().copied().chain(std::iter::repeat(0));
@@ -82,7 +82,7 @@ pub fn encode(frame: &CanFrame) -> Packet {
     packet
 }
 
-/// Looks at the beginning of some bytes: for a packet with A5 put in, and for one without.
+/// Inspects the leading bytes for a packet, escaped or not.
 pub fn inspect(bytes: &[u8]) -> PacketStart {
     let rest = match bytes {
         [] | [HEAD] => return PacketStart::Open,
@@ -102,10 +102,10 @@ pub fn inspect(bytes: &[u8]) -> PacketStart {
     }
 }
 
-/// The bytes do not go on as they must.
+/// Error for bytes that cannot continue the packet.
 struct NoBody;
 
-/// The body without the A5 that were put in, and the bytes that it takes with them; none if it is not whole.
+/// Returns the unescaped body and the number of bytes that it occupies; `None` if it is incomplete.
 fn unescaped(bytes: &[u8]) -> Result<Option<([u8; BODY], usize)>, NoBody> {
     let (mut body, mut len) = (ArrayVec::<u8, BODY>::new(), 0);
     for (taken, byte) in split_escapes(bytes).take(BODY) {
@@ -123,7 +123,7 @@ fn unescaped(bytes: &[u8]) -> Result<Option<([u8; BODY], usize)>, NoBody> {
     }
 }
 
-/// Each byte with the number of bytes that it takes: two where A5 was put in before it.
+/// Yields each byte with the number of bytes that it occupies: two if it was escaped.
 pub fn split_escapes(mut bytes: &[u8]) -> impl Iterator<Item = (usize, u8)> {
     std::iter::from_fn(move || {
         let (taken, byte, after) = match bytes {
@@ -163,22 +163,22 @@ fn sum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum.wrapping_add(*byte))
 }
 
-/// True for a byte that has A5 before it.
+/// True for a byte that must be escaped.
 const fn is_special(byte: u8) -> bool {
     matches!(byte, HEAD | TAIL | ESCAPE)
 }
 
-/// Reads either direction.
+/// Decodes packets of either direction.
 #[derive(Debug, Clone, Default)]
 pub struct PacketDecoder {
     buffer: Packet,
-    /// Within a run of skipped bytes, which counts once.
+    /// True within a run of skipped bytes, which counts once.
     skipping: bool,
     counts: NoiseCounts,
 }
 
 impl PacketDecoder {
-    /// Takes the next byte; gives what it completes.
+    /// Accepts the next byte; returns the packet that it completes.
     pub fn push(&mut self, byte: u8) -> Option<PacketContent> {
         if self.buffer.is_full() {
             self.skip();
@@ -201,12 +201,12 @@ impl PacketDecoder {
         }
     }
 
-    /// What was no good packet.
+    /// Errors met so far.
     pub const fn counts(&self) -> NoiseCounts {
         self.counts
     }
 
-    /// Skips one byte only: the next packet may begin inside what looked like one.
+    /// Skips only one byte: the next packet may begin inside an apparent one.
     fn skip(&mut self) {
         self.counts.resyncs += u64::from(!self.skipping);
         self.counts.skipped_bytes += 1;

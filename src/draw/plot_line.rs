@@ -1,25 +1,23 @@
-//! Plot lines with more points than pixels, as upright bars of one pixel each: they cover what such a line covers anyway, and are
-//! far cheaper than a path whose every corner is cut and smoothed. Each spike is a whole pixel wide, which the bands of
-//! `egui_plot` make thin. Knows no hand and no time.
+//! Plot lines with more points than pixels, drawn as vertical bars of one pixel each: they cover the same area as such a line,
+//! and are far cheaper than a path with every corner mitred and smoothed. Each spike is a whole pixel wide, where the bands of
+//! `egui_plot` would thin it. Independent of the hand and of time.
 
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2, Stroke, pos2};
 
-/// Points more pixels apart are joined by a slope, not by bars.
+/// Points farther apart than this, in pixels, are joined by a slope instead of bars.
 const JOINED_PX: f32 = 2.0;
-/// Upper and lower edges fade over this, in points.
+/// Width over which the upper and lower edges fade, in points.
 const FADE_PX: f32 = 1.0;
-/// Bars whose ends differ by less go on as one: nobody sees a sixteenth of a point.
+/// Bars whose ends differ by less are merged: a sixteenth of a point is invisible.
 const SAME_PX: f32 = 1.0 / 16.0;
-/// A slope is thicker upright than across, up to so many times.
+/// Maximum ratio of a slope's vertical to its perpendicular thickness.
 const STEEP_MOST_RATIO: f32 = 4.0;
 
-/// What a line covers in some columns of pixels.
+/// Area that a line covers in adjacent pixel columns.
 #[derive(Debug, Clone, Copy)]
 struct PixelBar {
-    /// From here.
     x: f32,
-    /// To here.
     end: f32,
     top: f32,
     bottom: f32,
@@ -51,11 +49,11 @@ pub fn add(mesh: &mut Mesh, stroke: Stroke, pixel: f32, points: impl Iterator<It
         if let Some(before) = far {
             slope(mesh, stroke, before, point);
         }
-        // A bar begins where the one before it ended, so that the line has no holes.
+        // A bar begins where the previous one ended, so that the line has no gaps.
         let near = before.filter(|_| far.is_none());
         let from_y = near.map_or(point.y, |before| before.y);
         bar = Some(PixelBar {
-            // Where a column of pixels is left out, this one is as wide as both.
+            // If a pixel column is skipped, this bar covers both.
             x: bar
                 .filter(|_| near.is_some())
                 .map_or(x, |bar| bar.end.min(x)),
@@ -71,7 +69,7 @@ pub fn add(mesh: &mut Mesh, stroke: Stroke, pixel: f32, points: impl Iterator<It
     }
 }
 
-/// Joins a bar to the ones before that are like it, and draws those if it is not.
+/// Merges a bar into the pending one if they are alike, else paints the pending one.
 fn finish(mesh: &mut Mesh, stroke: Stroke, wide: &mut Option<PixelBar>, bar: Option<PixelBar>) {
     let Some(bar) = bar else { return };
     match wide {
@@ -115,7 +113,7 @@ fn slope(mesh: &mut Mesh, stroke: Stroke, from: Pos2, to: Pos2) {
     strip(mesh, [from.x, to.x], [levels(from.y), levels(to.y)]);
 }
 
-/// Two columns of as many heights, joined by a band between each two.
+/// Two columns of equally many heights, joined by a band between each pair.
 fn strip(mesh: &mut Mesh, x: [f32; 2], heights: [[(f32, Color32); 4]; 2]) {
     let Ok(first) = u32::try_from(mesh.vertices.len()) else {
         return;

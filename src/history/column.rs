@@ -1,28 +1,28 @@
-//! One measured quantity with its smallest and largest values over ever longer stretches. No times.
+//! One measured quantity with its minima and maxima over a hierarchy of ever longer blocks of rows. No times.
 
 use crate::history::ring::RowRing;
 use std::ops::Range;
 
-/// Each level spans this many times what the one below spans, as a shift.
+/// Length ratio of adjacent levels, as a shift.
 const FACTOR_SHIFT: u32 = 3;
-/// Levels above the values: the topmost spans 32 768 rows, a twentieth of all that is held.
+/// Levels above the values: the topmost block spans 32 768 rows, a twentieth of the full history.
 const LEVELS: u32 = 5;
-/// The lowest level with sums: a mean looks at up to 63 values at either end by themselves.
+/// The lowest level with sums: a mean reads at most 63 single values at either end.
 const SUMS_FROM: u32 = 2;
 
-/// The extremes of a stretch.
+/// The extremes of a range of rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Extremes {
-    /// Smallest known value; above `max` if none is known.
+    /// Smallest known value; above `max` if no value is known.
     pub(crate) min: f32,
     /// Largest known value.
     pub(crate) max: f32,
-    /// True if a value within is not known.
+    /// True if any value in the range is unknown.
     pub(crate) gap: bool,
 }
 
 impl Extremes {
-    /// Of nothing at all.
+    /// The extremes of an empty range.
     pub(crate) const NONE: Self = Self {
         min: f32::INFINITY,
         max: f32::NEG_INFINITY,
@@ -35,7 +35,7 @@ impl Extremes {
         one
     }
 
-    /// Takes one value in. NaN is a gap.
+    /// Adds one value. NaN is a gap.
     pub(crate) fn take(&mut self, value: f32) {
         self.gap |= value.is_nan();
         self.min = self.min.min(value);
@@ -54,12 +54,12 @@ impl Extremes {
     }
 }
 
-/// How many values are known in a stretch, and their sum.
+/// Sum and number of the known values in a range.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct ColumnSum {
-    /// Of the known values.
+    /// Sum of the known values.
     pub(crate) sum: f64,
-    /// Known values.
+    /// Number of known values.
     pub(crate) count: u32,
 }
 
@@ -77,7 +77,7 @@ impl ColumnSum {
     }
 }
 
-/// One measured quantity, newest rows only. NaN stands for not known.
+/// One measured quantity, newest rows only. NaN means unknown.
 #[derive(Debug, Clone)]
 pub(crate) struct Column {
     values: RowRing<f32>,
@@ -86,7 +86,7 @@ pub(crate) struct Column {
 }
 
 impl Column {
-    /// Keeps this many rows.
+    /// Creates a column of at most `room` rows.
     pub(crate) fn new(room: usize) -> Self {
         let stretches = |level| (room >> (FACTOR_SHIFT * level)) + 2;
         Self {
@@ -100,7 +100,6 @@ impl Column {
         }
     }
 
-    /// Adds a row.
     pub(crate) fn push(&mut self, value: f32) {
         let row = self.values.end();
         self.values.push(value);
@@ -121,12 +120,12 @@ impl Column {
         }
     }
 
-    /// One row; `None` if not held, NaN if not known.
+    /// One row; `None` if it is no longer held, NaN if the value is unknown.
     pub(crate) fn get(&self, row: usize) -> Option<f32> {
         self.values.get(row)
     }
 
-    /// The extremes of these rows; work grows with the logarithm of their number.
+    /// Extremes of these rows; the work grows with the logarithm of their number.
     pub(crate) fn extremes(&self, rows: Range<usize>) -> Extremes {
         let mut all = Extremes::NONE;
         let mut row = rows.start;
@@ -141,7 +140,7 @@ impl Column {
         all
     }
 
-    /// The sum of these rows; work grows with the logarithm of their number.
+    /// Sum of these rows; the work grows with the logarithm of their number.
     pub(crate) fn sum(&self, rows: Range<usize>) -> ColumnSum {
         let mut all = ColumnSum::default();
         let mut row = rows.start;
@@ -161,7 +160,7 @@ impl Column {
         all
     }
 
-    /// The highest level with a stretch that starts here and ends by then.
+    /// The highest level with a block that starts at `row` and ends at or before `end`.
     fn level_at(&self, row: usize, end: usize) -> u32 {
         (1..=LEVELS)
             .take_while(|level| row.is_multiple_of(span(*level)) && row + span(*level) <= end)
@@ -179,7 +178,6 @@ impl Column {
         }
     }
 
-    /// Bytes held.
     pub(crate) fn bytes(&self) -> usize {
         self.values.bytes()
             + self.levels.iter().map(RowRing::bytes).sum::<usize>()
@@ -187,7 +185,7 @@ impl Column {
     }
 }
 
-/// Rows in one stretch of a level.
+/// Rows in one block of a level.
 const fn span(level: u32) -> usize {
     1 << (FACTOR_SHIFT * level)
 }
@@ -204,7 +202,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The pyramid says what the values say, whatever is asked and however often the ring went round.
+        /// The pyramid agrees with the values for every range, even after the ring wrapped.
         #[test]
         fn the_pyramid_equals_the_values(
             values in prop::collection::vec(prop_oneof![9 => -4000i16..4000, 1 => Just(i16::MAX)], 1..6000),

@@ -1,21 +1,19 @@
-//! The columns of pixels of one line, kept from one drawing to the next: a column that is past never changes. Knows
-//! neither rows of times nor values: whoever fills it does.
+//! Pixel columns of one line, cached between frames: past columns never change. Holds no rows; the track fills it.
 
 use std::collections::VecDeque;
 
-/// What a grid is of. Columns of another key are of no use.
+/// Identity of a cached grid. Columns with another key are discarded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct GridKey {
-    /// Which row of times.
+    /// Number of the track.
     pub(crate) track: usize,
-    /// Which line of it.
+    /// Index of the quantity within the track.
     pub(crate) quantity: usize,
-    /// Width of a column; whole, so that the grid does not creep with the rounding of a moving window.
+    /// Width of a column, in whole nanoseconds, so that rounding does not shift the grid while the window moves.
     pub(crate) step_ns: i64,
 }
 
 impl GridKey {
-    /// Width of a column, in seconds.
     #[expect(
         clippy::cast_precision_loss,
         reason = "a column is far shorter than 2^53 ns"
@@ -25,47 +23,46 @@ impl GridKey {
     }
 }
 
-/// One column that holds something.
+/// One non-empty column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Cell {
-    /// Its number: it begins at so many steps.
+    /// Column number: it begins at `number` times the step.
     pub(crate) number: i64,
     /// First row.
     pub(crate) start: usize,
     /// Time of the first row.
     pub(crate) first_s: f64,
-    /// Bits of the first value: tells two histories apart that have the same times.
+    /// Bits of the first value: distinguish two histories with the same times.
     pub(crate) first_bits: Option<u32>,
-    /// False while rows may still come.
+    /// False while more rows may arrive.
     pub(crate) finished: bool,
-    /// Points of this column.
+    /// Number of points in this column.
     pub(crate) points: usize,
 }
 
-/// A point of a line; one without a value breaks it.
+/// A point of a line; one without a value breaks the line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct GridPoint {
-    /// In seconds.
     pub(crate) time_s: f64,
-    /// NaN is a break.
+    /// NaN breaks the line.
     pub(crate) value: f32,
 }
 
-/// Columns without holes between them; empty ones are left out.
+/// Contiguous columns; empty ones are omitted.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Grid {
     key: Option<GridKey>,
-    /// Number of the column from which on all are here.
+    /// Number of the first cached column.
     from: i64,
-    /// Number of the column after the last one that is finished.
+    /// Number of the column after the last finished one.
     next: i64,
     cells: VecDeque<Cell>,
     points: VecDeque<GridPoint>,
 }
 
 impl Grid {
-    /// Makes it ready to be filled from the column [`Self::next`] on: columns before `first` go, and all of them where
-    /// `holds` denies one of the outer ones or they would leave a hole.
+    /// Prepares for filling from column [`Self::next`] on: drops columns before `first`, and all columns if `holds` rejects the
+    /// first or last one, or if a hole would remain.
     pub(crate) fn ready(&mut self, key: GridKey, first: i64, holds: impl Fn(&Cell) -> bool) {
         self.drop_open();
         if self.key == Some(key) && (self.from..=self.next).contains(&first) {
@@ -79,12 +76,12 @@ impl Grid {
         (self.key, self.from, self.next) = (Some(key), first, first);
     }
 
-    /// Number of the first column that is still to be filled.
+    /// Number of the first column that still has to be filled.
     pub(crate) const fn next(&self) -> i64 {
         self.next
     }
 
-    /// Adds a column with the points that were added since the last one.
+    /// Adds a column with the points added since the previous one.
     pub(crate) fn close(&mut self, cell: Cell) {
         if cell.finished {
             self.next = cell.number + 1;
@@ -92,22 +89,21 @@ impl Grid {
         self.cells.push_back(cell);
     }
 
-    /// Columns up to here are empty.
+    /// Marks all columns before `number` as empty.
     pub(crate) fn skip_to(&mut self, number: i64) {
         self.next = self.next.max(number);
     }
 
-    /// Adds a point.
     pub(crate) fn point(&mut self, time_s: f64, value: f32) {
         self.points.push_back(GridPoint { time_s, value });
     }
 
-    /// Points that are held.
+    /// Number of cached points.
     pub(crate) fn len(&self) -> usize {
         self.points.len()
     }
 
-    /// The points of the columns that begin before a row.
+    /// Points of the columns that begin before a row.
     pub(crate) fn points_before(&self, row: usize) -> impl Iterator<Item = GridPoint> {
         let beyond = self.cells.iter().rev().take_while(|cell| cell.start >= row);
         let beyond: usize = beyond.map(|cell| cell.points).sum();

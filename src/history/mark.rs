@@ -1,39 +1,38 @@
-//! Moments worth a line across all plots. Bounded.
+//! Events marked by a line across all plots. Bounded.
 
 use crate::hand::Moment;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Marks that are kept: one every two seconds for an hour is more than the user looks at.
+/// Maximum number of marks: one every two seconds for an hour, more than the user can read.
 pub const MARKS_MAX: usize = 2048;
-/// Characters of a note: one line of the window.
+/// Maximum length of a note in characters: one line of the window.
 pub const NOTE_MAX: usize = 80;
 
-/// What happened.
+/// Kind of event.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum MarkKind {
-    /// The hand was armed.
     Armed,
     /// Stop was pressed.
     Stop,
     /// Stop was pressed, and could not be sent.
     StopNotSent,
-    /// Feedback showed that the hand rests.
+    /// Feedback confirmed that the hand is at rest.
     HoldConfirmed,
     /// A drive reported a fault: joint and fault by their stable names, `index: stall`.
     Fault(Arc<str>),
-    /// The hand fell silent.
+    /// The hand stopped answering.
     LinkLost,
     /// The hand answers again.
     Reconnected,
-    /// A gesture was started, by number.
+    /// A gesture was started; its number.
     Gesture(u8),
-    /// What the user noted, at most [`NOTE_MAX`] characters on one line.
+    /// A note by the user, at most [`NOTE_MAX`] characters on one line.
     Note(Arc<str>),
 }
 
 impl MarkKind {
-    /// A note of these words, cut to one line of [`NOTE_MAX`] characters; `None` if nothing is left.
+    /// A note with this text, cut to one line of [`NOTE_MAX`] characters; `None` if nothing is left.
     pub fn note(words: &str) -> Option<Self> {
         let line: String = words
             .trim()
@@ -45,7 +44,7 @@ impl MarkKind {
         (!line.is_empty()).then(|| Self::Note(line.into()))
     }
 
-    /// Stable lower-case name for files; a note and a fault are followed by their words, a gesture by its number.
+    /// Stable lower-case name for files; a note and a fault are followed by their text, a gesture by its number.
     pub fn words(&self) -> String {
         match self {
             Self::Armed => "armed".into(),
@@ -61,7 +60,7 @@ impl MarkKind {
     }
 }
 
-/// One moment worth a line.
+/// One event on the time axis.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mark {
     pub at: Moment,
@@ -77,7 +76,7 @@ impl Marks {
         if self.0.len() >= MARKS_MAX {
             self.0.pop_front();
         }
-        // A note stands where its key was pressed, which is a while ago.
+        // A note is placed at the moment its key was pressed, which may precede other marks.
         let place = self.0.partition_point(|before| before.at <= mark.at);
         self.0.insert(place, mark);
     }

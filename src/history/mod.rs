@@ -1,4 +1,4 @@
-//! What was measured over the last minutes: cheap to add to, cheap to draw from. Draws nothing.
+//! Measurements of the last minutes: cheap to append, cheap to draw from. Draws nothing.
 
 pub(crate) mod column;
 pub(crate) mod grid;

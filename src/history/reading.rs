@@ -1,23 +1,21 @@
-//! What is read off a line: one value, or what many come to. Computed from what was measured, never from what is drawn.
+//! Readouts of a line: a single value or a summary. Computed from the measurements, never from the drawn points.
 
 /// One measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
-    /// When it was received, in seconds.
+    /// Time of receipt, in seconds.
     pub time_s: f64,
-    /// In the unit of the line.
+    /// In the line's unit.
     pub value: f32,
 }
 
-/// What the measurements of a stretch of time come to.
+/// Summary of the measurements in a time range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summary {
-    /// Measurements with a known value, at least 1.
+    /// Number of measurements with a known value, at least 1.
     pub count: u32,
-    /// Smallest.
     pub min: f32,
-    /// Largest.
     pub max: f32,
-    /// Sum by count; each measurement counts once, however long it stood.
+    /// Sum divided by count; each measurement counts once, regardless of its duration.
     pub mean: f64,
 }

@@ -1,9 +1,9 @@
-//! A ring that knows each entry by its running number. No times, no meaning.
+//! A ring buffer whose entries are addressed by a running number.
 
-/// Entries in one piece of memory. Pieces are added and never moved, so that no frame pays for a copy of an hour.
+/// Entries per memory chunk. Chunks are added and never moved, so that no frame pays for copying an hour of data.
 const PIECE: usize = 4096;
 
-/// The newest `room` entries of an endless row. Numbers run from 0 and never start again.
+/// The newest `room` entries of an endless sequence. Numbers start at 0 and are never reused.
 #[derive(Debug, Clone)]
 pub(crate) struct RowRing<T> {
     room: usize,
@@ -12,7 +12,7 @@ pub(crate) struct RowRing<T> {
 }
 
 impl<T: Copy> RowRing<T> {
-    /// Keeps at most this many, at least one. Takes memory only as it fills.
+    /// Holds at most `room` entries, at least one. Allocates only as it fills.
     pub(crate) const fn new(room: usize) -> Self {
         let room = if room == 0 { 1 } else { room };
         Self {
@@ -22,12 +22,12 @@ impl<T: Copy> RowRing<T> {
         }
     }
 
-    /// The number after the newest.
+    /// Number after that of the newest entry.
     pub(crate) const fn end(&self) -> usize {
         self.end
     }
 
-    /// The number of the oldest that is still held.
+    /// Number of the oldest entry that is still held.
     pub(crate) const fn start(&self) -> usize {
         self.end.saturating_sub(self.room)
     }
@@ -41,18 +41,18 @@ impl<T: Copy> RowRing<T> {
         self.kept.get(slot / PIECE)?.get(slot % PIECE).copied()
     }
 
-    /// The newest.
+    /// The newest entry.
     pub(crate) fn last(&self) -> Option<T> {
         self.get(self.end.checked_sub(1)?)
     }
 
-    /// The newest, to change it.
+    /// The newest entry, mutable.
     pub(crate) fn last_mut(&mut self) -> Option<&mut T> {
         let slot = self.slot(self.end.checked_sub(1)?);
         self.kept.get_mut(slot / PIECE)?.get_mut(slot % PIECE)
     }
 
-    /// Adds one; the oldest goes if there is no room.
+    /// Adds an entry; drops the oldest if the ring is full.
     pub(crate) fn push(&mut self, value: T) {
         let slot = self.slot(self.end);
         if slot / PIECE == self.kept.len() {
@@ -67,13 +67,13 @@ impl<T: Copy> RowRing<T> {
         self.end += 1;
     }
 
-    /// Bytes held.
+    /// Memory held, in bytes.
     pub(crate) fn bytes(&self) -> usize {
         let entries: usize = self.kept.iter().map(Vec::capacity).sum();
         entries * size_of::<T>()
     }
 
-    /// An empty piece that begins at this slot. The first one grows, as short rows need little.
+    /// An empty chunk that begins at this slot. The first one grows on demand, as short sequences need little memory.
     fn piece(&self, slot: usize) -> Vec<T> {
         if slot == 0 {
             return Vec::new();
@@ -81,7 +81,7 @@ impl<T: Copy> RowRing<T> {
         Vec::with_capacity(PIECE.min(self.room.saturating_sub(slot)))
     }
 
-    /// Where an entry lies. A division is slow, and for the first hour there is none.
+    /// Slot of an entry. Division is slow, and not needed until the ring wraps, after the first hour.
     const fn slot(&self, number: usize) -> usize {
         if number < self.room {
             number

@@ -1,4 +1,4 @@
-//! The whole history of one hand: which reading goes to which line. How lines are kept is told in the siblings.
+//! The whole history of one hand: assigns readings to lines. The sibling modules store the lines.
 
 use crate::hand::column::{channel_column, joint_column, tip_column};
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Timed, Touch};
@@ -12,37 +12,37 @@ use crate::record::WrittenMemory;
 use crate::record::file::overview::{OverviewRow, joint_line, tip_line};
 use std::collections::BTreeSet;
 
-/// The longest window of the plots.
+/// The longest time window of the plots.
 pub const HISTORY_SECONDS: u32 = 3600;
-/// Rows kept of each group: an hour at 200 Hz, the most a serial line carries; a faster link holds less time. About
+/// Maximum rows of each group: an hour at 200 Hz, the maximum rate of a serial line; a faster link holds less time. Takes about
 /// 80 MB with an hour at 100 Hz and fingertips at 30 Hz, and 230 MB when all are full.
 pub const HISTORY_ROWS: usize = 200 * HISTORY_SECONDS as usize;
-/// Rows kept of the fingertips' channels: ten minutes at 30 Hz, in about 6 MB for all five fingertips.
+/// Maximum rows of the fingertips' channels: ten minutes at 30 Hz, in about 6 MB for all five fingertips.
 pub const CHANNEL_ROWS: usize = 30 * 600;
-/// Channels of a fingertip.
+/// Number of channels of a fingertip.
 const CHANNELS: usize = 8;
-/// A longer silence than this breaks measured lines.
+/// Gap between samples after which measured lines break.
 const GAP_AFTER_S: f64 = 0.5;
-/// The same for targets, which are read about twice a second.
+/// Gap after which lines of targets break; they are read about twice a second.
 const TARGET_GAP_AFTER_S: f64 = 3.0;
 
-/// Rows of times: one for each quantity of the joints, one for both of each fingertip, one for the channels of each.
+/// Number of tracks: one for each quantity of the joints, one for both forces of each fingertip, one for the channels of each.
 const TRACKS: usize = FIRST_CHANNELS + Finger::ALL.len();
 const FIRST_TIP: usize = Quantity::ALL.len();
 const FIRST_CHANNELS: usize = FIRST_TIP + Finger::ALL.len();
 
-/// One line.
+/// One line of a plot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Series {
     Joint(Quantity, Dof),
-    /// Of a fingertip.
+    /// Force of a fingertip.
     Tip(Touch, Finger),
-    /// Counts of one of the eight channels of a fingertip, from 0; kept for [`CHANNEL_ROWS`] only.
+    /// Counts of one of the eight channels of a fingertip, from 0; limited to [`CHANNEL_ROWS`].
     Channel(u8, Finger),
 }
 
 impl Series {
-    /// The head of its column in a table: what, of which part, unit. Stable.
+    /// Header of its column in a table: quantity, part, unit. Stable.
     pub fn column_name(self) -> String {
         match self {
             Self::Joint(quantity, dof) => joint_column(quantity, dof),
@@ -51,7 +51,7 @@ impl Series {
         }
     }
 
-    /// Which row of times it is on.
+    /// Index of its track.
     const fn track(self) -> usize {
         match self {
             Self::Joint(quantity, _) => quantity as usize,
@@ -60,7 +60,7 @@ impl Series {
         }
     }
 
-    /// Its place there.
+    /// Index within its track.
     const fn place(self) -> usize {
         match self {
             Self::Joint(_, dof) => dof.index(),
@@ -70,10 +70,10 @@ impl Series {
     }
 }
 
-/// What was measured over the last minutes, by the time it was received.
+/// Measurements of the last minutes, by time of receipt.
 #[derive(Debug, Clone)]
 pub struct History {
-    /// As [`Series::track`] counts them.
+    /// Indexed by [`Series::track`].
     tracks: Vec<HistoryTrack>,
     /// The newest targets, as sent or as read back.
     targets: PerDof<Option<f32>>,
@@ -88,7 +88,7 @@ impl Default for History {
     }
 }
 
-/// A row of times without a row.
+/// Creates the empty track with this index.
 fn empty_track(number: usize) -> HistoryTrack {
     let of_targets = Quantity::TargetAngle as usize;
     let gap_after_s = if number == of_targets {
@@ -105,7 +105,6 @@ fn empty_track(number: usize) -> HistoryTrack {
 }
 
 impl History {
-    /// Empty.
     pub fn new() -> Self {
         Self {
             tracks: (0..TRACKS).map(empty_track).collect(),
@@ -116,7 +115,7 @@ impl History {
         }
     }
 
-    /// Takes in what is new in a sample. Values that are not documented are not known.
+    /// Adds the fresh groups of a sample. Undocumented values are stored as unknown.
     pub fn push(&mut self, sample: &HandSample, fresh: Groups) {
         for quantity in Quantity::ALL {
             let Some(six) = quantity
@@ -152,7 +151,7 @@ impl History {
         }
     }
 
-    /// A drive is told by the newest of its status and its faults.
+    /// Adds the drives' state, stamped with the newer of status and faults.
     fn push_status(&mut self, sample: &HandSample, fresh: Groups) {
         let status = sample.status.filter(|_| fresh.contains(Group::Status));
         let faults = sample.faults.filter(|_| fresh.contains(Group::Faults));
@@ -174,7 +173,7 @@ impl History {
         }
     }
 
-    /// What the hand holds is a check: what was read before the newest write says nothing of it.
+    /// Adds targets read from the hand. Targets requested before the newest write are outdated and ignored.
     fn read_back(&mut self, targets: &Timed<PerDof<Option<f32>>>) {
         if self.sent_at.is_none_or(|sent| targets.asked > sent) {
             self.targets = targets.value;
@@ -186,7 +185,7 @@ impl History {
         self.add(Quantity::TargetAngle as usize, at, targets.as_array());
     }
 
-    /// Takes a write that left for the hand: targets step at the moment they were sent.
+    /// Adds a write that left for the hand: targets step at the moment they were sent.
     pub fn sent(&mut self, at: Moment, write: &WrittenMemory) {
         let before = self.targets;
         for (dof, angle) in write.angle_targets().iter() {
@@ -201,7 +200,7 @@ impl History {
         }
     }
 
-    /// Takes in one second of a recording of which only least and greatest are known: both stand in it, one after the other.
+    /// Adds one second of a recording's overview: the minima at its start, the maxima half a second later.
     pub fn overview(&mut self, row: &OverviewRow) {
         let at = |part: u64| Moment::from_micros(u64::from(row.second) * 1_000_000 + part);
         let known = |value: f32| Some(value).filter(|value| !value.is_nan());
@@ -222,7 +221,7 @@ impl History {
         }
     }
 
-    /// The link is lost: all lines break here.
+    /// Breaks all lines, because the link was lost.
     pub fn gap(&mut self, at: Moment) {
         (self.targets, self.sent_at) = (PerDof::splat(None), None);
         self.status.gap();
@@ -231,28 +230,27 @@ impl History {
         }
     }
 
-    /// Notes a moment worth a line across all plots.
+    /// Adds a mark.
     pub fn mark(&mut self, at: Moment, kind: MarkKind) {
         self.marks.push(Mark { at, kind });
     }
 
-    /// Takes a mark away again.
     pub fn remove_mark(&mut self, mark: &Mark) {
         self.marks.remove(mark);
     }
 
-    /// The marks of a stretch of time, oldest first.
+    /// The marks in a time range, oldest first.
     pub fn marks(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &Mark> {
         self.marks.between(from_s, to_s)
     }
 
-    /// What a drive said of itself in a stretch of time, oldest first. Of a recording only what was taken in reading by reading is known.
+    /// Status and faults of a drive in a time range, oldest first. Seconds added by [`Self::overview`] have none.
     pub fn status(&self, dof: Dof, from_s: f64, to_s: f64) -> impl Iterator<Item = &StatusRun> {
         self.status.between(dof, from_s, to_s)
     }
 
-    /// Fills `out` with one line over `columns` columns of pixels: at most about two points a column, and no
-    /// extreme is lost. The work grows with the columns, not with the history.
+    /// Fills `out` with one line over `columns` columns of pixels: at most about two points per column, with all extremes
+    /// preserved. The work grows with the columns, not with the history.
     pub fn trace(&self, series: Series, from_s: f64, to_s: f64, columns: usize, out: &mut Trace) {
         let slice = Slice {
             from_s,
@@ -265,19 +263,18 @@ impl History {
         }
     }
 
-    /// The measurement nearest to a time where a line is drawn; `None` in a gap and before the first. The newest one holds on until
-    /// it is old.
+    /// The measurement nearest to a time; `None` in a gap and before the first. The newest one stays valid until the gap limit.
     pub fn reading(&self, series: Series, at_s: f64) -> Option<Reading> {
         self.track(series)?.reading(series.place(), at_s)
     }
 
-    /// What all measurements of a stretch of time come to, both ends included; `None` if there is none. The work grows
-    /// with the logarithm of their number.
+    /// Summary of all measurements in a time range, both ends included; `None` if there are none. The work grows with the
+    /// logarithm of their number.
     pub fn summary(&self, series: Series, from_s: f64, to_s: f64) -> Option<Summary> {
         self.track(series)?.summary(series.place(), from_s, to_s)
     }
 
-    /// A copy of all measurements of some lines over a stretch of time, with the marks there.
+    /// Copies all measurements of some lines in a time range, with the marks there.
     pub fn table(&self, series: &[Series], from_s: f64, to_s: f64) -> Table {
         let numbers: BTreeSet<usize> = series.iter().map(|one| one.track()).collect();
         let groups = numbers.into_iter().filter_map(|number| {
@@ -305,7 +302,8 @@ impl History {
         channels.map(HistoryTrack::bytes).sum()
     }
 
-    /// A copy of a stretch of time that stays as it is: all measurements but the channels, and marks; not what the drives said. The work grows with their number.
+    /// An independent copy of a time range: all measurements except the channels, and the marks; no drive status. The work grows
+    /// with their number.
     pub fn slice(&self, from_s: f64, to_s: f64) -> Self {
         let tracks = self.tracks.iter().take(FIRST_CHANNELS);
         let tracks = tracks.map(|track| track.slice(from_s, to_s));
@@ -324,7 +322,7 @@ impl History {
         }
     }
 
-    /// Measurements of some lines over a stretch of time, without copying them.
+    /// Number of measurements of some lines in a time range; copies nothing.
     pub fn rows(&self, series: &[Series], from_s: f64, to_s: f64) -> usize {
         let numbers: BTreeSet<usize> = series.iter().map(|one| one.track()).collect();
         let tracks = numbers
@@ -335,7 +333,7 @@ impl History {
             .sum()
     }
 
-    /// Time of the oldest measurement that is still held, in seconds.
+    /// Time of the oldest held measurement, in seconds.
     pub fn first_secs(&self) -> Option<f64> {
         self.tracks
             .iter()

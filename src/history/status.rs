@@ -1,19 +1,19 @@
-//! What each drive said of itself over time: one entry for each stretch in which it said the same. Bounded.
+//! Status and faults of each drive over time: one entry for each period without a change. Bounded.
 
 use crate::hand::{Dof, Faults, PerDof, Status};
 use std::collections::VecDeque;
 
-/// Stretches kept of each joint: one a second for half an hour. The oldest go first.
+/// Maximum number of runs per joint: one a second for half an hour. The oldest are dropped first.
 const RUNS_MAX: usize = 2048;
-/// After a longer silence nobody knows what a drive would have said.
+/// After a longer silence the state is unknown.
 const SILENCE_S: f64 = 3.0;
 
-/// A stretch of time in which a drive said the same.
+/// A period in which a drive's status and faults did not change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StatusRun {
-    /// When it said so first, in seconds.
+    /// Time of the first reading, in seconds.
     pub from_s: f64,
-    /// Until when it is known to have said so.
+    /// Time until which the state is known to have lasted, in seconds.
     pub until_s: f64,
     /// `None` where it was not read.
     pub status: Option<Status>,
@@ -21,11 +21,11 @@ pub struct StatusRun {
     pub faults: Option<Faults>,
 }
 
-/// The newest stretches of each joint, oldest first.
+/// The newest runs of each joint, oldest first.
 #[derive(Debug, Clone)]
 pub(crate) struct StatusRuns {
     runs: PerDof<VecDeque<StatusRun>>,
-    /// False after a gap: the next reading begins a stretch.
+    /// False after a gap: the next reading starts a new run.
     goes_on: bool,
 }
 
@@ -37,7 +37,7 @@ impl StatusRuns {
         }
     }
 
-    /// Takes in what the drives say now.
+    /// Adds the drives' current state.
     pub(crate) fn push(
         &mut self,
         at_s: f64,
@@ -65,12 +65,12 @@ impl StatusRuns {
         self.goes_on = true;
     }
 
-    /// The link is lost.
+    /// Ends the current runs, because the link was lost.
     pub(crate) const fn gap(&mut self) {
         self.goes_on = false;
     }
 
-    /// The stretches of a joint that reach into this time, oldest first.
+    /// Runs of a joint that overlap a time range, oldest first.
     pub(crate) fn between(
         &self,
         dof: Dof,

@@ -1,28 +1,28 @@
-//! Measurements as a table of text: one line for each moment at which something was received. Writes no file.
+//! Measurements as CSV text: one line for each moment at which something was received. Writes no file.
 
 use crate::hand::column::text_cell;
 use std::fmt::Write as _;
 
-/// Lines that were read together.
+/// Columns with common times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableGroup {
-    /// Times of the rows, in seconds, never falling.
+    /// Times of the rows, in seconds, never decreasing.
     pub times: Vec<f64>,
-    /// Head and values of each column; NaN = not known.
+    /// Header and values of each column; NaN = unknown.
     pub columns: Vec<(String, Vec<f32>)>,
 }
 
-/// A copy of measurements, free of the history it came from.
+/// A copy of measurements, independent of the history.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     groups: Vec<TableGroup>,
     marks: Vec<(f64, String)>,
 }
 
-/// What was received or happened at one moment.
+/// Measurements and event of one moment.
 struct TableLine<'a> {
     time_s: f64,
-    /// The row of each group, if it has one at this moment.
+    /// Row of each group; `None` if it has none at this moment.
     rows: Vec<Option<usize>>,
     event: Option<&'a str>,
 }
@@ -32,7 +32,7 @@ impl Table {
         Self { groups, marks }
     }
 
-    /// The same with more columns, and more that happened.
+    /// Adds columns and marks.
     pub fn with(mut self, group: TableGroup, marks: Vec<(f64, String)>) -> Self {
         self.groups.push(group);
         self.marks.extend(marks);
@@ -40,14 +40,13 @@ impl Table {
         self
     }
 
-    /// Lines of the text after its head. The work grows with the measurements.
+    /// Number of text lines after the header. The work grows with the measurements.
     pub fn rows(&self) -> usize {
         self.lines().count()
     }
 
-    /// Comma-separated values: `time_s` since the start of the program, then the columns with their units, then what
-    /// happened. A value that was not measured at that moment or is not known is an empty cell; a line of empty cells
-    /// is a break.
+    /// Comma-separated values: `time_s` since the start of the program, then the columns with their units, then the event. An
+    /// unmeasured or unknown value is an empty cell; a line of empty cells is a break.
     pub fn csv(&self) -> String {
         let mut text = String::from("time_s");
         for (name, _) in self.groups.iter().flat_map(|group| &group.columns) {
@@ -74,7 +73,7 @@ impl Table {
         text
     }
 
-    /// One line for each moment, in the order of time.
+    /// One line for each moment, ordered by time.
     fn lines(&self) -> impl Iterator<Item = TableLine<'_>> {
         let mut next = vec![0; self.groups.len()];
         let mut marks = self.marks.iter().peekable();

@@ -1,23 +1,23 @@
-//! Lines that are ready to draw. How they are made is told elsewhere.
+//! Lines that are ready to draw. [`crate::history::track`] makes them.
 
 use crate::history::grid::Grid;
 
-/// The lines of one quantity. Kept by the view and filled again each frame, so that nothing is allocated; one that is
-/// kept for the same series is filled faster, as only its newest columns of pixels are new.
+/// The lines of one quantity. The view reuses it each frame, so that nothing is allocated; reuse for the same series is faster,
+/// as only the newest pixel columns are computed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
-    /// Unbroken lines of (seconds, value), oldest first. None is empty.
+    /// Unbroken lines of (seconds, value), oldest first, never empty.
     pub segments: Vec<Vec<[f64; 2]>>,
-    /// True if each point stands for several measurements: smallest and largest of a column of pixels.
+    /// True if points are decimated: the minimum and maximum of each pixel column.
     pub decimated: bool,
-    /// Columns of pixels that are kept for the next time.
+    /// Pixel columns cached for the next frame.
     pub(crate) grid: Grid,
     spare: Vec<Vec<[f64; 2]>>,
     open: bool,
 }
 
 impl Trace {
-    /// Empties it and keeps its memory.
+    /// Clears the lines, but retains their memory.
     pub(crate) fn begin(&mut self) {
         for mut segment in self.segments.drain(..) {
             segment.clear();
@@ -27,7 +27,7 @@ impl Trace {
         self.open = false;
     }
 
-    /// Adds a point to the line that is being drawn.
+    /// Adds a point to the current line.
     pub(crate) fn point(&mut self, time_s: f64, value: f32) {
         if !self.open {
             self.segments.push(self.spare.pop().unwrap_or_default());
@@ -38,12 +38,12 @@ impl Trace {
         }
     }
 
-    /// Ends the line that is being drawn.
+    /// Ends the current line.
     pub(crate) const fn end(&mut self) {
         self.open = false;
     }
 
-    /// Lets the last value stand until a time.
+    /// Extends the last value to `time_s`.
     pub fn hold_until(&mut self, time_s: f64) {
         let last = self.segments.last_mut();
         if let Some((segment, [last_s, value])) =

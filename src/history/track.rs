@@ -1,4 +1,4 @@
-//! Quantities that are read together, over one row of times, and how they become lines. Knows no hand.
+//! Quantities with common times, and their conversion to lines. Independent of the hand.
 
 use crate::history::column::{Column, Extremes};
 use crate::history::grid::{Cell, Grid, GridKey};
@@ -7,26 +7,27 @@ use crate::history::ring::RowRing;
 use crate::history::trace::Trace;
 use std::ops::Range;
 
-/// Rows that one column may look at one by one around gaps; a wider one with gaps stands between two breaks.
+/// Maximum number of rows of a pixel column that are read one by one around gaps; a wider one with gaps is drawn between two
+/// breaks.
 const GAP_ROWS_MAX: usize = 1024;
-/// Columns begin at a whole stretch of the pyramid of which this many fit in: a column then looks at a handful of
-/// stretches, however many rows it is wide, and begins less than half a pixel too early.
+/// Columns begin at blocks of the pyramid of which this many fit into one column: a column then reads a handful of blocks,
+/// however wide it is, and begins less than half a pixel early.
 const STRETCHES_A_COLUMN: usize = 2;
-/// Each stretch of the pyramid is this many times as long as the next shorter one.
+/// Length ratio of adjacent levels of the pyramid.
 const STRETCH_FACTOR: usize = 8;
 
-/// What is drawn: a stretch of time over some columns of pixels.
+/// Drawn time range and its number of pixel columns.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Slice {
-    /// From here, in seconds.
+    /// Start, in seconds.
     pub(crate) from_s: f64,
-    /// To here.
+    /// End, in seconds.
     pub(crate) to_s: f64,
-    /// Columns of pixels, at least 1.
+    /// Number of pixel columns, at least 1.
     pub(crate) columns: u32,
 }
 
-/// A column of the grid by its number, and the rows at which its two neighbours' times begin.
+/// A grid column by number, with the first rows of the previous column and of this one.
 #[derive(Debug, Clone, Copy)]
 struct Walk {
     number: i64,
@@ -44,7 +45,7 @@ pub(crate) struct HistoryTrack {
 }
 
 impl HistoryTrack {
-    /// So many quantities and rows; a longer silence than `gap_after_s` breaks the lines. `number` tells tracks apart.
+    /// Creates a track; a silence longer than `gap_after_s` breaks its lines. `number` identifies the track.
     pub(crate) fn new(number: usize, quantities: usize, rows: usize, gap_after_s: f64) -> Self {
         Self {
             number,
@@ -54,7 +55,7 @@ impl HistoryTrack {
         }
     }
 
-    /// Adds one row; missing values are not known. Time never runs back.
+    /// Adds one row; missing values are unknown. An earlier time is raised to that of the last row.
     pub(crate) fn push(&mut self, at_s: f64, values: impl IntoIterator<Item = Option<f32>>) {
         if let Some(last) = self
             .times
@@ -66,7 +67,7 @@ impl HistoryTrack {
         self.add(at_s, values);
     }
 
-    /// Breaks the lines here.
+    /// Breaks the lines at `at_s`.
     pub(crate) fn gap(&mut self, at_s: f64) {
         if self.times.end() > 0 {
             self.add(at_s, std::iter::empty());
@@ -93,7 +94,7 @@ impl HistoryTrack {
         self.times.last()
     }
 
-    /// Bytes held.
+    /// Memory held, in bytes.
     pub(crate) fn bytes(&self) -> usize {
         self.times.bytes() + self.columns.iter().map(Column::bytes).sum::<usize>()
     }
@@ -121,7 +122,7 @@ impl HistoryTrack {
         out.end();
     }
 
-    /// The row nearest to a time between two known ones, or the newest row while it is not old; `None` in a gap.
+    /// The row nearest to a time between two known ones, or the newest row until the gap limit; `None` in a gap.
     pub(crate) fn reading(&self, quantity: usize, at_s: f64) -> Option<Reading> {
         let column = self.columns.get(quantity)?;
         let known = |row: usize| {
@@ -142,7 +143,7 @@ impl HistoryTrack {
         Some(if is_nearer { before } else { next })
     }
 
-    /// What the known values of a stretch of time come to; both ends belong to it.
+    /// Summary of the known values in a time range, both ends included.
     pub(crate) fn summary(&self, quantity: usize, from_s: f64, to_s: f64) -> Option<Summary> {
         let column = self.columns.get(quantity)?;
         let rows = self.rows_within(from_s, to_s);
@@ -155,23 +156,22 @@ impl HistoryTrack {
         })
     }
 
-    /// The rows of a stretch of time; both ends belong to it.
+    /// Rows in a time range, both ends included.
     pub(crate) fn rows_within(&self, from_s: f64, to_s: f64) -> Range<usize> {
         let from = self.row_at(from_s, self.whole());
         from..self.row_at(to_s.next_up(), self.whole()).max(from)
     }
 
-    /// Time of a row.
     pub(crate) fn time_s(&self, row: usize) -> Option<f64> {
         self.times.get(row)
     }
 
-    /// One value; `None` if it is not held, NaN if it is not known.
+    /// One value; `None` if it is no longer held, NaN if it is unknown.
     pub(crate) fn value(&self, quantity: usize, row: usize) -> Option<f32> {
         self.columns.get(quantity)?.get(row)
     }
 
-    /// A copy of the rows of a stretch of time, in as much memory as they need.
+    /// Copies the rows of a time range, into just enough memory.
     pub(crate) fn slice(&self, from_s: f64, to_s: f64) -> Self {
         let rows = self.rows_within(from_s, to_s);
         let mut copy = Self::new(
@@ -215,8 +215,7 @@ impl HistoryTrack {
         }
     }
 
-    /// Columns stand on a grid of time that does not move with the window, so that a scrolling line does not flicker
-    /// and a column that is past never changes.
+    /// Columns lie on a fixed time grid, so that a scrolling line does not flicker and past columns never change.
     fn each_column(&self, quantity: usize, rows: Range<usize>, slice: Slice, out: &mut Trace) {
         let Some(column) = self.columns.get(quantity) else {
             return;
@@ -244,7 +243,7 @@ impl HistoryTrack {
         out.grid = grid;
     }
 
-    /// The column of a row, or the next one of which all rows are certainly held.
+    /// Number of a row's column, or of the next one whose rows are certainly all held.
     fn first_number(&self, step_s: f64, row: usize) -> i64 {
         let oldest = self.times.start();
         let number = self.time_s(row).map_or(0, |at_s| number_at(at_s, step_s));
@@ -291,11 +290,11 @@ impl HistoryTrack {
         }
     }
 
-    /// The next column.
+    /// Steps to the next column.
     fn walk_on(&self, walk: Walk, step_s: f64) -> Walk {
         let number = walk.number + 1;
         let (from_s, end) = (begin_s(number, step_s), self.times.end());
-        // It is probably as wide as the last one: looks near first.
+        // It is probably as wide as the last one: searches nearby first.
         let near = (walk.here + 2 * (walk.here - walk.before) + 2).min(end);
         let here = match self.row_at(from_s, walk.here..near) {
             row if row < near => row,
@@ -308,7 +307,7 @@ impl HistoryTrack {
         }
     }
 
-    /// The first row of a column: one at which a stretch of the pyramid begins.
+    /// First row of a column, aligned to a block of the pyramid.
     const fn border(&self, walk: Walk) -> usize {
         if walk.here == self.times.end() {
             return walk.here;
@@ -329,7 +328,7 @@ impl HistoryTrack {
         }
     }
 
-    /// The unbroken runs of rows between gaps, each by its own extremes.
+    /// Draws each unbroken run of rows between gaps by its own extremes.
     fn runs(&self, column: &Column, rows: Range<usize>, grid: &mut Grid) {
         let mut begin = rows.start;
         let is_gap = |row: &usize| column.get(*row).is_none_or(f32::is_nan);
@@ -343,7 +342,7 @@ impl HistoryTrack {
         }
     }
 
-    /// Smallest and largest value of some rows, in the order that follows the line.
+    /// Adds the minimum and maximum of some rows, in the order that follows the line.
     fn pair(&self, column: &Column, rows: Range<usize>, extremes: Extremes, grid: &mut Grid) {
         let Some(last) = rows.end.checked_sub(1).filter(|_| !extremes.is_empty()) else {
             return;
@@ -367,8 +366,8 @@ impl HistoryTrack {
     }
 }
 
-/// A line of at most so many points in which no extreme is lost, made as all plots make theirs. The points are in the order
-/// of time.
+/// Decimates a line to at most `most` points, with all extremes preserved, by the method of the plots. The points are ordered by
+/// time.
 pub fn decimated(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     let (Some([from_s, _]), Some([to_s, _])) = (points.first(), points.last()) else {
         return Vec::new();
@@ -384,7 +383,7 @@ pub fn decimated(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
         )]
         track.push(*at_s, [Some(*value as f32)]);
     }
-    // The grid does not begin with the line: it may take one column more at either end.
+    // The grid is not aligned with the line: it may need one more column at either end.
     let columns = u32::try_from(most / 2)
         .unwrap_or(u32::MAX)
         .saturating_sub(2);
@@ -408,7 +407,7 @@ fn step_ns(slice: Slice) -> i64 {
     (step_s * 1e9).round().clamp(1.0, 3.6e12) as i64
 }
 
-/// The number of the column of a time.
+/// Number of the column that contains a time.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "times are of one run of the program, and a float is cut to the ends of the whole numbers"
@@ -417,7 +416,7 @@ fn number_at(at_s: f64, step_s: f64) -> i64 {
     (at_s / step_s).floor() as i64
 }
 
-/// When a column begins, in seconds.
+/// Time at which a column begins, in seconds.
 #[expect(
     clippy::cast_precision_loss,
     reason = "a day holds far fewer than 2^53 columns"
@@ -426,7 +425,7 @@ fn begin_s(number: i64, step_s: f64) -> f64 {
     number as f64 * step_s
 }
 
-/// Rows of the longest stretch of the pyramid of which enough fit into a column of so many rows.
+/// Rows of the longest block of the pyramid of which enough fit into a column of `width` rows.
 const fn whole_rows(width: usize) -> usize {
     let mut rows = 1;
     while rows * STRETCH_FACTOR * STRETCHES_A_COLUMN <= width {

@@ -7,7 +7,7 @@ use crate::model::{ModelLink, Shape, driven_joint, links, side_name, touch_name}
 use glam::{EulerRot, Quat};
 use std::fmt::Write as _;
 
-/// What all joints have: a coupling or a drive that gives little. No figure of these is published.
+/// Defaults of all joints: a stiff coupling or drive. No such figures are published.
 const DEFAULTS: &str = "  <default>
     <geom density=\"1500\" rgba=\"0.72 0.74 0.77 1\" condim=\"4\" friction=\"1 0.02 0.0005\"/>
     <joint damping=\"0.02\" armature=\"0.002\"/>
@@ -16,7 +16,7 @@ const DEFAULTS: &str = "  <default>
   </default>
 ";
 
-/// The whole file.
+/// Writes the whole file.
 pub fn mjcf(side: Side) -> String {
     let all = links(side);
     let mut text = format!(
@@ -56,7 +56,7 @@ pub fn mjcf(side: Side) -> String {
     text + "  </sensor>\n</mujoco>\n"
 }
 
-/// A body and all that hangs on it.
+/// Writes a body and all its descendants.
 fn body(text: &mut String, side: Side, all: &[ModelLink], (segment, depth): (Segment, usize)) {
     let Some(link) = all.iter().find(|link| link.segment == segment) else {
         return;
@@ -125,7 +125,7 @@ fn body(text: &mut String, side: Side, all: &[ModelLink], (segment, depth): (Seg
     let _ = writeln!(text, "{space}</body>");
 }
 
-/// The shapes are simple: those of one finger, and the palm and what moves on it, overlap where the true ones do not.
+/// Collision exclusions: the simplified shapes of one finger, and of the palm and its joints, overlap where the real ones do not.
 fn excludes(all: &[ModelLink]) -> String {
     let of = |segment: Segment| segment.finger();
     let mut text = String::from("  <contact>\n");

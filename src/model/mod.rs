@@ -1,5 +1,5 @@
-//! The hand as a model for others' programs: links, joints, couplings and limits by the numbers that draw the hand
-//! ([`crate::hand::kinematics`]), with simple shapes. No mass of a segment is published, so none is stated. Pure.
+//! The hand as a model for other programs: links, joints, couplings and limits from the figures that also draw the hand
+//! ([`crate::hand::kinematics`]), with simple shapes. Segment masses are not published, so none are given. Pure.
 
 pub mod mjcf;
 pub mod table;
@@ -15,45 +15,43 @@ use Segment::{
     Thumb4,
 };
 
-/// A rod with round ends: from, to, and its radius, mm, in the frame of its segment.
+/// A rod with round ends, in mm, in the frame of its segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rod {
-    /// Middles of its ends.
+    /// Centres of its ends.
     pub ends: [[f32; 3]; 2],
     pub radius: f32,
 }
 
-/// A box: its middle and its edges, mm, in the frame of its segment.
+/// A box, in mm, in the frame of its segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Block {
     pub middle: [f32; 3],
     pub edges: [f32; 3],
 }
 
-/// The simple shape of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
     Rod(Rod),
     Block(Block),
 }
 
-/// A joint of the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelJoint {
-    /// As the maker's model names it: `right_index_1_joint`.
+    /// Name as in the maker's model: `right_index_1_joint`.
     pub name: String,
     /// The drive that moves it.
     pub dof: Dof,
     pub parent: Segment,
-    /// Where it is in the frame of the parent, mm.
+    /// Position in the parent's frame, mm.
     pub at_mm: [f32; 3],
-    /// How its link stands there when the hand is open: roll, pitch and yaw, radians.
+    /// Orientation of its link in the parent's frame while the hand is open: roll, pitch and yaw, radians.
     pub turned: [f32; 3],
-    /// Whether it turns about z, else against it.
+    /// True if it turns about z, false if about -z.
     pub is_about_z: bool,
     /// Radians from open to bent.
     pub range: f32,
-    /// Radians for each radian of the drive's own joint; `None` of that joint itself.
+    /// Radians per radian of the drive's own joint; `None` for that joint itself.
     pub follows: Option<f32>,
 }
 
@@ -63,14 +61,14 @@ pub struct ModelLink {
     pub segment: Segment,
     /// `right_index_1`.
     pub name: String,
-    /// What it hangs on; nothing of the palm.
+    /// Joint to its parent; `None` for the palm.
     pub joint: Option<ModelJoint>,
     pub shape: Shape,
-    /// The middle of the fingertip's pad, mm, of the segments that carry one.
+    /// Centre of the fingertip's pad, mm; `None` for segments without a pad.
     pub touch_mm: Option<(Finger, [f32; 3])>,
 }
 
-/// The segment that the drive's own joint moves.
+/// Segment that the drive moves directly.
 const fn driven(dof: Dof) -> Segment {
     match dof {
         Dof::Little => Little1,
@@ -82,7 +80,7 @@ const fn driven(dof: Dof) -> Segment {
     }
 }
 
-/// The name of the joint that a drive moves itself.
+/// Name of the joint that a drive moves directly.
 pub fn driven_joint(side: Side, dof: Dof) -> String {
     joint_name(side, driven(dof))
 }
@@ -94,7 +92,6 @@ fn joint_name(side: Side, segment: Segment) -> String {
     own.next().map(|(_, name)| name).unwrap_or_default()
 }
 
-/// The name of a link.
 pub fn link_name(side: Side, segment: Segment) -> String {
     let joint = joint_name(side, segment);
     match joint.strip_suffix("_joint") {
@@ -103,7 +100,7 @@ pub fn link_name(side: Side, segment: Segment) -> String {
     }
 }
 
-/// The name of the frame of a fingertip's pad.
+/// Name of the frame of a fingertip's pad.
 pub fn touch_name(side: Side, finger: Finger) -> String {
     format!("{}_{}_touch", side_name(side), finger.name())
 }
@@ -116,7 +113,7 @@ pub const fn side_name(side: Side) -> &'static str {
     }
 }
 
-/// All links, each after the one it hangs on. A left hand is the mirror image in x of a right one.
+/// All links, each after its parent. A left hand is the mirror image in x of a right one.
 pub fn links(side: Side) -> Vec<ModelLink> {
     let link = |segment| ModelLink {
         segment,
@@ -172,7 +169,7 @@ fn mirrored_shape(side: Side, shape: Shape) -> Shape {
 
 /// The bulk of a segment: along it from its joint to the next one, or to the tip.
 const fn shape(segment: Segment) -> Shape {
-    /// From the joint to a place along the segment, in the middle plane of the finger.
+    /// A rod from the joint to a point along the segment, in the finger's middle plane.
     const fn rod(to: [f32; 2], plane: f32, radius: f32) -> Shape {
         Shape::Rod(Rod {
             ends: [[0.0, 0.0, plane], [to[0], to[1], plane]],
@@ -207,7 +204,7 @@ mod tests {
     use glam::{Affine3A, EulerRot, Quat, Vec3};
     use std::collections::BTreeMap;
 
-    /// Where the links are, reckoned as a reader of the model does it.
+    /// Positions of the links, computed as a reader of the model does.
     fn frames(side: Side, angles: &PerDof<f32>) -> BTreeMap<String, Affine3A> {
         let mut frames = BTreeMap::new();
         for link in links(side) {

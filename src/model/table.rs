@@ -1,13 +1,13 @@
-//! One table of what a joint is called where: counts, radians, names, orders.
+//! A table of the joints: counts, radians, names, orders.
 
 use crate::hand::Dof;
 use crate::hand::kinematics::{RANGE, Side};
 use crate::model::{driven_joint, links};
 
-/// What stands at the head of each file.
+/// Comment at the head of each file.
 pub const ABOUT: &str = "FTP series hand, written by handscope model. Frames, couplings and limits after a public model of the hand (unitree_ros, inspire_hand FTP, BSD-3-Clause, Unitree Robotics); shapes are simple; masses are not published";
 
-/// The table as comma-separated values: one line a joint of the model.
+/// The table as comma-separated values: one line per joint of the model.
 pub fn csv(side: Side) -> String {
     let mut text = String::from(
         "joint,register_order,register_name,driven_by,radians_per_driver_radian,counts_open,counts_bent,radians_open,radians_bent,radians_per_count\n",

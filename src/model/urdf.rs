@@ -7,11 +7,11 @@ use crate::model::{
 use glam::{EulerRot, Quat, Vec3};
 use std::fmt::Write as _;
 
-/// What a joint may do at most, where URDF asks for it and no figure is published: N·m and rad/s.
+/// Limits of a joint, which URDF requires and for which no figures are published: N·m and rad/s.
 const EFFORT: f32 = 1.0;
 const VELOCITY: f32 = 3.0;
 
-/// The whole file.
+/// Writes the whole file.
 pub fn urdf(side: Side) -> String {
     let mut text = format!(
         "<?xml version=\"1.0\"?>\n<!-- {} -->\n<robot name=\"ftp_{}_hand\">\n",
@@ -54,7 +54,7 @@ fn shape_text(shape: &Shape) -> String {
         Shape::Rod(rod) => {
             let (middle, turned, length) = placed(rod);
             let [radius, length] = [rod.radius, length].map(|mm| mm / 1000.0);
-            // URDF knows no round ends.
+            // URDF has no capsules.
             let shape = format!("<cylinder radius=\"{radius:.5}\" length=\"{length:.5}\"/>");
             (middle, turned, shape)
         }
@@ -66,7 +66,7 @@ fn shape_text(shape: &Shape) -> String {
     )
 }
 
-/// The middle of a rod, how it stands (roll, pitch, yaw) if it lies along z, and its length.
+/// Centre of a rod, its orientation (roll, pitch, yaw) relative to z, and its length.
 fn placed(rod: &Rod) -> ([f32; 3], [f32; 3], f32) {
     let [from, to] = rod.ends.map(Vec3::from);
     let turn = Quat::from_rotation_arc(Vec3::Z, (to - from).normalize_or(Vec3::Z));
@@ -92,7 +92,7 @@ fn joint_text(side: Side, joint: &ModelJoint, child: &str) -> String {
     )
 }
 
-/// Millimetres as metres.
+/// Formats millimetres as metres.
 pub(super) fn metres(mm: [f32; 3]) -> String {
     numbers(mm.map(|mm| mm / 1000.0))
 }

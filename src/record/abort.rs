@@ -1,36 +1,36 @@
-//! Why a program that moved the hand was aborted.
+//! Reason why a program that moved the hand was aborted.
 
 use crate::hand::{Dof, Fault, Faults};
 use crate::record::state::{Disarmed, SetpointConflict};
 use std::time::Duration;
 
-/// Why a program that moved the hand was aborted. The hand was stopped, unless another controller moves it now. Only the user who
-/// arms starts another.
+/// Reason why a program that moved the hand was aborted. The hand was stopped, unless another controller moves it now. Only the
+/// user who arms starts another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Abort {
     /// The user ended it.
     #[error("ended by a person")]
     Person,
-    /// Stop, disarming, old feedback.
+    /// Stop, disarming, outdated feedback.
     #[error("the hand is no longer armed{}", why.map(|why| format!(": {why}")).unwrap_or_default())]
     Disarmed {
-        /// As the link has it.
+        /// The link's reason.
         why: Option<Disarmed>,
     },
-    /// Another arming is not the one that the user gave for this.
+    /// The hand was armed again since the user armed it for this program.
     #[error("the hand was armed anew")]
     ArmedAnew,
-    /// Another mover of this program, or another program, was granted control. It moves the hand now: this is the only abort that no
-    /// stop follows.
+    /// Another mover of this program, or another program, was granted control. It moves the hand now: this is the only abort that
+    /// is not followed by a stop.
     #[error("another controller has control of the hand")]
     TakenOver,
-    /// Another controller talks to the hand.
+    /// Another controller communicates with the hand.
     #[error("another controller {}", wrote.map_or_else(|| "talks to the hand".into(), |wrote| format!("wrote {wrote}")))]
     OtherController {
-        /// What it was seen to write; `None` if it was only heard.
+        /// The write that was observed; `None` if only other traffic was.
         wrote: Option<SetpointConflict>,
     },
-    /// The link was lost. Where the hand is now is not known.
+    /// The link was lost. The hand's position is unknown.
     #[error("the link was lost")]
     LinkLost,
     /// A drive reports a fault.
@@ -39,81 +39,76 @@ pub enum Abort {
         /// The first such joint, with all its faults; `None` if none of them was read yet.
         joint: Option<(Dof, Faults)>,
     },
-    /// A joint is as warm as the limit.
+    /// A joint reached the temperature limit.
     #[error("{} is at {celsius} °C, the limit is {limit}", dof.name())]
     Heat {
-        /// The joint.
         dof: Dof,
-        /// Its temperature.
+        /// Temperature in °C.
         celsius: u8,
         limit: u8,
     },
     /// The force of a joint reached the ceiling.
     #[error("{} presses with {grams} g, the ceiling is {ceiling}", dof.name())]
     Ceiling {
-        /// The joint.
         dof: Dof,
-        /// Force above its reading at rest.
+        /// Force above its reading at rest, in grams.
         grams: i32,
         ceiling: i16,
     },
     /// A joint did not reach its target in time.
     #[error("{} did not reach {target} in time", dof.name())]
     Unreached {
-        /// The joint.
         dof: Dof,
-        /// Where it should be.
+        /// Target position, units of ANGLE_ACT.
         target: i16,
     },
-    /// The speed and threshold that were set are not confirmed by reading back.
+    /// The configured speed and force threshold are not confirmed by reading back.
     #[error("the hand does not confirm the speed and force threshold that were set for {}", dof.name())]
     LimitsRefused {
-        /// The joint.
+        /// The first joint that deviates.
         dof: Dof,
     },
-    /// Readings of all joints that the limits depend on are missing or old.
+    /// Readings that the limits depend on are missing or outdated.
     #[error("the {what} readings cannot be watched: {}", not_read(*age, *stall))]
     NotRead {
         what: &'static str,
-        /// How old the last is; `None` if none came.
+        /// Age of the last reading; `None` if none arrived.
         age: Option<Duration>,
-        /// How long this program did not run meanwhile, if that is why.
+        /// Time for which this program did not run meanwhile, if that is the cause.
         stall: Option<Duration>,
     },
-    /// A reading that the limits depend on makes no sense.
+    /// A reading that the limits depend on is implausible.
     #[error("the {what} of {} cannot be watched: it makes no sense", dof.name())]
     Blind {
         what: &'static str,
-        /// The joint.
+        /// The joint with this reading.
         dof: Dof,
     },
-    /// The hand stayed too warm to begin.
+    /// The hand stayed too warm to start.
     #[error("{} stayed at {celsius} °C or more; trials begin below {limit}", dof.name())]
     TooWarm {
-        /// The joint.
         dof: Dof,
-        /// Its temperature.
+        /// Temperature in °C.
         celsius: u8,
-        /// Where it may begin.
+        /// Temperature in °C below which it may start.
         limit: u8,
     },
     /// The samples could not be stored or shown.
     #[error("the samples could not be stored or shown")]
     NotKept,
-    /// A joint of a hand that should be empty pressed on something.
+    /// A joint of a hand that should be empty pressed against something.
     #[error("the hand is not empty, or something is in its way: {} pressed with {grams} g at {angle}", dof.name())]
     NotEmpty {
-        /// The joint.
         dof: Dof,
-        /// Where, units of ANGLE_ACT.
+        /// Position of the joint, units of ANGLE_ACT.
         angle: i16,
-        /// Force above its reading at rest.
+        /// Force above its reading at rest, in grams.
         grams: i16,
     },
-    /// The slow trial that should measure the contact found none.
+    /// The slow trial that measures the contact found none.
     #[error("{} found no contact to approach", dof.name())]
     NoContact {
-        /// The joint.
+        /// The joint that closed.
         dof: Dof,
     },
 }
@@ -126,7 +121,7 @@ fn fault_words(joint: Option<(Dof, Faults)>) -> String {
     format!("{} reports a fault: {}", dof.name(), names.join(", "))
 }
 
-/// Why readings are old, in words.
+/// Text for missing or outdated readings.
 fn not_read(age: Option<Duration>, stall: Option<Duration>) -> String {
     match (age, stall) {
         (None, _) => "none came yet".into(),

@@ -1,4 +1,4 @@
-//! What a recording file holds, one entry after the other.
+//! The entries of a recording file.
 
 use crate::hand::Moment;
 use crate::record::heard::Record;
@@ -8,18 +8,18 @@ use crate::record::wire::Piece;
 /// One entry of a recording file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Entry {
-    /// What the link told.
+    /// A record from the link.
     Heard(Record),
-    /// What went over the wire.
+    /// Bytes on the wire.
     Wire(Piece),
-    /// Where the link stood.
+    /// State of the link.
     Link(LinkReport),
-    /// What else happened.
+    /// Any other event.
     Event(Event),
 }
 
 impl Entry {
-    /// When it was received, sent, or happened.
+    /// Time at which it was received, sent, or happened.
     pub fn at(&self) -> Moment {
         match self {
             Self::Heard(record) => record.at(),
@@ -30,47 +30,46 @@ impl Entry {
     }
 }
 
-/// Where the link stood, told when that changed, and with its figures once a second.
+/// State of the link, recorded at each change, and with its statistics once a second.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LinkReport {
     pub at: Moment,
-    /// Where it stood.
     pub state: LinkState,
-    /// Why there was no live hand; empty if there was.
+    /// Reason why there was no live hand; empty if there was one.
     pub trouble: String,
-    /// All of its status, in JSON; empty if that did not change.
+    /// Its whole status, in JSON; empty if unchanged.
     pub status: String,
-    /// Its figures, in JSON; empty if they are not told here.
+    /// Its statistics, in JSON; empty if not included.
     pub figures: String,
 }
 
-/// Something that happened beside the link.
+/// An event apart from the link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Event {
     pub at: Moment,
     pub kind: EventKind,
-    /// In words; what they are depends on the kind.
+    /// Text; its content depends on the kind.
     pub words: String,
 }
 
-/// What happened.
+/// Kind of an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum EventKind {
-    /// The user noted something.
+    /// A note by the user.
     Note,
-    /// The user took that note back.
+    /// The user removed a note.
     NoteRemoved,
-    /// The user did something that was sent to the hand.
+    /// A user's action that was sent to the hand.
     Person,
-    /// A grasp trial began; the words say which.
+    /// A grasp trial began; the text names it.
     Trial,
     /// A setting of the program or of the hand was changed.
     Setting,
-    /// The parameters that the hand kept, in TOML.
+    /// The hand's stored parameters, in TOML.
     Parameters,
-    /// The settings of the program, in TOML, without where its window stands.
+    /// The settings of the program, in TOML, without the window's layout.
     Settings,
-    /// Something about the recording itself: entries that are missing, a clock that was set.
+    /// About the recording itself: missing entries, a changed clock.
     Recording,
     /// A drive reported a fault. Derived from the readings.
     Fault,
@@ -78,14 +77,14 @@ pub enum EventKind {
     Stop,
     /// The hand was armed. Derived.
     Armed,
-    /// The hand fell silent. Derived.
+    /// The hand stopped answering. Derived.
     LinkLost,
     /// The hand answered again. Derived.
     Reconnected,
 }
 
 impl EventKind {
-    /// The stable word for it in files.
+    /// Stable name in files.
     pub const fn key(self) -> &'static str {
         match self {
             Self::Note => "note",
@@ -104,7 +103,7 @@ impl EventKind {
         }
     }
 
-    /// The kind of a word in a file.
+    /// Kind of a name in a file; `None` if it is unknown.
     pub fn by_key(key: &str) -> Option<Self> {
         const ALL: [EventKind; 13] = [
             EventKind::Note,
@@ -124,7 +123,7 @@ impl EventKind {
         ALL.into_iter().find(|kind| kind.key() == key)
     }
 
-    /// True for what stands in lists of what happened.
+    /// True for kinds that lists of events show.
     pub const fn is_listed(self) -> bool {
         !matches!(
             self,
@@ -132,7 +131,7 @@ impl EventKind {
         )
     }
 
-    /// True for what a reader finds out by itself from the other entries.
+    /// True for kinds that a reader derives from the other entries.
     pub const fn is_derived(self) -> bool {
         matches!(
             self,

@@ -1,4 +1,4 @@
-//! The grip of the hand that entries tell of: the same for a file, a viewer, DDS and a table.
+//! Derives the grip of the hand from entries, for a file, a viewer, DDS and a table alike.
 
 use crate::hand::Moment;
 use crate::hand::grip::{Grip, GripEstimator, GripState};
@@ -9,11 +9,11 @@ use serde::Deserialize;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct GripFollower {
     estimator: GripEstimator,
-    /// Feedback does not follow what the hand was told, since then.
+    /// Time since which feedback does not follow the commands.
     doubted: Option<Moment>,
 }
 
-/// What counts of a status of the link.
+/// Relevant part of a link status.
 #[derive(Deserialize)]
 struct Doubt {
     #[serde(default)]
@@ -21,7 +21,7 @@ struct Doubt {
 }
 
 impl GripFollower {
-    /// Takes an entry. The grip after it, if it is a reading or the end of them.
+    /// Applies an entry. Returns the grip after it, if it is a reading or ends the readings.
     pub(crate) fn take(&mut self, entry: &Entry) -> Option<Grip> {
         match entry {
             Entry::Heard(Record::Reading { sample, fresh }) => {
@@ -41,13 +41,13 @@ impl GripFollower {
         }
     }
 
-    /// The grip as it is known at `at`, without a new reading.
+    /// The grip known at `at`, without a new reading.
     pub(crate) fn known(&self, at: Moment) -> Grip {
         let grip = self.estimator.known(true, at);
         self.doubted.map_or(grip, Grip::unknown)
     }
 
-    /// A status that did not change is not told.
+    /// Applies a status report; an unchanged status is empty and has no effect.
     fn report(&mut self, report: &LinkReport) {
         if let Ok(status) = serde_json::from_str::<Doubt>(&report.status) {
             let is_new = self.doubted.is_none();
@@ -60,7 +60,7 @@ impl GripFollower {
     }
 }
 
-/// A state as a table has it: nothing where it is unknown.
+/// Table cell of a state; `None` if it is unknown.
 pub(crate) const fn cell(state: GripState) -> Option<&'static str> {
     match state {
         GripState::Unknown => None,

@@ -1,54 +1,52 @@
-//! What a link tells, one thing after the other.
+//! Records of a link.
 
 use crate::hand::{Groups, HandSample, Moment};
 use crate::record::state::{ArmRefusal, LinkState};
 use crate::record::write::{WriteCause, WriteFate, WrittenMemory};
 use std::sync::Arc;
 
-/// One thing that happened at a hand. Records of one hand come in the order in which they happened.
+/// One event at a hand. Records of one hand are in order of occurrence.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Record {
-    /// Something was read.
+    /// A reply of the hand.
     Reading {
-        /// The newest of everything, this reading included.
+        /// The newest value of all groups, including this reading.
         sample: Arc<HandSample>,
-        /// What this reading brought.
+        /// Groups updated by this reading.
         fresh: Groups,
     },
-    /// The link went from one state to another.
+    /// The link changed its state.
     State {
         at: Moment,
-        /// The new one.
+        /// The new state.
         state: LinkState,
     },
     /// A write left for the hand.
     Sent {
         at: Moment,
-        /// Its number on this connection, for its fate.
+        /// Its number on this connection, to which its fate refers.
         number: u64,
-        /// Why it was written.
         cause: WriteCause,
         write: WrittenMemory,
     },
-    /// What became of a write.
+    /// The outcome of a write.
     Answered {
-        /// When that was known.
+        /// Time at which it was known.
         at: Moment,
-        /// The number given at sending.
+        /// Number of the write.
         number: u64,
-        /// What became of it.
         fate: WriteFate,
     },
-    /// The user asked to arm and may not yet.
+    /// The user's request to arm was refused.
     ArmRefused {
         at: Moment,
-        /// Why.
+        /// Reason for the refusal.
         reason: ArmRefusal,
     },
 }
 
 impl Record {
-    /// When it was received, sent, or happened.
+    /// Time at which it was received, sent, or happened.
     pub fn at(&self) -> Moment {
         match self {
             Self::Reading { sample, fresh } => sample.newest(*fresh).unwrap_or_default(),

@@ -1,4 +1,4 @@
-//! What happened at a hand, as typed values that a file can hold.
+//! Events at a hand, as typed values that a file can hold.
 
 pub mod abort;
 pub mod entry;

@@ -1,25 +1,25 @@
-//! What one hand was found to do, in words that a file can hold.
+//! Findings about one hand, as text for a file.
 
 use serde::{Deserialize, Serialize};
 
-/// What one hand was found to do. Keys of a later version survive in [`Self::others`].
+/// Findings about one hand. Keys of a later version are preserved in [`Self::others`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct QuirkSheet {
     /// The endpoint without the id.
     pub place: String,
-    /// The id or unit that was asked.
+    /// The requested id or unit.
     pub id: u16,
-    /// Day of the first answer, `2026-11-21`; empty in a sheet that was never kept.
+    /// Date of the first answer, `2026-11-21`; empty in a sheet that was never saved.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub first_seen: String,
-    /// Day of the last answer.
+    /// Date of the last answer.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub last_seen: String,
-    /// HAND_ID as the hand gives it.
+    /// HAND_ID as the hand reports it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hand_id: Option<u8>,
-    /// REDU_RATIO as the hand gives it.
+    /// REDU_RATIO as the hand reports it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub baud_code: Option<u8>,
     /// `low-first`, `high-first` or `one-per-word`.
@@ -28,16 +28,16 @@ pub struct QuirkSheet {
     /// `through` or `split`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gap: Option<String>,
-    /// `capacitive`, `resistive`, or `unknown: ` and why.
+    /// `capacitive`, `resistive`, or `unknown: ` and the reason.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub touch: Option<String>,
-    /// Keys of a later version, kept as they are.
+    /// Keys of a later version, unchanged.
     #[serde(flatten)]
     pub others: toml::Table,
 }
 
 impl QuirkSheet {
-    /// What this sheet says otherwise than a later one. What either does not know is no difference.
+    /// Differences from a later sheet. A fact that is unknown in either is not a difference.
     pub fn differences(&self, now: &Self) -> Vec<FactDifference> {
         let number = |value: Option<u8>| value.map(|value| value.to_string());
         let touch = |sheet: &Self| {
@@ -63,7 +63,7 @@ impl QuirkSheet {
         .collect()
     }
 
-    /// A later visit to the same hand: what was not learnt this time stays as it was.
+    /// Updates with a later visit to the same hand: facts not learnt this time are unchanged.
     pub fn update(&mut self, now: Self) {
         self.last_seen = now.last_seen;
         self.hand_id = now.hand_id.or(self.hand_id);
@@ -74,25 +74,25 @@ impl QuirkSheet {
     }
 }
 
-/// What two sheets may disagree about.
+/// Facts in which two sheets may differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fact {
     HandId,
     /// REDU_RATIO.
     BaudCode,
-    /// Bytes in words.
+    /// Byte order in words.
     Packing,
-    /// The unused addresses.
+    /// Reads across unused addresses.
     Gap,
-    /// The fingertips.
+    /// Type of the fingertip sensors.
     Touch,
 }
 
-/// One thing that a hand answered otherwise before.
+/// A fact for which the hand's answer has changed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FactDifference {
     pub fact: Fact,
-    /// Then.
+    /// Earlier value.
     pub before: String,
     pub now: String,
 }

@@ -1,17 +1,17 @@
-//! Where a link stands, how a stop went, and why a hand is not armed.
+//! State of a link, progress of a stop, and reasons why a hand is not armed.
 
 use crate::hand::{Dof, Moment};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Where one conversation with one hand stands.
+/// State of one conversation with one hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LinkState {
     /// No wire.
     #[default]
     Offline,
-    /// A wire, and no answer yet.
+    /// A wire, but no answer yet.
     Identifying,
     /// The hand answers; nothing is written.
     Monitoring,
@@ -19,7 +19,7 @@ pub enum LinkState {
     Armed,
     /// Stop was pressed: hold is repeated until the hand rests.
     Holding,
-    /// A drive reports a fault: nothing passes but reads, hold and clearing.
+    /// A drive reports a fault: only reads, hold and clearing pass.
     Fault,
 }
 
@@ -33,48 +33,48 @@ impl LinkState {
     }
 }
 
-/// Whether the hand rests.
+/// Motion state of the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rest {
-    /// Fresh feedback shows no motion, and none was commanded just now.
+    /// Fresh feedback shows no motion, and no motion was commanded just now.
     Resting,
-    /// A joint moves, or did within the last second.
+    /// A joint moves, or moved within the last second.
     Moving,
-    /// Feedback is missing, old, or does not say. Nothing that needs rest may be done.
+    /// Feedback is missing, outdated, or inconclusive. Nothing that requires rest may be done.
     #[default]
     Unknown,
 }
 
-/// How a stop goes.
+/// Progress of a stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Hold {
-    /// None was asked since the hand answered.
+    /// No stop since the hand answered.
     #[default]
     None,
     /// Hold is being repeated.
     Asked {
-        /// When stop was pressed.
+        /// Time at which stop was pressed.
         at: Moment,
         /// Hold frames sent so far.
         sent: u32,
     },
     /// Feedback shows that the hand rests.
     Confirmed {
-        /// When stop was pressed.
+        /// Time at which stop was pressed.
         at: Moment,
-        /// When feedback showed rest.
+        /// Time at which feedback showed rest.
         rest: Moment,
     },
-    /// Feedback does not show rest in time: the hand may still move. Hold goes on.
+    /// Feedback does not show rest in time: the hand may still move. Hold continues.
     Alarm {
-        /// When stop was pressed.
+        /// Time at which stop was pressed.
         at: Moment,
     },
 }
 
-/// Why a hand that was armed is not any more.
+/// Reason why a hand is no longer armed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Disarmed {
@@ -84,17 +84,17 @@ pub enum Disarmed {
     /// A drive reports a fault.
     Fault,
     LinkLost,
-    /// Feedback grew old.
+    /// Feedback is outdated.
     Stale,
-    /// Feedback stands still though motion was asked for: where the hand is cannot be known.
+    /// Feedback is frozen while motion is commanded: the hand's position cannot be known.
     FrozenFeedback,
     /// This computer slept.
     Resume,
-    /// Another controller talks to this hand.
+    /// Another controller communicates with this hand.
     OtherController,
-    /// Who moved it let go of what has to be held, or has nothing to do.
+    /// The controller released the control that must be held, or has nothing left to do.
     Released,
-    /// Who moved it fell silent.
+    /// The controller fell silent.
     Silent,
     /// A drive is too hot.
     Hot,
@@ -103,7 +103,7 @@ pub enum Disarmed {
 }
 
 impl Disarmed {
-    /// True if whoever might move the hand, or the user, wanted it so.
+    /// True if the controller or the user intended it.
     pub const fn is_asked_for(self) -> bool {
         matches!(
             self,
@@ -112,7 +112,7 @@ impl Disarmed {
     }
 }
 
-/// In words, to be followed by what that did to the hand.
+/// Text of the reason, to be followed by its effect on the hand.
 impl fmt::Display for Disarmed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -132,40 +132,39 @@ impl fmt::Display for Disarmed {
     }
 }
 
-/// Why the hand cannot be armed.
+/// Reason why the hand cannot be armed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ArmRefusal {
     /// No live hand.
     #[error("there is no live hand")]
     Offline,
-    /// Stop is still going on.
+    /// A stop is still in progress.
     #[error("a stop is still being confirmed")]
     Holding,
     /// A drive reports a fault.
     #[error("a drive reports a fault: clear it first")]
     Fault,
-    /// The hand saves or calibrates: the line is left to it, so nobody looks where its joints are.
+    /// The hand saves or calibrates: it has the line to itself, so its joints are not monitored.
     #[error("the hand writes its flash or calibrates: wait until that is over")]
     HandBusy,
-    /// What has to be held while the hand moves is not held.
+    /// The control that must be held while the hand moves is not held.
     #[error("what has to be held to run is not held")]
     LetGo,
-    /// A stop, a disarm or another arming was asked for before it was done.
+    /// A stop, a disarm or another arming was requested before this one was complete.
     #[error("something else was asked for before the hand was armed")]
     Replaced,
-    /// The hand did not acknowledge its speed and force limits.
     #[error("the hand did not acknowledge its speed and force limits")]
     NoAnswer,
-    /// The hand, or the gateway that it is behind, refused them.
+    /// The hand, or the gateway in front of it, refused them.
     #[error(
         "the hand refused its speed and force limits; if another Handscope shares it, a person there has to let you"
     )]
     Refused,
-    /// Angles or faults were not read yet, or are old.
+    /// Angles or faults were not read yet, or are outdated.
     #[error("angles and faults are not known yet, or are old")]
     NotRead,
-    /// A joint without a sensible angle.
+    /// A joint with an implausible angle.
     #[error("the angle of {} makes no sense", dof.name())]
     UnknownPose {
         /// The first such joint.
@@ -192,7 +191,7 @@ impl SetpointRegister {
         }
     }
 
-    /// What a hand may round a value by: two hundredths of the range.
+    /// Maximum rounding of a value by the hand: two hundredths of the range.
     pub const fn rounds_by(self) -> i16 {
         match self {
             Self::AngleSet | Self::SpeedSet => 20,
@@ -201,16 +200,16 @@ impl SetpointRegister {
     }
 }
 
-/// A setpoint that the hand holds, other than we wrote it.
+/// A setpoint of the hand that differs from the written one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SetpointConflict {
-    /// Where it was read.
+    /// Register that was read.
     pub register: SetpointRegister,
     /// The first joint with such a value.
     pub dof: Dof,
-    /// The value as it was read; `None` if it leaves the manual's range.
+    /// The value that was read; `None` if it is outside the manual's range.
     pub holds: Option<i16>,
-    /// What was written here last; `None` if nothing was.
+    /// The value that was last written here; `None` if there is none.
     pub wrote: Option<i16>,
 }
 

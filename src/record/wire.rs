@@ -1,13 +1,13 @@
-//! What went over a wire, as raw pieces with their times. Nothing is decoded here.
+//! Bytes on a wire, as raw pieces with their times. Nothing is decoded here.
 
 use crate::hand::Moment;
 
-/// Which way bytes went.
+/// Direction of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// From this program to the hand.
     ToHand,
-    /// From the hand, or whoever else speaks on the wire.
+    /// From the hand, or from any other sender on the wire.
     FromHand,
 }
 
@@ -20,7 +20,7 @@ impl Direction {
         }
     }
 
-    /// Two signs that point to or from the hand.
+    /// ASCII arrow to or from the hand.
     pub const fn arrow(self) -> &'static str {
         match self {
             Self::ToHand => "->",
@@ -29,12 +29,12 @@ impl Direction {
     }
 }
 
-/// What happened on the wire.
+/// Kind of an event on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PieceKind {
     /// The wire was opened.
     Opened,
-    /// Bytes passed.
+    /// Bytes were transferred.
     Bytes(Direction),
     /// The other side hung up, or the wire broke.
     Broken,
@@ -42,11 +42,11 @@ pub enum PieceKind {
     Closed,
 }
 
-/// Bytes that passed at once, or a change of the wire itself, which has none.
+/// Bytes transferred at once, or a change of the wire itself, without bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Piece {
     pub at: Moment,
     pub kind: PieceKind,
-    /// The bytes; at most what one call moved.
+    /// At most the bytes of one call.
     pub bytes: Vec<u8>,
 }

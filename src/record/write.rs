@@ -1,4 +1,4 @@
-//! The outcome of writing a setting, of a SAVE, and of a return to the factory parameters. Plain values; nothing is sent here.
+//! The outcomes of writing a setting, of a SAVE, of a factory reset and of a calibration. Plain values; nothing is sent here.
 
 use crate::hand::command::WRITE_LEN_MAX;
 use crate::hand::register::ANGLE_SET;
@@ -6,17 +6,17 @@ use crate::hand::{Angle, PerDof, Refusal, RegisterWrite, Span};
 use arrayvec::ArrayVec;
 use std::time::Duration;
 
-/// Memory as it was written. It is of the past: no register write can be made of it.
+/// Memory as it was written. It is historical: no register write can be made from it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WrittenMemory {
-    /// The first byte's address.
+    /// Address of the first byte.
     pub address: u16,
-    /// The bytes in memory order.
+    /// Bytes in memory order.
     pub bytes: ArrayVec<u8, WRITE_LEN_MAX>,
 }
 
 impl WrittenMemory {
-    /// Where it was written.
+    /// Written address range.
     pub fn span(&self) -> Span {
         Span::new(
             self.address,
@@ -26,7 +26,7 @@ impl WrittenMemory {
 }
 
 impl WrittenMemory {
-    /// The targets of the joints that it sets; `None` where it leaves a joint alone or is about something else.
+    /// Angle targets in this write; `None` for joints without a new target, or if the write concerns other registers.
     pub fn angle_targets(&self) -> PerDof<Option<Angle>> {
         let mut targets = PerDof::splat(None);
         let len = ANGLE_SET.element_len();
@@ -49,14 +49,14 @@ impl From<&RegisterWrite> for WrittenMemory {
     }
 }
 
-/// Why something was written.
+/// Cause of a write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum WriteCause {
     /// A stop, or its repetition.
     Hold,
-    /// The limits of speed and force that arming begins with.
+    /// The speed and force limits with which arming begins.
     Arming,
-    /// A setpoint of whoever may move the hand.
+    /// A setpoint of the controller in charge.
     Setpoint,
     /// A single request: a gesture, clearing errors.
     Request,
@@ -73,7 +73,7 @@ impl WriteCause {
         Self::Setting,
     ];
 
-    /// The stable word for it in files.
+    /// Stable name in files.
     pub const fn key(self) -> &'static str {
         match self {
             Self::Hold => "hold",
@@ -85,39 +85,39 @@ impl WriteCause {
     }
 }
 
-/// What became of a write.
+/// Outcome of a write.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum WriteFate {
-    /// The hand acknowledged it. It does not say that the value is in force.
+    /// The hand acknowledged it. That does not mean that the value is in effect.
     Acknowledged,
-    /// The hand said no.
+    /// The hand refused it.
     Refused {
-        /// Its words, as recordings keep them; older programs may have used others.
+        /// Text of the reason as stored in recordings; older programs may have used other texts.
         reason: String,
     },
-    /// No usable answer: whether the hand acted is not known.
+    /// No usable answer: it is unknown if the hand acted.
     Unanswered,
 }
 
-/// Why a request for a setting, a SAVE or a reset was not sent. Nothing changed.
+/// Reason why a request for a setting, a SAVE or a reset was not sent. Nothing changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NotSent {
-    /// Settings are not touched while setpoints pass.
+    /// Settings are not changed while setpoints pass.
     #[error("the hand is armed: disarm it first")]
     Armed,
     /// A stop has the wire.
     #[error("a stop is still being confirmed")]
     Holding,
-    /// A joint moves, or did a second ago.
+    /// A joint moves, or moved within the last second.
     #[error("the hand moves: wait until it rests")]
     Moving,
-    /// Whether it rests is not known.
+    /// It is unknown if the hand rests.
     #[error("it is not known whether the hand rests: its status or angles are missing or old")]
     RestUnknown,
-    /// The result of an earlier SAVE could be taken for that of this one.
+    /// The result of an earlier SAVE could be mistaken for that of this one.
     #[error("the last SAVE was just now: wait {} s", .wait.as_secs_f64().ceil())]
     TooSoon {
-        /// How long to wait.
+        /// Remaining wait.
         wait: Duration,
     },
 }
@@ -125,11 +125,9 @@ pub enum NotSent {
 /// A group that was written and read back.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Written {
-    /// The group.
     pub span: Span,
-    /// The outcome.
     pub verdict: Verdict,
-    /// What the hand holds now, as far as it could be read back.
+    /// Current memory of the hand; `None` if it could not be read back.
     pub holds: Option<Vec<u8>>,
 }
 
@@ -138,20 +136,20 @@ pub struct Written {
 pub enum Verdict {
     /// Read back as written: in effect, acknowledged or not. Not in flash before a SAVE.
     Applied,
-    /// The hand, or the rule against unsafe writes, said no, and the hand holds something else.
+    /// The hand, or the rule against unsafe writes, refused it, and the hand holds something else.
     Refused { reason: Refusal },
-    /// The hand did not say no, and holds something else: dropped, or taken as another value.
+    /// The hand did not refuse it, but holds something else: it ignored or changed the value.
     Differs,
-    /// What the hand holds is not known.
+    /// The hand's current value is unknown.
     Unverified { why: Doubt },
     /// Nothing was written.
     NotSent(NotSent),
 }
 
-/// Why a write could not be verified.
+/// Reason why a write could not be verified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Doubt {
-    /// The reads that were to verify it were not answered.
+    /// The verifying reads were not answered.
     #[error("the hand did not answer when its value was read back")]
     NotReadBack,
     /// A late reply to an earlier read could have been mistaken for the answer.
@@ -161,22 +159,22 @@ pub enum Doubt {
     LinkLost,
 }
 
-/// What is known of a SAVE.
+/// The known outcome of a SAVE.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Saved {
-    /// The hand's second frame says that the parameters are in flash (manual 2.2.2; RS485 only).
+    /// The hand's second frame confirms that the parameters are in flash (manual 2.2.2; RS485 only).
     Confirmed,
-    /// The hand's second frame says that they are not.
+    /// The hand's second frame reports a failure.
     Failed {
         /// The value in the frame; 255 by the manual.
         code: u8,
     },
-    /// Acknowledged, and the parameters read the same before and after. No wire but RS485 tells more: only the next
-    /// power-up shows what is in flash.
+    /// Acknowledged, and the parameters read the same before and after. Only RS485 reports more: on other wires only the next
+    /// power-up shows the content of the flash.
     ReadBack,
-    /// Whether anything was written to flash is not known.
+    /// It is unknown if anything was written to flash.
     Unknown { why: SaveDoubt },
-    /// The hand, or the rule against unsafe writes, said no.
+    /// The hand, or the rule against unsafe writes, refused it.
     Refused { reason: Refusal },
     /// SAVE was not sent.
     NotSent(NotSent),
@@ -192,33 +190,33 @@ impl Saved {
     }
 }
 
-/// Why the result of a SAVE is not known.
+/// Reason why the result of a SAVE is unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum SaveDoubt {
-    /// It was acknowledged, and no second frame came in time.
+    /// It was acknowledged, but no second frame arrived in time.
     #[error("the hand acknowledged it, but no result came within 3 s")]
     NoResult,
     /// It was not even acknowledged.
     #[error("the hand neither acknowledged it nor gave a result")]
     Unanswered,
-    /// Acknowledged, and then the parameters could not be read or read otherwise than before.
+    /// It was acknowledged, but then the parameters could not be read, or had changed.
     #[error("the hand acknowledged it, but its parameters did not read back unchanged")]
     NotReadBack,
-    /// The link was lost before anything was known.
+    /// The link was lost before the result.
     #[error("the link was lost before the result")]
     LinkLost,
 }
 
-/// The outcome of a return to the factory parameters.
+/// The outcome of a factory reset.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Reset {
     /// The hand acknowledged it.
     Acknowledged,
-    /// The hand, or the rule against unsafe writes, said no.
+    /// The hand, or the rule against unsafe writes, refused it.
     Refused {
         reason: Refusal,
     },
-    /// No acknowledgement came: it may have acted, and the hand may be elsewhere now.
+    /// No acknowledgement arrived: the hand may have acted, and may have a different address now.
     Unanswered,
     NotSent(NotSent),
 }
@@ -226,15 +224,15 @@ pub enum Reset {
 /// The outcome of a calibration of the force sensors.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Calibrated {
-    /// The hand's second frame says that it is finished (RS485 only).
+    /// The hand's second frame reports the end (RS485 only).
     Finished,
-    /// Acknowledged, and the line was left alone for longer than it takes. No frame said so.
+    /// Acknowledged, and the line was left idle for longer than a calibration takes. No frame confirmed it.
     Quiet,
-    /// The hand said no.
+    /// The hand refused it.
     Refused {
         reason: Refusal,
     },
-    /// Whether the sensors were calibrated is not known.
+    /// It is unknown if the sensors were calibrated.
     Unknown {
         why: SaveDoubt,
     },

@@ -1,20 +1,20 @@
 //! Signals: Ctrl-C, and on Unix SIGTERM and SIGHUP, on Windows Ctrl-Break and the end of console or session, ask the program to
-//! end; SIGUSR1 cuts the power of the simulated hand, SIGUSR2 freezes what it tells. Ends nothing itself.
+//! end; SIGUSR1 cuts the power of the simulated hand, SIGUSR2 freezes its feedback. Ends nothing itself.
 
 use futures::stream::{BoxStream, SelectAll, StreamExt as _, poll_fn, select_all};
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::task::{Context, Poll};
 
-/// A signal that ends the program was heard.
+/// True once a signal that ends the program was received.
 static CAME: AtomicBool = AtomicBool::new(false);
 
-/// Whether the end of this program was wished by a signal.
+/// True if a signal requested the end of the program.
 pub(crate) fn came() -> bool {
     CAME.load(Ordering::Relaxed)
 }
 
-/// A signal that cannot be listened for.
+/// Error for a signal that cannot be listened for.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot listen for {signal}")]
 pub(crate) struct ListenError {
@@ -23,17 +23,17 @@ pub(crate) struct ListenError {
     cause: io::Error,
 }
 
-/// Signals of one meaning. Listens from its creation on, so that no signal is missed.
+/// Signals of one meaning. Listens from creation on, so that no signal is missed.
 pub(crate) struct Interrupt {
-    /// The exit status that each stands for.
+    /// Streams that yield the exit status of each signal.
     signals: SelectAll<BoxStream<'static, i32>>,
 }
 
-/// What the system has of one meaning, or why it cannot be listened for.
+/// Signal streams of one meaning, or the system's error.
 type Signals = io::Result<Vec<BoxStream<'static, i32>>>;
 
 impl Interrupt {
-    /// Listens for the wish to end the program. Must be called within a tokio runtime.
+    /// Listens for requests to end the program. Must be called within a tokio runtime.
     pub(crate) fn listen() -> Result<Self, ListenError> {
         let noted = |signal: BoxStream<'static, i32>| {
             signal
@@ -49,7 +49,7 @@ impl Interrupt {
         Self::of("SIGUSR1", system::power_cut())
     }
 
-    /// Listens for a request to freeze what the simulated hand tells, or to undo that: SIGUSR2. Must be called within a tokio
+    /// Listens for a request to freeze the simulated hand's feedback, or to undo that: SIGUSR2. Must be called within a tokio
     /// runtime.
     pub(crate) fn freeze() -> Result<Self, ListenError> {
         Self::of("SIGUSR2", system::freeze())
@@ -69,11 +69,11 @@ impl Interrupt {
         self.status().await;
     }
 
-    /// The same, to the exit status of a program that this signal ended.
+    /// Resolves at the next signal, to the exit status of a program ended by it.
     pub(crate) async fn status(&mut self) -> i32 {
         match self.signals.next().await {
             Some(status) => status,
-            // There is none to listen for on this system.
+            // This system has no such signal.
             None => std::future::pending().await,
         }
     }
@@ -121,10 +121,10 @@ mod system {
     use super::{Signals, heard};
     use tokio::signal::windows::{ctrl_break, ctrl_c, ctrl_close, ctrl_logoff, ctrl_shutdown};
 
-    /// What Windows gives a program that Ctrl-C ended: 0xC000013A.
+    /// Exit status that Windows gives a program ended by Ctrl-C: 0xC000013A.
     const ENDED: i32 = -0x3fff_fec6;
 
-    /// The keys, and the end of the console and of the session, after which Windows leaves a program a few seconds.
+    /// Ctrl-C, Ctrl-Break, and the end of console or session, after which Windows allows a few seconds.
     pub(super) fn end() -> Signals {
         let (mut key, mut break_key) = (ctrl_c()?, ctrl_break()?);
         let (mut close, mut logoff, mut shutdown) =

@@ -1,5 +1,5 @@
-//! The program and its window as one thing: drain, draw, act. The real window, the headless one and the tests
-//! drive the same. Opens no window itself.
+//! The program and its window as a unit: drain, draw, act. The real window, the headless one and the tests all use it. Opens no
+//! window itself.
 #[cfg(feature = "desktop")]
 pub mod desktop;
 pub mod headless;
@@ -15,14 +15,14 @@ use crate::record::Rest;
 use crate::ui::{View, Window};
 use std::time::Duration;
 
-/// News come faster than a display shows them: one frame serves all that come within this time.
+/// Minimum time between frames: updates arrive faster than a display shows them, so one frame serves several.
 const FRAME_INTERVAL: Duration = Duration::from_millis(16);
-/// The same while no hand moves: only curves go on then, a pixel or two.
+/// Frame interval while no hand moves: only the curves advance, by a pixel or two.
 pub const REST_FRAME_INTERVAL: Duration = Duration::from_millis(100);
-/// The same where the processor draws each pixel.
+/// Frame interval at rest with software rendering.
 pub const SOFTWARE_REST_FRAME_INTERVAL: Duration = Duration::from_millis(180);
 
-/// Draws what `ui` draws at a time in seconds, in a size in points, into the bytes of a PNG file; `None` if it cannot.
+/// Renders `ui` at a time in seconds and a size in points to a PNG file's bytes; `None` if that fails.
 pub type Snap =
     fn(size: (u32, u32), at_s: f64, ui: &mut dyn FnMut(&mut egui::Ui)) -> Option<Vec<u8>>;
 
@@ -43,7 +43,7 @@ impl DesktopApp {
         }
     }
 
-    /// With something that makes pictures of parts of the window.
+    /// Adds a renderer for pictures of parts of the window.
     #[must_use]
     pub fn with_snap(self, snap: Snap) -> Self {
         Self {
@@ -52,12 +52,12 @@ impl DesktopApp {
         }
     }
 
-    /// Takes in what happened since the last call. Runs also while the window is hidden.
+    /// Applies all updates since the last call. Runs also while the window is hidden.
     pub fn logic(&mut self, now: Moment) {
         self.app.logic(now);
     }
 
-    /// Draws one frame and carries out what the user asked for in it.
+    /// Draws one frame and carries out the user's actions.
     pub fn ui(&mut self, ui: &mut egui::Ui, now: Moment) {
         if self.window.view() == View::Traffic {
             self.app.read_traffic(now);
@@ -65,7 +65,7 @@ impl DesktopApp {
         match self.window.view() {
             View::Device => self.app.look_at_params(now),
             View::Checkup => self.app.look_at_checkups(),
-            // What was tried may be made the default, which is compared with what the hand keeps.
+            // Tried settings may become the defaults, which are compared with the hand's stored ones.
             View::Tune | View::Compare if self.app.may_keep_tried() => {
                 self.app.look_at_params(now);
             }
@@ -80,7 +80,7 @@ impl DesktopApp {
         self.app.drawn(now);
     }
 
-    /// Draws the plots once more, by themselves, and asks where the picture should go.
+    /// Renders the plots alone, and opens the dialog for the picture's path.
     fn save_picture(&mut self, size: (u32, u32), now: Moment) {
         let (window, state) = (&mut self.window, self.app.state());
         let mut draw = |ui: &mut egui::Ui| window.plots_alone_ui(ui, state);
@@ -90,7 +90,7 @@ impl DesktopApp {
         }
     }
 
-    /// How soon news of the hands are to be drawn; `at_rest` is for hands of which none moves.
+    /// Maximum delay of a frame after an update; `at_rest` applies while no hand moves.
     pub fn frame_within(&self, at_rest: Duration) -> Duration {
         let state = self.app.state();
         let moves = |hand: &Hand| {
@@ -103,7 +103,6 @@ impl DesktopApp {
         }
     }
 
-    /// Shows another view.
     pub fn show(&mut self, view: View) {
         self.window.set_view(view);
     }
@@ -113,12 +112,11 @@ impl DesktopApp {
         self.window.show_all_hands();
     }
 
-    /// Lets the plots show just the time from one moment to another.
+    /// Shows exactly this time range in the plots.
     pub fn show_stretch(&mut self, (from, to): (Moment, Moment)) {
         self.window.show_stretch((from.secs(), to.secs()));
     }
 
-    /// The view that is shown.
     pub const fn view(&self) -> View {
         self.window.view()
     }
@@ -128,7 +126,7 @@ impl DesktopApp {
         self.app.state()
     }
 
-    /// The program, to open hands and to carry out actions that come from elsewhere.
+    /// The program, to open hands and to carry out external actions.
     pub fn app(&mut self) -> &mut App {
         &mut self.app
     }

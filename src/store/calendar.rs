@@ -1,15 +1,16 @@
-//! The time of the calendar: in UTC as it stands in files and their names, and as the clock of this computer shows it. The one place that reads the wall clock for them.
+//! Calendar time: in UTC for files and their names, and in local time for display. Only this module reads the wall clock for
+//! them.
 
 use chrono::{DateTime, Local};
 use std::time::{Duration, SystemTime};
 
-/// The time since 1970 now; nothing, where the clock is set before that.
+/// Current time since 1970; zero if the clock is set to an earlier date.
 pub fn since_1970() -> Duration {
     let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
     since.unwrap_or_default()
 }
 
-/// The day of a time since 1970, `2026-11-21`, in universal time.
+/// Formats the UTC date of a time since 1970: `2026-11-21`.
 pub fn day(since_1970: Duration) -> String {
     // Days to a date as in Hinnant's "chrono-compatible low-level date algorithms".
     let days = since_1970.as_secs() / 86_400 + 719_468;
@@ -27,14 +28,14 @@ pub fn day(since_1970: Duration) -> String {
     format!("{year:04}-{month:02}-{day:02}")
 }
 
-/// `2026-11-21T09:30:00Z`, for the time since 1970.
+/// Formats a time since 1970 in UTC: `2026-11-21T09:30:00Z`.
 pub fn stamp(since_1970: Duration) -> String {
     let seconds = since_1970.as_secs() % 86_400;
     let (hour, minute, second) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
     format!("{}T{hour:02}:{minute:02}:{second:02}Z", day(since_1970))
 }
 
-/// Day and time of a time since 1970 as the clock of this computer shows them, `2026-11-21` and `10:30`.
+/// Local date and time of a time since 1970: `2026-11-21` and `10:30`.
 pub fn local(since_1970: Duration) -> (String, String) {
     let seconds = i64::try_from(since_1970.as_secs()).unwrap_or(i64::MAX);
     let utc = DateTime::from_timestamp(seconds, 0).unwrap_or_default();

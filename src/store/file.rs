@@ -1,6 +1,5 @@
-//! Files replaced whole or not at all, and read within a limit. What this program keeps by itself is for the user alone who runs
-//! it: files of ours can be read by nobody else, folders that we make be entered by nobody else. A folder that is there stays as
-//! it is.
+//! Atomic file replacement and size-limited reads. Files and folders that the program creates are accessible only to the user who
+//! runs it. Existing folders keep their permissions.
 
 use std::fs::{DirBuilder, File, OpenOptions};
 use std::io::{self, Read as _, Write as _};
@@ -8,13 +7,13 @@ use std::io::{self, Read as _, Write as _};
 use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
-/// Unreadable files that are kept beside each other; then the last one is replaced.
+/// Maximum number of set-aside unreadable files; after that the last one is replaced.
 const UNREADABLE_MAX: u32 = 9;
 
-/// Makes a folder that only its person can enter, with those above it that are missing.
+/// Creates a folder that only its owner can enter, including missing parents.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn create_folder(path: &Path) -> io::Result<()> {
     let mut folder = DirBuilder::new();
     folder.recursive(true);
@@ -23,10 +22,10 @@ pub fn create_folder(path: &Path) -> io::Result<()> {
     folder.create(path)
 }
 
-/// Makes a folder for results, which must be new or empty.
+/// Creates a folder for results, which must be new or empty.
 ///
 /// # Errors
-/// What the system says, or that something is in it.
+/// The system's error, or `AlreadyExists` if the folder is not empty.
 pub fn create_empty_folder(path: &Path) -> io::Result<()> {
     create_folder(path)?;
     if std::fs::read_dir(path)?.next().is_some() {
@@ -36,23 +35,23 @@ pub fn create_empty_folder(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Makes a file that only its person can read, or empties one.
+/// Creates or truncates a file that only its owner can read.
 fn create_file(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.write(true).create(true).truncate(true);
     #[cfg(unix)]
     options.mode(0o600);
     let file = options.open(path)?;
-    // One of an earlier version may be there already.
+    // An earlier version may have created it with other permissions.
     #[cfg(unix)]
     file.set_permissions(std::fs::Permissions::from_mode(0o600))?;
     Ok(file)
 }
 
-/// Writes a file that only its person can read, in a folder that only they can enter unless it is there already.
+/// Writes a file that only its owner can read; creates its folder if missing, equally private.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub fn write_private(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
@@ -60,10 +59,10 @@ pub fn write_private(path: &Path, bytes: &[u8]) -> io::Result<()> {
     create_file(path)?.write_all(bytes)
 }
 
-/// Writes a file that only its person can read, where nothing is yet: no file, and no link.
+/// Writes a file that only its owner can read, at a path where neither a file nor a link exists.
 ///
 /// # Errors
-/// What the system says. Then there is no such file, or what was there before.
+/// The system's error. Then the new file does not exist, and an existing one is unchanged.
 pub fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);
@@ -71,16 +70,16 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
     options.mode(0o600);
     let written = options.open(path)?.write_all(bytes);
     if written.is_err() {
-        // Half a file would keep the next try from its name.
+        // A partial file would block the name for the next attempt.
         let _gone = std::fs::remove_file(path);
     }
     written
 }
 
-/// Adds to the end of a file that only its person can read, all at once: others may add at the same time.
+/// Appends to a file that only its owner can read, in one write: others may append at the same time.
 ///
 /// # Errors
-/// What the system says; then some of it may be there.
+/// The system's error; part of the text may have been written.
 pub fn append_private(path: &Path, text: &str) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
@@ -92,11 +91,11 @@ pub fn append_private(path: &Path, text: &str) -> io::Result<()> {
     options.open(path)?.write_all(text.as_bytes())
 }
 
-/// Writes a file so that at any moment either the old or the new one is there, whole. Where a link stands for it, the file that it
-/// leads to.
+/// Replaces a file atomically: at any moment either the whole old or the whole new file exists. Follows a symbolic link to its
+/// target.
 ///
 /// # Errors
-/// What the system says. Then the old file is as it was.
+/// The system's error. Then the old file is unchanged.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
@@ -115,10 +114,10 @@ pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     std::fs::rename(&new, path)
 }
 
-/// The same; the old file stays beside this path as `….last.toml`.
+/// Replaces a file like [`replace`]; the old file remains beside it as `….last.toml`.
 ///
 /// # Errors
-/// What the system says. Then the old file is as it was.
+/// The system's error. Then the old file is unchanged.
 pub fn replace_keeping_last(path: &Path, text: &str) -> io::Result<()> {
     if path.exists() {
         write_private(&last_of(path), &std::fs::read(path)?)?;
@@ -126,15 +125,15 @@ pub fn replace_keeping_last(path: &Path, text: &str) -> io::Result<()> {
     replace(path, text.as_bytes())
 }
 
-/// Where the file before this one stays.
+/// Path of the previous version of a file.
 pub fn last_of(path: &Path) -> PathBuf {
     path.with_extension("last.toml")
 }
 
-/// Reads a text file; `None` if there is none.
+/// Reads a text file; `None` if it does not exist.
 ///
 /// # Errors
-/// What the system says; a file of more than `limit` bytes, or one that is no file.
+/// The system's error; a file of more than `limit` bytes; a path that is not a regular file.
 pub fn read_text(path: &Path, limit: u64) -> io::Result<Option<String>> {
     let about = match std::fs::metadata(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -159,7 +158,7 @@ pub fn read_text(path: &Path, limit: u64) -> io::Result<Option<String>> {
     Ok(Some(text))
 }
 
-/// Gives an unreadable file another name; the name, if that worked.
+/// Renames an unreadable file; returns the new path, or `None` if that failed.
 pub fn set_aside(path: &Path) -> Option<PathBuf> {
     let name = |number: u32| path.with_extension(format!("unreadable-{number}.toml"));
     let free = (1..UNREADABLE_MAX).map(name).find(|aside| !aside.exists());

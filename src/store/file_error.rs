@@ -1,39 +1,33 @@
-//! Why a file was rejected: what is wrong, where, and what to do.
+//! Reason for a rejected file: the problem, its position, and the remedy.
 
 use crate::hand::Dof;
 use crate::hand::gap::NotOffered;
 use crate::system::SystemError;
 use std::io;
 
-/// The version of all formats that is written, and the only one that is read.
+/// Version of all formats that is written, and the only one that is read.
 pub const VERSION: i64 = 1;
 
-/// Why a file was rejected, as a whole.
+/// Reason why a file was rejected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{}{cause}", place(*.line, .field.as_ref()))]
 pub struct FileError {
-    /// Line, 1 the first, where one is to blame.
+    /// Line number from 1, if the problem is in a line.
     pub line: Option<usize>,
-    /// Field, where one is to blame.
+    /// Name of the field, if the problem is in a field.
     pub field: Option<String>,
-    /// What is wrong.
     pub cause: FileCause,
 }
 
 /// A kind of value in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ValueKind {
-    /// A number without a point.
     Whole,
-    /// Any number.
+    /// Integer or floating point.
     Number,
-    /// True or false.
     Truth,
-    /// Words in quotes.
     Text,
-    /// Values in brackets.
     List,
-    /// Keys with values.
     Table,
 }
 
@@ -50,7 +44,7 @@ impl ValueKind {
     }
 }
 
-/// What is wrong with a file.
+/// Kind of problem in a file.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum FileCause {
     /// Not a row of a table, or a value that does not fit its field.
@@ -59,58 +53,58 @@ pub enum FileCause {
     /// Not TOML.
     #[error("this is not TOML, which has lines like key = value: {0}")]
     Syntax(String),
-    /// One key twice.
+    /// Duplicate key.
     #[error("this key stands here twice: take one away")]
     KeyTwice,
-    /// Two keys of which only one can be there.
+    /// Two mutually exclusive keys.
     #[error("it cannot stand beside `{other}`: take one away")]
     Both {
-        /// The other one.
+        /// The other key.
         other: &'static str,
     },
-    /// A key that has to be there.
+    /// Missing required key.
     #[error("it is missing: add it")]
     Missing,
-    /// A key that nothing here has.
+    /// Unknown key.
     #[error("there is no such key here, only {known}: correct it, or take it away")]
     Unknown {
-        /// Those that are.
+        /// Known keys.
         known: String,
     },
     /// A number beyond its range.
     #[error("{got} is outside {range}")]
     Range {
-        /// What stands there.
+        /// Value found.
         got: String,
-        /// From where to where.
+        /// Allowed range.
         range: String,
     },
-    /// Another kind of value.
+    /// Wrong kind of value.
     #[error("{got} is not {}", wanted.words())]
     Kind {
-        /// What stands there.
+        /// Value found.
         got: String,
-        /// What should.
+        /// Expected kind.
         wanted: ValueKind,
     },
-    /// A word that is not known there.
+    /// Unknown word.
     #[error("\"{got}\" is not known here, only {known}")]
     Choice {
-        /// The word.
+        /// Word found.
         got: String,
-        /// Those that are known.
+        /// Known words.
         known: String,
     },
-    /// A kind of grip that has no gap in this hand.
+    /// A kind of grip for which this hand has no gap.
     #[error("{0}")]
     NotOffered(NotOffered),
-    /// A joint that a grip by size cannot leave alone.
+    /// A joint that a grip by size must control.
     #[error("a grip by size needs {}: take it away from here", dof.name())]
     Pinches {
-        /// The joint.
+        /// Joint to remove from the file.
         dof: Dof,
     },
-    /// Another table.
+    /// Not a table of samples.
     #[error("this is not a table of samples")]
     NotSamples,
     /// Not a picture.
@@ -119,70 +113,70 @@ pub enum FileCause {
     /// Another kind of file.
     #[error("this is another kind of file: its format is \"{got}\", not \"{wanted}\"")]
     Format {
-        /// What it says it is.
+        /// Format found.
         got: String,
-        /// What it should be.
+        /// Expected format.
         wanted: &'static str,
     },
-    /// Written by another version.
+    /// Unsupported version.
     #[error("version {got} cannot be read, only version {VERSION}")]
     Version {
-        /// What it says.
+        /// Version found.
         got: i64,
     },
-    /// A value that is not allowed there.
+    /// A value that is not allowed for its field.
     #[error("{got} is not {allowed}")]
     Value {
-        /// What stands there.
+        /// Value found.
         got: String,
-        /// What may.
+        /// Allowed values.
         allowed: String,
     },
     /// Two entries with one name.
     #[error("the name \"{name}\" is used twice")]
     Twice { name: String },
-    /// A name that the file does not have.
+    /// A name that the file does not define.
     #[error("there is no \"{name}\" in this file")]
     Absent { name: String },
-    /// More than there may be.
+    /// Too many entries.
     #[error("{got} are too many: at most {limit}")]
     TooMany {
-        /// How many there are.
+        /// Number found.
         got: usize,
-        /// How many there may be.
+        /// Maximum number.
         limit: usize,
     },
-    /// It holds what nobody else may know, and others can read or change it.
+    /// A file with secrets that other users can read or change.
     #[error("others can read this file: run 'chmod 600 {path}'")]
     NotPrivate {
-        /// The file.
+        /// Path of the file.
         path: String,
     },
-    /// It names a file outside its own folder.
+    /// A path outside the folder of this file.
     #[error("{got} does not lie in the folder of this file, or below it")]
     Outside {
-        /// The name.
+        /// Path found.
         got: String,
     },
     /// A file that holds nothing of its kind.
     #[error("there is nothing in it")]
     Empty,
-    /// The system could not read it.
+    /// The system could not read the file.
     #[error("it cannot be read: {0}")]
     Unreadable(SystemError),
-    /// A file that this one names is rejected.
+    /// A file that this one refers to was rejected.
     #[error("it cannot be read: {path}: {}", .error.reason())]
     Named { path: String, error: Box<FileError> },
 }
 
 impl FileError {
-    /// The error of the file that names this one.
+    /// Wraps the error of a referenced file into that of the file that refers to it.
     pub fn of_named(self, path: String) -> Self {
         let error = Box::new(self);
         FileCause::Named { path, error }.into()
     }
 
-    /// What is wrong, where it is said already that the file cannot be read.
+    /// The error text without the prefix "it cannot be read".
     fn reason(&self) -> String {
         match &self.cause {
             FileCause::Unreadable(why) => why.to_string(),
@@ -192,7 +186,7 @@ impl FileError {
     }
 }
 
-/// Line and field, as they stand before the cause.
+/// Line and field, as a prefix to the cause.
 fn place(line: Option<usize>, field: Option<&String>) -> String {
     let line = line.map(|line| format!("line {line}, "));
     let field = field.map(|field| format!("`{field}`: "));

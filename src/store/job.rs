@@ -1,14 +1,14 @@
-//! Work off the window's thread, and its result when it is there.
+//! Work off the window's thread, and its result.
 
 use std::io;
 use std::sync::Arc;
 use tokio::runtime::Handle;
 use tokio::sync::oneshot;
 
-/// Does something with files on a thread that may wait.
+/// Runs file work on a thread that may block.
 ///
 /// # Errors
-/// What the work says, or that the program is ending.
+/// The error of the work, or that the program is ending.
 pub async fn on_thread<T: Send + 'static>(
     work: impl FnOnce() -> io::Result<T> + Send + 'static,
 ) -> io::Result<T> {
@@ -18,12 +18,12 @@ pub async fn on_thread<T: Send + 'static>(
     }
 }
 
-/// Something that goes on elsewhere and comes to one result.
+/// A task that runs in the background and yields one result.
 #[derive(Debug)]
 pub struct BackgroundJob<T>(oneshot::Receiver<T>);
 
 impl<T: Send + 'static> BackgroundJob<T> {
-    /// Begins it. `wake` is called once the result is there.
+    /// Starts the job; `wake` is called when it has ended.
     pub fn start(
         runtime: &Handle,
         wake: &Arc<dyn Fn() + Send + Sync>,
@@ -32,7 +32,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
         Self::start_fallible(runtime, wake, async move { Some(work.await) })
     }
 
-    /// The same for work that may come to no result.
+    /// Starts a job that may yield no result.
     pub fn start_fallible(
         runtime: &Handle,
         wake: &Arc<dyn Fn() + Send + Sync>,
@@ -42,7 +42,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
         let wake = Arc::clone(wake);
         runtime.spawn(async move {
             if let Some(end) = work.await {
-                // A receiver that is gone means that nobody wants to know.
+                // A dropped receiver means that the result is not needed.
                 let _told = told.send(end);
             }
             wake();
@@ -50,7 +50,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
         Self(ended)
     }
 
-    /// The result, once it is there; then the job is gone. A job that came to no result is gone too.
+    /// Returns the result once it is available, and clears the slot. A job that ended without a result also clears it.
     pub fn take_from(slot: &mut Option<Self>) -> Option<T> {
         let end = slot.as_mut()?.0.try_recv();
         if !matches!(end, Err(oneshot::error::TryRecvError::Empty)) {

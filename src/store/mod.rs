@@ -1,5 +1,5 @@
-//! Files: replaced whole or not at all, read within a limit, written when what they hold changed; and work off the window's
-//! thread. Knows the head of our formats and nothing of what they hold.
+//! Files: replaced atomically, read within a limit, written when their content changed; and work off the window's thread. Knows
+//! the header of our formats, but not their content.
 
 pub mod calendar;
 pub mod file;

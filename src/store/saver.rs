@@ -1,4 +1,4 @@
-//! Writes what is kept when it changed, at most once a second and one write at a time.
+//! Writes a persistent value when it changed, at most once a second and one write at a time.
 
 use crate::store::file::replace_keeping_last;
 use crate::store::job::{BackgroundJob, on_thread};
@@ -7,13 +7,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A typed name or a dragged window changes settings many times a second; the disk sees one of them.
+/// Minimum interval of writes: typing a name or dragging a window changes settings many times a second.
 const SAVE_EVERY: Duration = Duration::from_secs(1);
 
-/// A file that could not be written, and what the system says.
+/// Path of a file that could not be written, and the system's error.
 pub type NotSaved = (PathBuf, io::Error);
 
-/// Keeps a file up to date. Without a path, nothing is kept.
+/// Keeps a file up to date. Without a path, it writes nothing.
 #[derive(Debug)]
 pub struct Saver<K> {
     path: Option<PathBuf>,
@@ -25,7 +25,7 @@ pub struct Saver<K> {
 }
 
 impl<K: Clone + PartialEq + Send + 'static> Saver<K> {
-    /// `kept` is what the file holds, or what needs no file; `text` makes the file of it.
+    /// `kept` is the content of the file, or content that needs no file; `text` serialises it.
     pub const fn new(
         path: Option<PathBuf>,
         runtime: tokio::runtime::Handle,
@@ -42,8 +42,8 @@ impl<K: Clone + PartialEq + Send + 'static> Saver<K> {
         }
     }
 
-    /// Writes if needed; `now` counts from any beginning. What went wrong with an earlier write comes back. It is not tried
-    /// again before something changes again.
+    /// Starts a write if needed; `now` counts from any origin. Returns the error of an earlier write, which is not retried until
+    /// the value changes again.
     ///
     /// # Errors
     /// [`NotSaved`].
@@ -58,7 +58,7 @@ impl<K: Clone + PartialEq + Send + 'static> Saver<K> {
         ended
     }
 
-    /// Writes what is not written yet, at once. True when all is on disk, or cannot be.
+    /// Writes pending changes at once. True if everything is on disk, or cannot be written.
     pub fn flush(&mut self, newest: &K, now: Duration) -> bool {
         let failed = self.ended().is_err();
         self.begin(newest, now);

@@ -1,5 +1,4 @@
-//! Files of ours in TOML: of which format and version they are, and where in them something is wrong. Knows what stands in none
-//! of them.
+//! TOML files of the program: their format and version, and the position of errors. Independent of their content.
 
 use crate::store::file_error::{FileCause, FileError};
 use crate::store::read_text;
@@ -13,10 +12,10 @@ use toml::Spanned;
 
 pub use crate::store::file_error::VERSION;
 
-/// Reads a file that must be there and has at most `limit` bytes.
+/// Reads a file that must exist and has at most `limit` bytes.
 ///
 /// # Errors
-/// What the system or `read` says.
+/// The system's error or that of `read`.
 pub fn load<T>(
     path: &Path,
     limit: u64,
@@ -34,17 +33,17 @@ struct FileHead {
     version: Spanned<i64>,
 }
 
-/// The text that is being read, to say where in it something is wrong.
+/// Text being parsed, for locating errors in it.
 #[derive(Debug, Clone, Copy)]
 pub struct FileText<'a>(&'a str);
 
 impl<'a> FileText<'a> {
-    /// A text that names no format.
+    /// A text without a format header.
     pub const fn plain(text: &'a str) -> Self {
         Self(text)
     }
 
-    /// A text of this format and of the version that is read.
+    /// A text with this format and the supported version.
     ///
     /// # Errors
     /// [`FileError`] with line and field.
@@ -64,10 +63,10 @@ impl<'a> FileText<'a> {
         Ok(source)
     }
 
-    /// What it holds.
+    /// Parses the content.
     ///
     /// # Errors
-    /// [`FileCause::Malformed`] with line and field.
+    /// [`FileError`] with line and field.
     pub fn parse<T: DeserializeOwned>(self) -> Result<T, FileError> {
         toml::from_str(self.0).map_err(|error| self.toml_error(&error))
     }
@@ -82,7 +81,7 @@ impl<'a> FileText<'a> {
         let span = error.span().unwrap_or(0..0);
         FileError {
             field: match cause {
-                // What cannot be read stands behind no key.
+                // A syntax error does not belong to any key.
                 FileCause::Syntax(_) => None,
                 _ => named.or_else(|| self.key_before(span.start)),
             },
@@ -91,7 +90,7 @@ impl<'a> FileText<'a> {
         }
     }
 
-    /// The error of a field that stands here.
+    /// Builds the error of a field at this position.
     pub fn blame(self, at: Range<usize>, field: &str, cause: FileCause) -> FileError {
         FileError {
             line: Some(self.line(at.start)),
@@ -105,7 +104,7 @@ impl<'a> FileText<'a> {
         1 + before.filter(|byte| *byte == b'\n').count()
     }
 
-    /// The key whose value begins here.
+    /// Key of the value that begins at this position.
     fn key_before(self, at: usize) -> Option<String> {
         let (before, _) = self.0.get(..at)?.rsplit_once('=')?;
         let key = before.rsplit(['\n', '{', ',']).next()?.trim();

@@ -1,8 +1,8 @@
-//! What the reader of TOML says of a value, in plain words.
+//! Translates messages of the TOML parser into plain words.
 
 use crate::store::file_error::{FileCause, ValueKind};
 
-/// The key that it names, if it names one, and what is wrong.
+/// Returns the named key, if any, and the cause.
 pub(super) fn plain(said: &str) -> (Option<String>, FileCause) {
     let said = said.trim().replace('\n', " ");
     if let Some(key) = said.strip_prefix("missing field ") {
@@ -22,14 +22,14 @@ pub(super) fn plain(said: &str) -> (Option<String>, FileCause) {
     )
 }
 
-/// The word that is wrong, and those that are known.
+/// Returns the invalid word and the known ones.
 fn named(said: &str, start: &str) -> Option<(String, String)> {
     let mut names = names(said.strip_prefix(start)?);
     let got = names.next()?;
     Some((got, names.collect::<Vec<_>>().join(", ")))
 }
 
-/// What stands in backticks.
+/// Words in backticks.
 fn names(said: &str) -> impl Iterator<Item = String> {
     said.split('`').skip(1).step_by(2).map(str::to_owned)
 }

@@ -1,4 +1,4 @@
-//! The asking half of the framing: requests out, replies in. The device half is in `device`.
+//! Client half of the framing: encodes requests, decodes replies. The device half is in `device`.
 
 use crate::codec::rs485::framing::{
     self, CALIBRATION_END, FrameDirection, FrameParts, Framer, FramerCounts, Payload, READ_LEN_MAX,
@@ -7,7 +7,7 @@ use crate::codec::rs485::framing::{
 use crate::hand::register::SAVE;
 use crate::hand::{HandId, RegisterWrite, Span};
 
-/// The request that reads these bytes (manual 2.2.1); `None` if there are none or more than [`READ_LEN_MAX`].
+/// Builds the request that reads these bytes (manual 2.2.1); `None` for 0 or more than [`READ_LEN_MAX`] bytes.
 pub fn encode_read(id: HandId, span: Span) -> Option<Rs485Frame> {
     if span.len == 0 || span.len > READ_LEN_MAX {
         return None;
@@ -23,7 +23,7 @@ pub fn encode_read(id: HandId, span: Span) -> Option<Rs485Frame> {
     Some(frame)
 }
 
-/// The request that writes these bytes (manual 2.2.2).
+/// Builds the request that writes these bytes (manual 2.2.2).
 pub fn encode_write(id: HandId, write: &RegisterWrite) -> Rs485Frame {
     let frame = framing::build(
         FrameDirection::Request,
@@ -36,41 +36,41 @@ pub fn encode_write(id: HandId, write: &RegisterWrite) -> Rs485Frame {
     frame.unwrap_or_default()
 }
 
-/// What a hand answers. The id is as received: after a change of HAND_ID the acknowledgement may carry the new one.
+/// Reply of a hand. The id is as received: after a change of HAND_ID the acknowledgement may carry the new id.
 #[expect(
     clippy::large_enum_variant,
     reason = "the buffer stands inside on purpose: no allocation per frame"
 )]
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Rs485Reply {
-    /// Bytes that were read (manual 2.2.1).
+    /// Reply to a read (manual 2.2.1).
     Read {
-        /// Id of the hand that answers.
+        /// Id of the hand that replies.
         id: u8,
-        /// First byte's address.
+        /// Address of the first byte.
         address: u16,
         /// 1 to 252 bytes in memory order.
         bytes: Payload,
     },
-    /// A write was taken (manual 2.2.2), or the late result of SAVE.
+    /// Acknowledgement of a write (manual 2.2.2), or the late result of SAVE.
     WriteAck {
-        /// Id of the hand that answers.
+        /// Id of the hand that replies.
         id: u8,
-        /// First byte's address.
+        /// Address of the first byte.
         address: u16,
-        /// 1 by the manual.
+        /// 1 according to the manual.
         value: u8,
     },
 }
 
-/// How a SAVE ended (manual 2.2.2).
+/// Result of a SAVE (manual 2.2.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SaveResult {
     /// 0x00: written to flash.
     Ok,
     /// 0xFF: not written.
     Failed,
-    /// A value that the manual does not name.
+    /// A value that the manual does not define.
     Other(u8),
 }
 
@@ -83,35 +83,35 @@ impl Rs485Reply {
         }
     }
 
-    /// Id of the hand that answers.
+    /// Id of the hand that replies.
     pub const fn id(&self) -> u8 {
         match self {
             Self::Read { id, .. } | Self::WriteAck { id, .. } => *id,
         }
     }
 
-    /// First byte's address.
+    /// Address of the first byte.
     pub const fn address(&self) -> u16 {
         match self {
             Self::Read { address, .. } | Self::WriteAck { address, .. } => *address,
         }
     }
 
-    /// True if this can be the frame that ends a calibration of the force sensors. Only meaningful while one is awaited.
+    /// True if this can be the frame that ends a calibration of the force sensors. Only meaningful while one is pending.
     // Manual: silent; the older manual of this family shows `90 EB 01 04 11 02 00 00 18`, about six seconds later.
     pub fn is_calibration_end(&self) -> bool {
         matches!(self, Self::Read { address: CALIBRATION_END, bytes, .. } if bytes.as_slice() == [0])
     }
 
-    /// The result of a SAVE, if this can be the late frame that carries it.
+    /// Returns the result of a SAVE, if this can be the late frame that carries it.
     ///
-    /// Only meaningful while a SAVE is awaited: a plain read of the SAVE register looks the same.
-    /// The first acknowledgement (command 0x12, value 1) is no result.
+    /// Only meaningful while a SAVE is pending: a plain read of the SAVE register looks the same. The first acknowledgement (command
+    /// 0x12, value 1) is not a result.
     pub fn save_result(&self) -> Option<SaveResult> {
         if self.address() != SAVE.address {
             return None;
         }
-        // Manual: the table of 2.2.2 prints command 0x12 for this frame, older manuals show 0x11: both are taken.
+        // Manual: the table of 2.2.2 prints command 0x12 for this frame, older manuals show 0x11: both are accepted.
         let value = match self {
             Self::WriteAck { value: 1, .. } => return None,
             Self::WriteAck { value, .. } => *value,
@@ -129,15 +129,15 @@ impl Rs485Reply {
 }
 
 impl ReplyDecoder {
-    /// A whole request that was on the line: our own that an adapter gave back, or another controller's. Oldest first;
-    /// of many at once only the first few are kept.
+    /// Returns the oldest whole request seen on the line: our own, echoed by an adapter, or another controller's. A burst is truncated to
+    /// the first few.
     pub fn overheard(&mut self) -> Option<Rs485Frame> {
         self.0.overheard()
     }
 }
 
 framing::decoder!(
-    /// Finds replies in what comes from the wire. Whole requests (echoes) are skipped and counted.
+    /// Decodes replies from received bytes. Whole requests (echoes) are skipped and counted.
     ReplyDecoder,
     FrameDirection::Reply,
     Rs485Reply,

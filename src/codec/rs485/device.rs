@@ -1,4 +1,4 @@
-//! The answering half of the framing, for the simulated hand: requests in, replies out. The asking half is in `client`.
+//! Device half of the framing, for the simulated hand: decodes requests, encodes replies. The client half is in `client`.
 
 use crate::codec::rs485::framing::{
     self, CALIBRATION_END, FrameDirection, FrameParts, Framer, FramerCounts, Payload, READ,
@@ -7,25 +7,25 @@ use crate::codec::rs485::framing::{
 use crate::hand::Span;
 use crate::hand::register::SAVE;
 
-/// What a hand is asked.
+/// Request received by a hand.
 #[expect(
     clippy::large_enum_variant,
     reason = "the buffer stands inside on purpose: no allocation per frame"
 )]
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Rs485Request {
-    /// Give these bytes (manual 2.2.1). The length is as received: 0 and 253 to 255 cannot be answered.
+    /// Read these bytes (manual 2.2.1). The length is as received: 0 and 253 to 255 cannot be answered.
     Read {
-        /// The hand that is meant.
+        /// Id of the addressed hand.
         id: u8,
-        /// The bytes wanted.
+        /// Requested bytes.
         span: Span,
     },
-    /// Take these bytes (manual 2.2.2).
+    /// Write these bytes (manual 2.2.2).
     Write {
-        /// The hand that is meant.
+        /// Id of the addressed hand.
         id: u8,
-        /// First byte's address.
+        /// Address of the first byte.
         address: u16,
         /// 1 to 252 bytes in memory order.
         bytes: Payload,
@@ -46,29 +46,29 @@ impl Rs485Request {
 }
 
 framing::decoder!(
-    /// Finds requests in what comes from the wire. Whole replies (of other hands on the bus) are skipped and counted.
+    /// Decodes requests from received bytes. Whole replies (of other hands on the bus) are skipped and counted.
     RequestDecoder,
     FrameDirection::Request,
     Rs485Request,
     Rs485Request::from_parts
 );
 
-/// The reply to a read (manual 2.2.1); `None` unless there are 1 to 252 bytes.
+/// Builds the reply to a read (manual 2.2.1); `None` unless there are 1 to 252 bytes.
 pub fn encode_read_reply(id: u8, address: u16, bytes: &[u8]) -> Option<Rs485Frame> {
     framing::build(FrameDirection::Reply, id, READ, address, bytes)
 }
 
-/// The acknowledgement of a write (manual 2.2.2); the manual's value is 1.
+/// Builds the acknowledgement of a write (manual 2.2.2); the manual's value is 1.
 pub fn encode_write_ack(id: u8, address: u16, value: u8) -> Rs485Frame {
     framing::build_short(FrameDirection::Reply, id, WRITE, address, value)
 }
 
-/// The late frame that tells that a calibration of the force sensors is finished.
+/// Builds the late frame that reports the end of a force-sensor calibration.
 pub fn encode_calibration_end(id: u8) -> Rs485Frame {
     framing::build_short(FrameDirection::Reply, id, READ, CALIBRATION_END, 0)
 }
 
-/// The late frame that tells how a SAVE ended (manual 2.2.2), with command byte 0x11 or 0x12.
+/// Builds the late frame that carries the result of a SAVE (manual 2.2.2), with command byte 0x11 or 0x12.
 pub fn encode_save_result(id: u8, command: u8, ok: bool) -> Rs485Frame {
     let value = if ok { 0x00 } else { 0xFF };
     framing::build_short(FrameDirection::Reply, id, command, SAVE.address, value)

@@ -1,17 +1,17 @@
-//! Finding whole frames in a stream that may hold noise, shared by client and device. What a frame means is not known here.
+//! Finds whole frames in a stream that may contain noise; shared by client and device. Does not interpret them.
 
 use arrayvec::ArrayVec;
 
-/// A whole frame, header to checksum; the longest has 260 bytes.
+/// A whole frame, header to checksum; at most 260 bytes.
 pub type Rs485Frame = ArrayVec<u8, 261>;
-/// The data bytes of a frame.
+/// Data bytes of a frame.
 pub type Payload = ArrayVec<u8, 252>;
-/// Most bytes that one read can ask for: the length byte of the reply is this plus three.
+/// Maximum number of bytes in one read: the length byte of the reply is this plus three.
 pub const READ_LEN_MAX: u16 = 252;
-/// Bytes that a decoder keeps: two of the longest frames, so that a frame behind a false header still fits.
+/// Capacity of a decoder's buffer: two of the longest frames, so that a frame behind a false header still fits.
 pub const BUFFER_LEN: usize = 520;
 
-/// Frames of the other way that wait to be looked at; more at once only count.
+/// Maximum number of queued frames of the opposite direction; further ones are only counted.
 const OVERHEARD_MAX: usize = 4;
 
 /// Command byte of a read.
@@ -19,17 +19,17 @@ pub const READ: u8 = 0x11;
 /// Command byte of a write.
 pub const WRITE: u8 = 0x12;
 
-/// What stands in the place of the address in the frame that ends a calibration.
+/// Value in the address field of the frame that ends a calibration.
 pub(super) const CALIBRATION_END: u16 = 2;
 
 const REQUEST_HEADER: [u8; 2] = [0xEB, 0x90];
 const REPLY_HEADER: [u8; 2] = [0x90, 0xEB];
-/// Header, id and length byte before, checksum after what the length byte counts.
+/// Header, id and length byte before the counted bytes, checksum after them.
 const AROUND: usize = 5;
-/// Command, address and one byte of data: no frame has less.
+/// Command, address and one byte of data: the minimum of a frame.
 const SHORTEST: u8 = 4;
 
-/// Which way a frame goes.
+/// Direction of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FrameDirection {
     /// To the hand.
@@ -46,7 +46,7 @@ impl FrameDirection {
         }
     }
 
-    /// True if a frame of this way may have this command and length byte.
+    /// True if a frame of this direction may have this command and length byte.
     const fn allows(self, command: u8, len: u8) -> bool {
         match (self, command) {
             (Self::Request, READ) | (Self::Reply, WRITE) => len == SHORTEST,
@@ -56,67 +56,67 @@ impl FrameDirection {
     }
 }
 
-/// What a decoder met apart from good frames. Counts only grow.
+/// Statistics of a decoder. Counters never decrease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FramerCounts {
-    /// Good frames handed out.
+    /// Valid frames returned.
     pub frames: u64,
-    /// Frames of the other direction, whole and good: an adapter that echoes, or another speaker on the bus.
+    /// Whole, valid frames of the opposite direction: from an echoing adapter, or another device on the bus.
     pub echoes: u64,
-    /// Headers with a possible length whose checksum was wrong.
+    /// Headers with a possible length, but a wrong checksum.
     pub checksum_errors: u64,
-    /// Runs of bytes that had to be skipped to find the next frame.
+    /// Runs of bytes skipped to find the next frame.
     pub resyncs: u64,
-    /// Bytes skipped.
+    /// Skipped bytes.
     pub skipped_bytes: u64,
 }
 
-/// A frame's parts.
+/// Fields of a frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FrameParts {
-    /// The hand that is meant or that answers.
+    /// Id of the hand that is addressed or that replies.
     pub id: u8,
     /// 0x11 reads, 0x12 writes.
     pub command: u8,
-    /// First byte's address.
+    /// Address of the first byte.
     pub address: u16,
-    /// 1 to 252 bytes of data; the length wanted in a read request.
+    /// 1 to 252 bytes of data; the requested length in a read request.
     pub data: Payload,
 }
 
-/// What some bytes begin with.
+/// Result of [`scan`]: interpretation of the leading bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FrameStart {
-    /// A good frame of so many bytes.
+    /// A valid frame of this direction and length in bytes.
     Frame(FrameDirection, usize),
-    /// A frame of so many bytes whose checksum is wrong.
+    /// A frame with a wrong checksum.
     BadSum {
-        /// Bytes, header to checksum.
+        /// Length in bytes, header to checksum.
         len: usize,
-        /// The checksum that was sent.
+        /// Received checksum.
         got: u8,
-        /// The checksum of what was sent.
+        /// Checksum computed over the received bytes.
         want: u8,
     },
-    /// The beginning of a frame; its length if that is known by now.
+    /// Beginning of a frame; its total length if already known.
     Open(Option<usize>),
-    /// A header, but a length or command that no frame has.
+    /// A header with an invalid length or command.
     BadHead {
-        /// The length byte.
+        /// Received length byte.
         len: u8,
-        /// The command byte, if it is there.
+        /// Received command byte, if already received.
         command: Option<u8>,
     },
-    /// No header.
+    /// Not a header.
     Nothing,
 }
 
-/// The low byte of the sum of all bytes after the header (manual 2.2.1).
+/// Checksum: low byte of the sum of all bytes after the header (manual 2.2.1).
 pub(super) fn checksum(body: &[u8]) -> u8 {
     body.iter().fold(0, |sum, byte| sum.wrapping_add(*byte))
 }
 
-/// Looks at the beginning of some bytes. None of them is [`FrameStart::Open`].
+/// Inspects the leading bytes. Empty input gives [`FrameStart::Open`].
 pub fn scan(bytes: &[u8]) -> FrameStart {
     let direction = match bytes {
         [] => return FrameStart::Open(None),
@@ -150,7 +150,7 @@ pub fn scan(bytes: &[u8]) -> FrameStart {
     }
 }
 
-/// The parts of a whole frame, whatever its checksum says; `None` if it is too short.
+/// Splits a whole frame into its fields without checking the checksum; `None` if it is too short.
 pub fn parts(frame: &[u8]) -> Option<FrameParts> {
     let [_, _, id, _, command, low, high, data @ .., _sum] = frame else {
         return None;
@@ -163,7 +163,7 @@ pub fn parts(frame: &[u8]) -> Option<FrameParts> {
     })
 }
 
-/// A whole frame; `None` unless there are 1 to 252 bytes of data.
+/// Builds a whole frame; `None` unless there are 1 to 252 bytes of data.
 pub(super) fn build(
     direction: FrameDirection,
     id: u8,
@@ -188,7 +188,7 @@ pub(super) fn build(
     Some(frame)
 }
 
-/// A frame with one byte of data, which always fits.
+/// Builds a frame with one byte of data, which always fits.
 pub(super) fn build_short(
     direction: FrameDirection,
     id: u8,
@@ -205,16 +205,16 @@ pub(super) fn build_short(
     frame
 }
 
-/// A bounded buffer and the search for the next good frame of one direction.
+/// A bounded buffer with a search for the next valid frame of one direction.
 #[derive(Debug, Clone)]
 pub(super) struct Framer {
     direction: FrameDirection,
     buffer: ArrayVec<u8, BUFFER_LEN>,
-    /// Leading bytes that came before a silence: a frame that began there and is not whole will not become so.
+    /// Number of leading bytes received before a silence: a partial frame among them will never be completed.
     stale: usize,
-    /// True while skipping, so that a run is counted once.
+    /// True within a run of skipped bytes, which counts once.
     skipping: bool,
-    /// Whole frames of the other direction.
+    /// Whole frames of the opposite direction.
     overheard: ArrayVec<Rs485Frame, OVERHEARD_MAX>,
     counts: FramerCounts,
 }
@@ -258,7 +258,7 @@ impl Framer {
                     }
                     self.counts.echoes += 1;
                     if let Ok(frame) = Rs485Frame::try_from(whole) {
-                        // Too many at once are counted all the same.
+                        // Frames beyond the limit have still been counted.
                         let _full = self.overheard.try_push(frame);
                     }
                 }
@@ -277,7 +277,7 @@ impl Framer {
         found
     }
 
-    /// Skips one byte only: the next header may stand inside what looked like a frame.
+    /// Skips only one byte: the next header may be inside an apparent frame.
     const fn skip(&mut self, at: &mut usize) {
         if !self.skipping {
             self.counts.resyncs += 1;
@@ -287,7 +287,7 @@ impl Framer {
         *at += 1;
     }
 
-    /// The oldest frame of the other way that was not looked at yet.
+    /// Returns the oldest queued frame of the opposite direction.
     pub(super) fn overheard(&mut self) -> Option<Rs485Frame> {
         self.overheard.pop_at(0)
     }
@@ -311,7 +311,7 @@ impl Framer {
     }
 }
 
-/// The methods that both decoders share, each on its own type of frame.
+/// Defines the methods that both decoders share, each for its own frame type.
 macro_rules! decoder {
     ($(#[$doc:meta])* $name:ident, $direction:expr, $item:ty, $decode:expr) => {
         $(#[$doc])*
@@ -325,15 +325,15 @@ macro_rules! decoder {
         }
 
         impl $name {
-            /// Takes bytes as they come; returns how many. The rest is given again after [`Self::next`] said `None`,
-            /// which always makes room: at most [`BUFFER_LEN`] bytes are kept.
+            /// Accepts received bytes and returns how many fit. Push the rest again after [`Self::next`] returned `None`, which always
+            /// makes room: at most [`BUFFER_LEN`] bytes are buffered.
             ///
             /// [`BUFFER_LEN`]: crate::codec::rs485::framing::BUFFER_LEN
             pub fn push(&mut self, bytes: &[u8]) -> usize {
                 self.0.push(bytes)
             }
 
-            /// The next good frame; `None` if more bytes are needed.
+            /// Returns the next valid frame; `None` if more bytes are needed.
             #[expect(
                 clippy::should_implement_trait,
                 reason = "None is not the end: more may come after a push"
@@ -342,26 +342,25 @@ macro_rules! decoder {
                 self.0.next().map($decode)
             }
 
-            /// The line fell silent: a frame that is not whole by now never will be.
+            /// Reports that the line fell silent: a partial frame will never be completed.
             ///
-            /// Noise may look like the header of a long frame; the decoder then waits for its end, and good frames
-            /// behind it wait too. Call this when a reply is late, then [`Self::next`] until `None`: it gives
-            /// the frames that stand inside the unfinished one.
+            /// Noise may look like the header of a long frame; the decoder then waits for its end, and valid frames behind it wait too.
+            /// Call this when a reply is late, then [`Self::next`] until `None`: it returns the frames inside the incomplete one.
             pub fn flush_pending(&mut self) {
                 self.0.flush_pending();
             }
 
-            /// What was met since the start, [`Self::clear`] or not.
+            /// Statistics since creation; [`Self::clear`] does not reset them.
             pub const fn counts(&self) -> FramerCounts {
                 self.0.counts()
             }
 
-            /// Forgets all bytes that are kept; counts stay.
+            /// Discards all buffered bytes; counters are unchanged.
             pub fn clear(&mut self) {
                 self.0.clear();
             }
 
-            /// Bytes kept because they may be the beginning of a frame.
+            /// Buffered bytes that may be the beginning of a frame.
             pub const fn buffered(&self) -> usize {
                 self.0.buffered()
             }

@@ -1,4 +1,4 @@
-//! The private RS485 framing of manual 2.2: requests `EB 90 …`, replies `90 EB …`. Modbus lives elsewhere.
+//! The private RS485 framing of manual 2.2: requests `EB 90 …`, replies `90 EB …`. Modbus is in sibling modules.
 
 pub mod client;
 pub mod device;

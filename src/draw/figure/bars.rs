@@ -1,4 +1,4 @@
-//! The segments as round bars, which keep light from what is near: folds get darker, and shadows fall. Four at a time.
+//! The segments as capsules that occlude light: they darken folds and cast shadows. Computed four at a time.
 
 use crate::figure::camera::Camera;
 use arrayvec::ArrayVec;
@@ -9,17 +9,17 @@ use Segment::{
     Index1, Index2, Little1, Little2, Middle1, Middle2, Ring1, Ring2, Thumb2, Thumb3, Thumb4,
 };
 
-/// How far from a bar the sky is still darker, and how much of it a bar takes that lies on a surface.
+/// Distance up to which a bar darkens the sky, and the share of sky that a bar touching the surface blocks.
 const NEAR_MM: f32 = 16.0;
 const FOLD_PART: f32 = 0.95;
-/// How a shadow grows softer with the way to what throws it.
+/// Growth of a shadow's soft edge with the distance to the occluder.
 const SOFT_PART: f32 = 0.22;
-/// The bones of one finger meet: nearer than this one throws no shadow on the other, and beyond the second all of it.
+/// Bones of one finger touch: below the first distance they cast no shadow on each other, beyond the second a full one.
 const OWN_MM: [f32; 2] = [4.0, 16.0];
-/// The radius of a bar that is not there: nothing is near it.
+/// Radius of an unused lane: far from everything.
 const NO_BAR_MM: f32 = -1e9;
 
-/// Begin and end in the segment's frame, radius.
+/// Start and end in the segment's frame, and radius; mm.
 const BARS: [(Segment, [f32; 3], [f32; 3], f32); 11] = [
     (Little1, [0.0, 0.0, -6.6], [-3.0, 31.0, -6.6], 8.6),
     (Little2, [0.0, 2.0, -6.1], [-1.0, 36.7, -6.1], 7.4),
@@ -34,7 +34,7 @@ const BARS: [(Segment, [f32; 3], [f32; 3], f32); 11] = [
     (Thumb4, [0.0, 0.0, -7.2], [27.0, 9.0, -7.2], 8.4),
 ];
 
-/// One bar as the eye sees it.
+/// One bar in eye coordinates.
 #[derive(Debug, Clone, Copy)]
 struct RoundBar {
     segment: Segment,
@@ -43,7 +43,7 @@ struct RoundBar {
     radius: f32,
 }
 
-/// All bars of a hand, and the way to the key light.
+/// All bars of a hand, and the direction to the key light.
 #[derive(Debug)]
 pub(crate) struct Bars {
     bars: ArrayVec<RoundBar, 11>,
@@ -67,12 +67,12 @@ struct Four {
     from: Vec3x4,
     along: Vec3x4,
     radius: Vec4,
-    /// 1 / the square of the length.
+    /// Reciprocal of the squared length.
     per_length_sq: Vec4,
     radius_sq: Vec4,
-    /// What of the sky's darkness is left where it begins.
+    /// Falloff value at which the sky's darkening begins.
     least: Vec4,
-    /// How much of the length leads to the key light, and 1 / the square of what is left beside that.
+    /// Component of the axis towards the key light, and the reciprocal square of the part across it.
     to_key: Vec4,
     per_aside_sq: Vec4,
     /// 1 for a bar of the same finger.
@@ -80,7 +80,7 @@ struct Four {
 }
 
 impl Bars {
-    /// The bars of a hand in this pose.
+    /// Bars of a hand in this pose.
     pub(crate) fn new(camera: &Camera, pose: &SegmentFrames, key: Vec3) -> Self {
         let bars = BARS.into_iter().map(|(segment, from, to, radius)| {
             let frame = camera.hand * pose.frame(segment);
@@ -99,7 +99,7 @@ impl Bars {
         }
     }
 
-    /// Those that can darken anything of a ball around a segment, or around what is none.
+    /// Bars that can darken any point of a sphere around a part; `segment` is `None` for parts that are not of the hand.
     pub(crate) fn near(&self, segment: Option<Segment>, middle: Vec3, radius: f32) -> Near {
         let others = self.bars.iter().filter(|bar| Some(bar.segment) != segment);
         let near: ArrayVec<RoundBar, 11> = others
@@ -117,7 +117,7 @@ impl Bars {
 }
 
 impl RoundBar {
-    /// Whether it can darken anything of a ball.
+    /// True if it can darken any point of a sphere.
     fn matters(&self, middle: Vec3, radius: f32, key: Vec3) -> bool {
         let four = Four::new(std::slice::from_ref(self), key, None);
         let (reach, to) = (radius + self.radius + NEAR_MM, four.to(middle));
@@ -129,7 +129,7 @@ impl RoundBar {
 }
 
 impl Near {
-    /// The shares of the sky and of the key light that reach a place with this normal.
+    /// The shares of sky and key light that reach a point with this normal.
     pub(crate) fn left(&self, at: Vec3, normal: Vec3) -> (f32, f32) {
         let (mut sky, mut lit) = (Vec4::ONE, Vec4::ONE);
         let is_lit = normal.dot(self.key) > -0.15;
@@ -168,12 +168,12 @@ impl Four {
         }
     }
 
-    /// The ways from the begins of the bars to a place.
+    /// Vectors from the starts of the bars to a point.
     fn to(&self, at: Vec3) -> Vec3x4 {
         Vec3x4::splat(at).minus(&self.from)
     }
 
-    /// The ways from a place to the nearest of each axis; `to` leads there from the begins.
+    /// Vectors from a point to the nearest point of each axis; `to` is that of [`Self::to`].
     fn nearest(&self, to: &Vec3x4) -> Vec3x4 {
         let part = to.dot(&self.along) * self.per_length_sq;
         self.along
@@ -181,7 +181,7 @@ impl Four {
             .minus(to)
     }
 
-    /// The ways from a place to where the ray to the key light passes each axis, and how far along the ray that is.
+    /// Vectors from a point to where the ray to the key light passes each axis, and the distance along the ray.
     fn passed(&self, to: &Vec3x4, key: Vec3) -> (Vec3x4, Vec4) {
         let part = (to.dot(&self.along) - self.to_key * to.dot_all(key)) * self.per_aside_sq;
         let way = self
@@ -191,7 +191,7 @@ impl Four {
         (way, way.dot_all(key))
     }
 
-    /// The shares of the sky that they leave to a surface.
+    /// The share of sky that each bar leaves to a surface.
     fn sky(&self, to: &Vec3x4, normal: Vec3) -> Vec4 {
         let way = self.nearest(to);
         let per_apart_sq = way.dot(&way).max(Vec4::ONE).recip();
@@ -200,7 +200,7 @@ impl Four {
         Vec4::ONE - FOLD_PART * towards * near.max(Vec4::ZERO)
     }
 
-    /// The shares of the key light that they leave to a place.
+    /// The share of the key light that each bar leaves to a point.
     fn lit(&self, to: &Vec3x4, key: Vec3) -> Vec4 {
         let (way, forth) = self.passed(to, key);
         let beside_sq = (way.dot(&way) - forth * forth).max(Vec4::ZERO);
@@ -249,7 +249,7 @@ impl Vec3x4 {
     }
 }
 
-/// From 0 to 1, softly at both ends.
+/// Smoothstep from 0 to 1.
 fn smooth(part: Vec4) -> Vec4 {
     let part = part.clamp(Vec4::ZERO, Vec4::ONE);
     part * part * (3.0 - 2.0 * part)

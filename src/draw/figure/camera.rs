@@ -1,4 +1,4 @@
-//! From where the hand is looked at, and where on the screen its places are then.
+//! The view of the hand, and the projection of its points to the screen.
 
 use crate::figure::shape;
 use egui::{Pos2, Rect, vec2};
@@ -7,23 +7,23 @@ use handscope_core::hand::kinematics::{Segment, SegmentFrames, Side, tip_pad};
 use handscope_core::hand::{Dof, Finger, PerDof};
 use std::sync::LazyLock;
 
-/// Distance of the eye from the middle of the hand, and that middle.
+/// Distance of the eye from the centre of the hand, and that centre.
 pub(crate) const EYE_MM: f32 = 900.0;
 const MIDDLE: Vec3 = Vec3::new(0.0, 15.0, 125.0);
 
-/// From where the hand is looked at, in radians.
+/// Direction from which the hand is viewed, in radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
-    /// Around the hand's long axis: above 0 shows the side of a right hand's little finger.
+    /// About the hand's long axis: positive values show the side of a right hand's little finger.
     pub yaw: f32,
-    /// Above 0 looks from above.
+    /// Positive values look from above.
     pub pitch: f32,
-    /// Above 0 turns the picture to the left.
+    /// Positive values turn the picture to the left.
     pub roll: f32,
 }
 
 impl Turn {
-    /// From where the other hand looks the same.
+    /// The view in which the hand of this side looks the same.
     pub fn of(self, side: Side) -> Self {
         match side {
             Side::Right => self,
@@ -36,22 +36,22 @@ impl Turn {
     }
 }
 
-/// From places in the hand to places on the screen.
+/// Projects points of the hand to the screen.
 #[derive(Debug, Clone, Copy)]
 pub struct Camera {
-    /// The hand as the eye sees it: x right, y up, z near.
+    /// Hand coordinates to eye coordinates: x right, y up, z towards the eye.
     pub hand: Affine3,
     center: Pos2,
-    /// Points of a millimetre in the middle of the hand.
+    /// Screen points per millimetre at the centre of the hand.
     pub per_mm: f32,
-    /// What the places of the reach fill on the screen.
+    /// Screen rectangle that the projected reach fills.
     pub bounds: Rect,
 }
 
 impl Camera {
-    /// Fits the places of `reach` into a rectangle.
+    /// Fits the points of `reach` into a rectangle.
     pub fn new(turn: Turn, rect: Rect, reach: impl Iterator<Item = Vec3>) -> Self {
-        // The eye looks against y, with z up.
+        // The eye looks along -y, with z up.
         let upright = Mat3::from_cols(Vec3::NEG_X, Vec3::Z, Vec3::Y);
         let turned = Mat3::from_rotation_z(turn.roll)
             * Mat3::from_rotation_x(turn.pitch)
@@ -74,29 +74,29 @@ impl Camera {
         camera
     }
 
-    /// Where on the screen a place of the hand is.
+    /// Projects a point of the hand to the screen.
     pub fn place(&self, at: Vec3) -> Pos2 {
         self.project(self.hand.transform_point3(at))
     }
 
-    /// What the eye sees at this depth on a place of the screen.
+    /// Point in eye coordinates at a screen position and depth.
     pub fn seen_at(&self, place: Pos2, depth: f32) -> Vec3 {
         let by = (place - self.center) * ((EYE_MM - depth) / (self.per_mm * EYE_MM));
         Vec3::new(by.x, -by.y, depth)
     }
 
-    /// Where on the screen a place is that the eye sees there.
+    /// Projects a point in eye coordinates to the screen.
     pub fn project(&self, seen: Vec3) -> Pos2 {
         let scale = self.per_mm * EYE_MM / (EYE_MM - seen.z);
         self.center + vec2(seen.x, -seen.y) * scale
     }
 }
 
-/// Steps from bent to open in which poses are tried, and room around the ends of the fingers.
+/// Number of steps from bent to open in which poses are sampled, and margin around the fingertips.
 const STEPS: u8 = 4;
 const ROUND_MM: f32 = 10.0;
 
-/// Where a right hand gets to in all poses: a picture that holds these never jumps while the hand moves.
+/// Points that a right hand reaches in all poses: a picture fitted to these does not jump while the hand moves.
 pub static REACH: LazyLock<Vec<Vec3>> = LazyLock::new(|| {
     let palm = [
         [30.0, -24.0, -13.0],

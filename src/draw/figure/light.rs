@@ -1,5 +1,5 @@
-//! What is drawn, solids with their coats, and the light on them: one key light, a soft fill, the sky, and what they lose in
-//! folds and shadows.
+//! The parts to draw, with their coats, and the light on them: one key light, a soft fill, the sky, and the losses in folds and
+//! shadows.
 
 use crate::figure::bars::{Bars, Near};
 use crate::figure::camera::{Camera, EYE_MM};
@@ -10,29 +10,29 @@ use egui::Color32;
 use glam::{Affine3, Vec3};
 use handscope_core::hand::kinematics::{Segment, SegmentFrames};
 
-/// How the key light falls off to the right and downwards, per millimetre.
+/// Falloff of the key light to the right and downwards, per millimetre.
 const FALL_PER_MM: f32 = 0.0016;
 
-/// One solid to be drawn.
+/// One solid to draw.
 #[derive(Debug)]
 pub struct Part<'a> {
     pub solid: &'a Solid,
-    /// Whose it is: for the pointer and the shadows. None for what is no part of the hand.
+    /// Segment that it belongs to, for the pointer and the shadows; `None` if it is not part of the hand.
     pub segment: Option<Segment>,
     pub frame: Affine3,
     pub coat: Coat,
 }
 
-/// How a part is coated.
+/// Surface treatment of a part.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Coat {
-    /// How much it covers where one looks straight onto it; 0 stands for all.
+    /// Opacity when viewed head-on; 0 means opaque.
     pub glass: f32,
-    /// Light of this colour in it, and how much.
+    /// Colour of a glow in it, and its share.
     pub glow: Option<(Color32, f32)>,
-    /// Heat of its pad, and how much of the pad's own colour that covers.
+    /// Colour of the pad's heat map, and its share over the pad's own colour.
     pub heat: Option<(Color32, f32)>,
-    /// The colour of what is plain.
+    /// Colour of plain surfaces.
     pub color: Option<Color32>,
 }
 
@@ -41,7 +41,7 @@ pub struct Coat {
 pub struct Light {
     studio: &'static Studio,
     bars: Bars,
-    /// Old values: everything fades towards this colour.
+    /// For outdated values: everything fades towards this colour by this share.
     pub veil: Option<(Color32, f32)>,
 }
 
@@ -53,7 +53,7 @@ pub(crate) struct Shade<'a> {
 }
 
 impl Light {
-    /// The light on a hand in this pose.
+    /// Sets up the light for a hand in this pose.
     pub fn new(studio: &'static Studio, camera: &Camera, pose: &SegmentFrames) -> Self {
         Self {
             studio,
@@ -62,7 +62,7 @@ impl Light {
         }
     }
 
-    /// The light on a part; `frame` is the part's as the eye sees it.
+    /// Returns the light on a part; `frame` is the part's frame in eye coordinates.
     pub(crate) fn on(&self, part: &Part<'_>, frame: &Affine3) -> Shade<'_> {
         let middle = frame.transform_point3(part.solid.middle);
         Shade {
@@ -74,13 +74,13 @@ impl Light {
 }
 
 impl Shade<'_> {
-    /// The colour of a corner, as seen from the eye.
+    /// Colour of a corner, in eye coordinates.
     pub(crate) fn color(&self, skin: Skin, at: Vec3, normal: Vec3) -> Color32 {
         let eye = (Vec3::Z * EYE_MM - at).normalize();
         let (facing, studio) = (normal.dot(eye).max(0.0), self.light.studio);
         let material = self.material(skin);
         let (sky, key) = self.near.left(at, normal);
-        // The lamp is not far away: what is near it is brighter.
+        // The lamp is close: surfaces near it are brighter.
         let key = key * (1.0 + (at.y - at.x) * FALL_PER_MM);
         let lit = (normal.dot(studio.key) * 0.87 + 0.13).max(0.0) * key * studio.key_power;
         let fill = normal.dot(studio.fill).max(0.0) * (0.5 + 0.5 * sky) * studio.fill_power;
@@ -99,7 +99,7 @@ impl Shade<'_> {
             rgb = rgb.lerp(linear(color) * strength, share);
         };
         if let Some((color, share)) = self.coat.heat.filter(|_| skin == Skin::Pad) {
-            // Heat is read by its colour: shade takes little of it.
+            // The colour encodes the value, so shading has little effect on it.
             blend(color, 0.55 + 0.45 * light, share);
         }
         if let Some((color, share)) = self.coat.glow {
@@ -134,7 +134,7 @@ impl Shade<'_> {
     }
 }
 
-/// What polished metal mirrors: a wide soft box above, a narrow one at each side, a dark floor.
+/// Reflections in polished metal: a wide soft box above, a narrow one at each side, a dark floor.
 fn soft_boxes(way: Vec3) -> f32 {
     step(-0.1, 0.55, way.y) * 0.75 + step(0.55, 0.95, way.x) * 0.35 + step(0.5, 0.9, -way.x) * 0.25
 }

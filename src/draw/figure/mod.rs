@@ -1,5 +1,5 @@
-//! The hand as a shaded figure: solids for each segment, a camera, lamps and materials, one mesh for egui. Knows no theme and no
-//! panel.
+//! The hand as a shaded figure: solids for each segment, a camera, lamps and materials, one mesh for egui. Independent of themes
+//! and panels.
 
 mod bars;
 pub mod camera;

@@ -1,4 +1,4 @@
-//! Solids on their way to the screen: back faces, order, smooth edges. One plain mesh comes out.
+//! Projects solids to the screen: culls back faces, sorts by depth, smooths edges. Yields one plain mesh.
 
 use crate::figure::camera::{Camera, EYE_MM};
 use crate::figure::light::{Light, Part};
@@ -8,50 +8,48 @@ use egui::{Color32, Mesh, Pos2};
 use glam::{Mat3, Vec3};
 use handscope_core::hand::kinematics::Segment;
 
-/// Depth before and behind the middle that is told apart, and steps in a millimetre.
+/// Depth range before and behind the centre that is resolved, and steps per millimetre.
 const DEPTH_MM: f32 = 300.0;
 const DEPTH_STEPS: f32 = 100.0;
-/// A corner that no face seen so far has.
+/// Vertex number of a corner that no visible face has used yet.
 const UNSEEN: u32 = u32::MAX;
 
-/// A triangle that is seen.
+/// A visible triangle.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     corners: [u32; 3],
     segment: Option<Segment>,
-    /// Bit n: beyond side n nothing of the same shape is seen.
+    /// Bit n: side n has no visible neighbour in the same shape.
     edges: u8,
 }
 
-/// A place of the hand that is seen.
+/// A visible point of the hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenPlace {
     pub segment: Segment,
-    /// How near to the eye it is.
+    /// Depth in eye coordinates; larger is nearer.
     pub depth: f32,
 }
 
-/// What is drawn, and how it is seen.
+/// The scene to draw.
 #[derive(Debug, Clone, Copy)]
 pub struct Model<'a> {
-    /// Where the eye is.
     pub camera: &'a Camera,
-    /// How it is lit.
     pub light: &'a Light,
     pub parts: &'a [Part<'a>],
     /// Width of a soft edge in points.
     pub feather: f32,
 }
 
-/// Draws parts into a mesh; keeps its buffers from frame to frame.
+/// Draws parts into a mesh; reuses its buffers between frames.
 #[derive(Debug, Clone, Default)]
 pub struct Sketch {
     seen: Vec<Seen>,
-    /// Depth in the upper half, number of the triangle in the lower.
+    /// Depth in the upper half, triangle number in the lower.
     order: Vec<u32>,
-    /// How near each vertex is.
+    /// Depth of each vertex; larger is nearer.
     depths: Vec<f32>,
-    /// Of the part in work: which faces are seen, and the vertices of its corners.
+    /// For the current part: visibility of its faces, and vertex numbers of its corners.
     fronts: Vec<bool>,
     vertices: Vec<u32>,
 }
@@ -139,7 +137,7 @@ impl Sketch {
             .sum()
     }
 
-    /// What of the hand is seen at a place of the mesh drawn last.
+    /// Returns the part of the hand that is visible at a position of the last mesh.
     pub fn segment_at(&self, mesh: &Mesh, place: Pos2) -> Option<SeenPlace> {
         let corner = |at: u32| {
             let vertex = mesh.vertices.get(at as usize);
@@ -149,7 +147,7 @@ impl Sketch {
         let found = |seen: &Seen| {
             let [a, b, c] = seen.corners.map(corner);
             let side = |from: Pos2, to: Pos2| (to - from).rot90().dot(place - from);
-            // Each as large as the part of the corner opposite.
+            // Each is proportional to the weight of the opposite corner.
             let sides = [side(b, c), side(c, a), side(a, b)];
             let is_in =
                 sides.iter().all(|side| *side <= 0.0) || sides.iter().all(|side| *side >= 0.0);
@@ -165,7 +163,7 @@ impl Sketch {
     }
 }
 
-/// Depth as a number of 16 bits, the nearest the largest.
+/// Depth as a 16-bit number; the nearest is the largest.
 fn depth_steps(near_mm: f32) -> u32 {
     let steps = ((near_mm + DEPTH_MM) * DEPTH_STEPS).clamp(0.0, f32::from(u16::MAX));
     #[expect(
@@ -177,8 +175,7 @@ fn depth_steps(near_mm: f32) -> u32 {
     steps
 }
 
-/// A seam along the side between the first two corners, away from the third, that fades to nothing: meshes have no other
-/// way to be smooth.
+/// Adds a fading seam along the side between the first two corners, away from the third: a mesh has no other antialiasing.
 fn soft_edge(mesh: &mut Mesh, corners: [u32; 3], feather: f32) {
     let [from, to, _] = corners;
     let found = corners.map(|at| mesh.vertices.get(at as usize).copied());

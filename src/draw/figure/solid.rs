@@ -1,13 +1,12 @@
-//! Rigid shapes as triangles: lofts through rings and patches on them, welded, with smooth normals. Made once, never per frame.
+//! Rigid shapes as triangles: lofts through rings and patches on them, welded, with smooth normals. Built once, never per frame.
 
 use glam::{Affine3, Vec3};
 use std::collections::HashMap;
 use std::f32::consts::TAU;
 
-/// What a surface is made of.
+/// Material of a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Skin {
-    /// Light grey metal.
     Metal,
     /// The plate in the palm.
     Plate,
@@ -17,15 +16,14 @@ pub(crate) enum Skin {
     Rubber,
     /// A fingertip's sensor.
     Pad,
-    /// What has the colour it is given: an object, an arrow.
+    /// The colour of its coat: an object, an arrow.
     Plain,
 }
 
-/// One ring of a loft: where its middle is along the path and in front of it, how far it reaches to the front, to the
-/// back and to each side, and how square it is (2 = an ellipse).
+/// One ring of a loft: position along the path, offset to the front, half widths to the front, to the back and to each side, and
+/// exponent of the superellipse (2 = an ellipse).
 pub(crate) type LoftRing = [f32; 6];
 
-/// A corner of a finished shape.
 #[derive(Debug, Clone, Copy)]
 pub struct Corner {
     pub at: Vec3,
@@ -33,13 +31,12 @@ pub struct Corner {
     pub(crate) skin: Skin,
 }
 
-/// A triangle of a finished shape.
 #[derive(Debug, Clone, Copy)]
 pub struct Face {
     pub(crate) corners: [u16; 3],
-    /// The faces of the same skin beyond its sides; [`NONE`] where there is none.
+    /// The adjacent faces of the same skin; [`NONE`] where there is none.
     pub(crate) beyond: [u16; 3],
-    /// It is seen from where this way counts more than the offset.
+    /// Visible from an eye position whose dot product with this exceeds `offset`.
     pub normal: Vec3,
     pub offset: f32,
     /// See [`Shard`].
@@ -47,7 +44,7 @@ pub struct Face {
     pub(crate) aside: Vec3,
 }
 
-/// A finished shape in the frame of its segment, and a ball that holds it.
+/// A finished shape in the frame of its segment, with its bounding sphere.
 #[derive(Debug)]
 pub struct Solid {
     pub corners: Vec<Corner>,
@@ -56,23 +53,22 @@ pub struct Solid {
     pub(crate) radius: f32,
 }
 
-/// No face.
 pub(crate) const NONE: u16 = u16::MAX;
-/// Surfaces whose normals differ by more than this make an edge.
+/// Surfaces whose normals have a smaller cosine form an edge.
 const EDGE_COS: f32 = 0.35;
 
-/// A triangle on its way to a solid, counter-clockwise as seen from outside.
+/// A triangle under construction, counter-clockwise as seen from outside.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shard {
     pub(crate) at: [Vec3; 3],
     pub(crate) skin: Skin,
-    /// How much nearer to the eye it counts than it is: what lies on a surface is drawn over it.
+    /// Depth bias towards the eye: patches on a surface are drawn over it.
     pub(crate) lift: f32,
-    /// How far beside its place it counts: the near one of two plates is drawn over what is between them, the far one under it.
+    /// Lateral depth bias: of two plates, the nearer is drawn over the parts between them, the farther under them.
     pub(crate) aside: Vec3,
 }
 
-/// Triangles on their way to a solid. A small one, for small pictures, has a third of them.
+/// Triangles under construction. A small soup, for small pictures, has a third of them.
 #[derive(Debug)]
 pub(crate) struct Soup {
     shards: Vec<Shard>,
@@ -80,7 +76,6 @@ pub(crate) struct Soup {
 }
 
 impl Soup {
-    /// Nothing yet.
     pub(crate) const fn new(is_small: bool) -> Self {
         Self {
             shards: Vec::new(),
@@ -88,8 +83,8 @@ impl Soup {
         }
     }
 
-    /// Adds a closed tube through rings. `base` has x to the side, y along, z to the front. Each list of rings has its own
-    /// skin and goes on where the one before ended.
+    /// Adds a closed tube through rings. `base` has x to the side, y along, z to the front. Each list of rings has its own skin
+    /// and continues where the previous one ended.
     pub(crate) fn loft(
         &mut self,
         base: &Affine3,
@@ -101,7 +96,7 @@ impl Soup {
         } else {
             (around, 1)
         };
-        // Both ends of a band stay, whatever is left out between them.
+        // Both ends of a band stay, regardless of the rings omitted between them.
         let left = |(skin, rings): &(Skin, &[LoftRing])| -> Vec<(Skin, LoftRing)> {
             let kept = rings.iter().enumerate();
             let kept = kept.filter(|(at, _)| at % each == 0 || at + 1 == rings.len());
@@ -123,7 +118,7 @@ impl Soup {
         self.grid(rows.chain(end(rings.last())))
     }
 
-    /// Adds a sheet: `place` gives a point for each pair of shares from -1 to 1, along and across as a loft goes.
+    /// Adds a sheet: `place` returns a point for each pair of shares from -1 to 1, along and across in the directions of a loft.
     pub(crate) fn sheet(
         &mut self,
         steps: u8,
@@ -140,7 +135,7 @@ impl Soup {
         self.grid((0..=steps).map(|along| (skin, row(along))))
     }
 
-    /// Adds what is between rows of places; a strip has the skin of its second row.
+    /// Adds the triangles between rows of points; a strip has the skin of its second row.
     fn grid(&mut self, rows: impl Iterator<Item = (Skin, Vec<Vec3>)>) -> &mut [Shard] {
         let (first, mut before) = (self.shards.len(), Vec::new());
         for (skin, row) in rows {
@@ -224,7 +219,7 @@ impl Soup {
 }
 
 impl Shard {
-    /// Square to the triangle, as long as twice its area.
+    /// Normal of the triangle, of length twice its area.
     pub(crate) fn area(&self) -> Vec3 {
         let [a, b, c] = self.at;
         (b - a).cross(c - a)
@@ -236,7 +231,7 @@ impl Shard {
     }
 }
 
-/// A place on a ring; `turn` goes from 0 to 1, from one side over the front (0.25).
+/// A point on a ring; `turn` runs from 0 to 1, from one side over the front (0.25).
 pub(crate) fn point(ring: &LoftRing, turn: f32) -> Vec3 {
     let [along, rise, front, back, side, square] = *ring;
     let (sin, cos) = (turn * TAU).sin_cos();
@@ -245,10 +240,10 @@ pub(crate) fn point(ring: &LoftRing, turn: f32) -> Vec3 {
     Vec3::new(out * cos * side, along, rise + out * sin * reach)
 }
 
-/// A place that is told from others.
+/// Quantised coordinates, to compare points.
 type PlaceKey = [i32; 3];
 
-/// Places nearer than a hundredth of a millimetre are one.
+/// Points closer than a hundredth of a millimetre are equal.
 fn key(at: Vec3) -> PlaceKey {
     #[expect(
         clippy::cast_possible_truncation,

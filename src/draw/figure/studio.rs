@@ -1,33 +1,33 @@
-//! How the drawn hand is made and lit, in each theme.
+//! Materials and lighting of the drawn hand, for each theme.
 
 use egui::Color32;
 use glam::Vec3;
 
-/// What a surface does with light. Colours are linear: half the number is half the light.
+/// Response of a surface to light. Colours are linear.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Material {
-    /// Its own colour.
+    /// Base colour.
     pub(crate) base: Vec3,
-    /// Strength of the key light's highlight, and how small it is.
+    /// Strength of the key light's highlight, and its exponent.
     pub(crate) shine: f32,
     pub(crate) sharp: i32,
-    /// How much of the surroundings it mirrors.
+    /// Share of the surroundings that it reflects.
     pub(crate) mirror: f32,
 }
 
-/// Lamps and materials of one theme. Ways are as the eye sees them: x right, y up, z near.
+/// Lamps and materials of one theme. Directions are in eye coordinates: x right, y up, z towards the eye.
 #[derive(Debug)]
 pub struct Studio {
-    /// The way to the key light, and its strength.
+    /// Direction to the key light, and its strength.
     pub(crate) key: Vec3,
     pub(crate) key_power: f32,
-    /// The way to the fill light, and its strength.
+    /// Direction to the fill light, and its strength.
     pub(crate) fill: Vec3,
     pub(crate) fill_power: f32,
     /// Light from above and from below.
     pub(crate) sky: f32,
     pub(crate) ground: f32,
-    /// Light on what turns away from the eye: sets it off from a dark card, or darkens it on a light one.
+    /// Light on surfaces that face away from the eye: sets them off from a dark card, or darkens them on a light one.
     pub(crate) rim: f32,
     pub(crate) metal: Material,
     pub(crate) plate: Material,
@@ -46,11 +46,10 @@ const fn material([red, green, blue]: [u8; 3], shine: f32, sharp: i32, mirror: f
     }
 }
 
-/// From the left, above and before the hand; and from the right.
+/// From the left, above and in front of the hand; and from the right.
 const KEY: Vec3 = Vec3::new(-0.466, 0.670, 0.577);
 const FILL: Vec3 = Vec3::new(0.884, 0.0, 0.468);
 
-/// On a dark card.
 const DARK: Studio = Studio {
     key: KEY,
     key_power: 0.82,
@@ -66,7 +65,6 @@ const DARK: Studio = Studio {
     pad: material([0x74, 0x7C, 0x88], 0.05, 10, 0.2),
 };
 
-/// On a light card.
 const LIGHT: Studio = Studio {
     key: KEY,
     key_power: 0.82,
@@ -85,7 +83,7 @@ const LIGHT: Studio = Studio {
 pub static DARK_STUDIO: Studio = DARK;
 pub static LIGHT_STUDIO: Studio = LIGHT;
 
-/// For small pictures: fingers as light as the palm, which are read at the size of a button.
+/// For small pictures: fingers as light as the palm, so that they are legible at the size of a button.
 pub static DARK_SIGNS: Studio = Studio {
     rubber: DARK.metal,
     hinge: material([0x8C, 0x94, 0x9F], 0.14, 20, 0.3),
@@ -99,7 +97,7 @@ pub static LIGHT_SIGNS: Studio = Studio {
     ..LIGHT
 };
 
-/// A colour as linear light: the screen's curve is taken as a square.
+/// Converts to linear light, with the screen's gamma approximated as 2.
 pub(crate) const fn linear(color: Color32) -> Vec3 {
     const fn squared(part: u8) -> f32 {
         let part = part as f32 / 255.0;
@@ -109,7 +107,7 @@ pub(crate) const fn linear(color: Color32) -> Vec3 {
     Vec3::new(squared(red), squared(green), squared(blue))
 }
 
-/// Linear light as a colour; what is brighter than white is white.
+/// Converts linear light to a colour; clamped at white.
 pub(crate) fn lit(light: Vec3, alpha: f32) -> Color32 {
     let [red, green, blue] = light.clamp(Vec3::ZERO, Vec3::ONE).map(f32::sqrt).to_array();
     #[expect(

@@ -1,4 +1,4 @@
-//! A CPU rasteriser for tessellated egui meshes, same bytes on each run. Knows nothing of layout, files or the hand.
+//! A CPU rasteriser for tessellated egui meshes, with the same bytes on each run. Independent of layout, files and the hand.
 
 pub(crate) mod number;
 pub(crate) mod surface;

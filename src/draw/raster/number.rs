@@ -1,13 +1,13 @@
-//! The number conversions a rasteriser needs, each lossy in one known way. No other arithmetic.
+//! Number conversions of the rasteriser, each lossy in one known way. No other arithmetic.
 
 /// One pixel in fixed-point units.
 pub(crate) const SUBPIXELS: i64 = 256;
-/// Half a pixel: where a pixel's centre lies.
+/// Half a pixel: offset of a pixel's centre.
 pub(crate) const HALF_PIXEL: i64 = SUBPIXELS / 2;
 /// Coordinates are clamped to ±2^20 px, so products of two differences stay far inside an `i64`.
 const FIXED_LIMIT: f32 = 268_435_456.0;
 
-/// A pixel coordinate in 1/256 px, nearest; `None` if it is not a number.
+/// A pixel coordinate rounded to 1/256 px; `None` if it is NaN.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "clamped to 2^28 and rounded just before"
@@ -17,7 +17,7 @@ pub(crate) fn fixed(pixels: f32) -> Option<i64> {
     (!scaled.is_nan()).then(|| scaled.clamp(-FIXED_LIMIT, FIXED_LIMIT) as i64)
 }
 
-/// The whole number at or below, saturating; 0 for NaN.
+/// Floor, saturating; 0 for NaN.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "saturation far outside any texture is what is wanted"
@@ -44,7 +44,7 @@ pub(crate) fn narrow(value: f64) -> f32 {
     value as f32
 }
 
-/// A colour channel 0..=255, nearest, saturating.
+/// A colour channel 0..=255, rounded, saturating.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

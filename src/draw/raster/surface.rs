@@ -1,4 +1,4 @@
-//! The picture being drawn, its textures and its threads. Which pixels a triangle covers is not decided here.
+//! The picture being drawn, its textures and its threads. Coverage of pixels is decided in the triangle module.
 
 use crate::raster::number::{coordinate, floor, index};
 use crate::raster::texture::Texture;
@@ -12,14 +12,14 @@ use std::hash::{BuildHasher, Hasher};
 use std::ops::Range;
 use std::panic::resume_unwind;
 
-/// Threads that share a picture. Two: the smallest machine we build and test on has two cores.
+/// Threads that share a picture. Two: the smallest machine that we build and test on has two cores.
 const THREADS: usize = 2;
 
-/// A picture in memory and the textures to draw it with.
+/// A picture in memory and the textures for drawing it.
 ///
-/// Meshes are drawn like a GPU would with egui's own shaders: pixels whose centre is inside, top-left rule on shared
-/// edges, premultiplied blending in gamma space with 8 bits a channel. The bytes do not depend on the machine,
-/// the build or the number of threads, and not on what was shown before, though only what changed is drawn.
+/// Meshes are drawn as by a GPU with egui's own shaders: pixels whose centre is inside, top-left rule on shared edges,
+/// premultiplied blending in gamma space with 8 bits per channel. The bytes depend neither on the machine, the build or the
+/// number of threads, nor on the previous picture, although only changes are drawn.
 #[derive(Debug)]
 pub struct Raster {
     width: u32,
@@ -34,12 +34,12 @@ pub struct Raster {
     threads: usize,
 }
 
-/// A part of the picture that was drawn anew, in pixels.
+/// A redrawn part of the picture, in pixels.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Changed {
     /// From left to right.
     pub columns: Range<usize>,
-    /// From the top down.
+    /// From top to bottom.
     pub rows: Range<usize>,
 }
 
@@ -61,7 +61,7 @@ impl Raster {
         raster
     }
 
-    /// Gives the picture another size in pixels; what it shows is undefined until it is drawn.
+    /// Resizes the picture, in pixels; its content is undefined until it is drawn.
     pub fn resize(&mut self, width: u32, height: u32) {
         let count = length(width).saturating_mul(length(height));
         if (self.width, self.height) != (width, height) {
@@ -72,8 +72,8 @@ impl Raster {
         (self.width, self.height) = (width, height);
     }
 
-    /// Takes over new and changed textures and leaves `delta` empty, as egui demands for every frame, drawn or not.
-    /// Textures which `delta` gives back stay until [`Raster::free_textures`], for this frame may still show them.
+    /// Applies new and changed textures and empties `delta`, as egui requires for every frame, drawn or not. Textures freed by
+    /// `delta` stay until [`Raster::free_textures`], because this frame may still use them.
     pub fn apply_textures(&mut self, delta: &mut TexturesDelta) {
         self.free_textures();
         for (id, changes) in delta.set.drain() {
@@ -84,15 +84,15 @@ impl Raster {
         self.returned.extend(delta.free.drain());
     }
 
-    /// Drops the textures given back with the last delta. To be called after drawing; the next delta does it too.
+    /// Drops the textures freed by the last delta. Call it after drawing; the next delta does it too.
     pub fn free_textures(&mut self) {
         for id in self.returned.drain(..) {
             self.textures.remove(&id);
         }
     }
 
-    /// Clears to `background` (premultiplied RGBA) and draws, both only where the picture is to change. Paint callbacks and
-    /// meshes without texture are left out.
+    /// Clears to `background` (premultiplied RGBA) and draws, both only where the picture changes. Paint callbacks and meshes
+    /// without texture are skipped.
     pub fn draw(
         &mut self,
         primitives: &[ClippedPrimitive],
@@ -123,7 +123,7 @@ impl Raster {
             }
         });
         let changed = std::thread::scope(|scope| {
-            // This thread draws the first part: for each further thread the allocator keeps a heap.
+            // This thread draws the first part: the allocator keeps a heap for each further thread.
             let first = draws.next();
             let others: Vec<_> = draws.map(|draw| scope.spawn(draw)).collect();
             let first = first.map(|draw| draw());
@@ -139,7 +139,7 @@ impl Raster {
         }
     }
 
-    /// What the last [`Raster::draw`] drew anew; nothing else changed.
+    /// Parts that the last [`Raster::draw`] redrew; all others are unchanged.
     pub fn changed(&self) -> &[Changed] {
         &self.changed
     }
@@ -208,7 +208,7 @@ fn meshes<'a>(
 }
 
 impl Drawable<'_> {
-    /// Its triangles that touch these pixels, from the lowest up.
+    /// Its triangles that touch these pixels, in drawing order.
     fn triangles(&self, strip: Scissor) -> impl Iterator<Item = Triangle> {
         let clip = self.clip.within(strip);
         let corners = self.mesh.indices.chunks_exact(3);
@@ -228,7 +228,7 @@ impl Drawable<'_> {
     }
 }
 
-/// Draws what changes of a strip; says what that is.
+/// Draws the changes of a strip and returns them.
 fn draw_strip(
     mut strip: Strip<'_>,
     mut tiles: TileRows<'_>,
@@ -263,7 +263,7 @@ fn draw_strip(
     changes.into_iter().map(changed).collect()
 }
 
-/// The clip rectangle in whole pixels, nearest.
+/// The clip rectangle, rounded to whole pixels.
 fn scissor(clip: Rect, pixels_per_point: f32) -> Scissor {
     let pixel = |points: f32| floor((points * pixels_per_point).round());
     Scissor {

@@ -1,4 +1,4 @@
-//! Textures: whole and partial updates, sampling as a GPU does it. No drawing.
+//! Textures: whole and partial updates, GPU-like sampling. No drawing.
 
 use egui::epaint::ImageDelta;
 use egui::{ImageData, TextureFilter, TextureOptions, TextureWrapMode};
@@ -12,12 +12,12 @@ pub(crate) struct Texture {
     height: usize,
     pixels: Vec<[u8; 4]>,
     options: TextureOptions,
-    /// No other texture, and no other content of this one, has the same.
+    /// Unique for each texture and each of its contents.
     pub(crate) version: u64,
 }
 
 impl Texture {
-    /// A texture from a whole update.
+    /// Creates a texture from a whole update.
     pub(crate) fn whole(delta: &ImageDelta, version: u64) -> Self {
         let ImageData::Color(image) = &delta.image;
         Self {
@@ -29,7 +29,7 @@ impl Texture {
         }
     }
 
-    /// Overwrites the region at `position` (x, y in texels). What would lie outside is left out.
+    /// Overwrites the region at `position` (x, y in texels), clipped to the texture.
     pub(crate) fn patch(&mut self, position: [usize; 2], delta: &ImageDelta, version: u64) {
         let ImageData::Color(image) = &delta.image;
         (self.options, self.version) = (delta.options, version);
@@ -45,7 +45,7 @@ impl Texture {
         }
     }
 
-    /// Width and height as factors that turn `uv` into texels.
+    /// Width and height as factors that convert `uv` to texels.
     pub(crate) fn scale(&self) -> [f32; 2] {
         [texels(self.width), texels(self.height)]
     }
@@ -63,7 +63,7 @@ impl Texture {
         let (right, down) = (x - x.floor(), y - y.floor());
         let (column, row) = (floor(x), floor(y));
         let first = self.texel(column, row);
-        // Glyphs lie on whole pixels: most samples hit a texel's centre.
+        // Glyphs are aligned to whole pixels: most samples hit a texel's centre.
         if right == 0.0 && down == 0.0 {
             return first;
         }

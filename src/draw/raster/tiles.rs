@@ -1,23 +1,24 @@
-//! Which parts of a picture differ from the one before: a fingerprint of all that falls on each tile. Draws nothing.
+//! Detects the parts of a picture that differ from the previous one, by a fingerprint of all triangles on each tile. Draws
+//! nothing.
 
 use crate::raster::number::{coordinate, index};
 use crate::raster::triangle::Scissor;
 use std::ops::Range;
 
-/// The side of a tile in pixels.
+/// Side of a tile in pixels.
 pub(crate) const TILE: usize = 32;
 
-/// Spreads a fingerprint over 64 bits: an odd number whose bits look random (2^64 over the golden ratio).
+/// Spreads a fingerprint over 64 bits: an odd number with random-looking bits (2^64 over the golden ratio).
 const SPREAD: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// The fingerprints of tiles as they were drawn last, row by row; 0 is a tile that never was.
+/// Fingerprints of the tiles as last drawn, row by row; 0 means never drawn.
 #[derive(Debug, Default)]
 pub(crate) struct Tiles {
     columns: usize,
     drawn: Vec<u64>,
 }
 
-/// Tiles of neighbouring rows, owned by one thread.
+/// Tiles of adjacent rows, owned by one thread.
 #[derive(Debug)]
 pub(crate) struct TileRows<'a> {
     first_row: i64,
@@ -27,7 +28,7 @@ pub(crate) struct TileRows<'a> {
 }
 
 impl Tiles {
-    /// For a picture of this many pixels. Another size makes all of it new.
+    /// Fits a picture of this many pixels. A different size invalidates all tiles.
     pub(crate) fn resize(&mut self, width: usize, height: usize) {
         let (columns, rows) = (width.div_ceil(TILE), height.div_ceil(TILE));
         if self.columns != columns || self.drawn.len() != columns * rows {
@@ -36,12 +37,12 @@ impl Tiles {
         }
     }
 
-    /// All of it is to be drawn again.
+    /// Invalidates all tiles.
     pub(crate) fn forget(&mut self) {
         self.drawn.fill(0);
     }
 
-    /// The tiles in strips of `rows` rows each, which begin with `background`.
+    /// Splits the tiles into strips of `rows` rows each, with a fingerprint that begins with `background`.
     pub(crate) fn strips(
         &mut self,
         rows: usize,
@@ -59,7 +60,7 @@ impl Tiles {
 }
 
 impl TileRows<'_> {
-    /// Something with this fingerprint falls on these pixels, above all that was noted before.
+    /// Adds a fingerprint to the tiles under these pixels, on top of all earlier ones.
     pub(crate) fn note(&mut self, pixels: Scissor, fingerprint: u64) {
         let columns = tiles(pixels.left, pixels.right);
         for row in self.rows(pixels) {
@@ -71,7 +72,7 @@ impl TileRows<'_> {
         }
     }
 
-    /// Where the picture changes, as runs of neighbouring tiles.
+    /// Changed areas, as runs of adjacent tiles.
     pub(crate) fn changes(&mut self) -> Vec<Scissor> {
         let mut changes: Vec<Scissor> = Vec::new();
         for (at, (drawn, next)) in self.drawn.iter_mut().zip(&self.next).enumerate() {
@@ -100,7 +101,7 @@ impl TileRows<'_> {
     }
 }
 
-/// The tiles on which these pixels lie.
+/// The tiles that contain these pixels.
 fn tiles(from: i64, to: i64) -> Range<usize> {
     index(from) / TILE..index(to).div_ceil(TILE)
 }

@@ -1,4 +1,4 @@
-//! One triangle into a strip of rows: which pixels, which colour, how it blends. No textures are kept here.
+//! Draws one triangle into a strip of rows: coverage, colour, blending. Stores no textures.
 
 use crate::raster::number::{
     HALF_PIXEL, SUBPIXELS, channel, coordinate, fixed, index, narrow, real, texels,
@@ -18,7 +18,7 @@ pub(crate) struct Scissor {
 }
 
 impl Scissor {
-    /// What both allow; `None` for nothing.
+    /// Intersection; `None` if it is empty.
     pub(crate) fn within(self, other: Self) -> Option<Self> {
         let both = Self {
             left: self.left.max(other.left),
@@ -30,7 +30,7 @@ impl Scissor {
     }
 }
 
-/// Neighbouring rows of the picture, owned by one thread.
+/// Adjacent rows of the picture, owned by one thread.
 #[derive(Debug)]
 pub(crate) struct Strip<'a> {
     pub(crate) first_row: i64,
@@ -45,7 +45,7 @@ impl Strip<'_> {
             .get_mut(start + index(left)..start + index(right))
     }
 
-    /// Fills what lies in the strip.
+    /// Fills the part of `place` within the strip.
     pub(crate) fn clear(&mut self, place: Scissor, colour: [u8; 4]) {
         if let Some(place) = place.within(self.bounds()) {
             for row in place.top..place.bottom {
@@ -136,7 +136,7 @@ impl<const N: usize> Plane<N> {
         plane
     }
 
-    /// The value at the centre of a pixel that lies `column`, `row` pixels off the first corner.
+    /// The value at the centre of a pixel at an offset of `column`, `row` pixels from the first corner.
     fn at(&self, column: f64, row: f64) -> [f32; N] {
         let mut values = [0.0; N];
         let slopes = self.per_column.iter().zip(&self.per_row);
@@ -151,7 +151,7 @@ impl<const N: usize> Plane<N> {
     }
 }
 
-/// How a triangle's pixels get their colour.
+/// Source of a triangle's colours.
 #[derive(Debug, Clone, Copy)]
 enum Fill {
     /// One opaque colour.
@@ -166,7 +166,7 @@ enum Fill {
     Both(Plane<4>, Plane<2>),
 }
 
-/// A triangle that touches pixels. Made once, painted wherever the picture changes.
+/// A triangle that touches pixels. Set up once, painted wherever the picture changes.
 #[derive(Debug)]
 pub(crate) struct Triangle {
     corners: [SubpixelPoint; 3],
@@ -177,7 +177,7 @@ pub(crate) struct Triangle {
 }
 
 impl Triangle {
-    /// `None` without area, with a NaN corner, or where the scissor leaves nothing of it.
+    /// `None` if it has no area or a NaN corner, or if it is outside the scissor.
     pub(crate) fn new(vertices: [(Vertex, [f32; 2]); 3], scissor: Scissor) -> Option<Self> {
         let (corners, vertices, area) = wound(vertices)?;
         let bounds = bounds(corners, scissor)?;
@@ -189,7 +189,7 @@ impl Triangle {
         })
     }
 
-    /// A number that another triangle almost never has.
+    /// A practically unique hash.
     pub(crate) fn fingerprint(&self, mut hasher: impl Hasher) -> u64 {
         let Scissor {
             left,
@@ -208,8 +208,8 @@ impl Triangle {
         hasher.finish()
     }
 
-    /// Paints it where strip and scissors allow, which lie row by row from the top. Each pixel gets the same colour, however
-    /// much of the triangle is painted.
+    /// Paints the triangle within the strip and the scissors, which are sorted by row from the top. A pixel's colour does not
+    /// depend on the painted part.
     pub(crate) fn paint(&self, strip: &mut Strip<'_>, texture: &Texture, scissors: &[Scissor]) {
         let above = scissors.partition_point(|scissor| scissor.bottom <= self.bounds.top);
         let beside = scissors.iter().skip(above);
@@ -227,7 +227,7 @@ impl Triangle {
         let edges = [Edge::new(p0, p1), Edge::new(p1, p2), Edge::new(p2, p0)];
         for place in places {
             for row in place.top..place.bottom {
-                // Where the whole row of it begins: colours are counted from there.
+                // Start of the whole row: colours are counted from there.
                 let (begin, end) = span(&edges, row, self.bounds);
                 let (left, right) = (begin.max(place.left), end.min(place.right));
                 if left < right
@@ -243,7 +243,7 @@ impl Triangle {
     }
 }
 
-/// Two places on the screen, which lie far within 32 bits, as one number.
+/// Two screen coordinates, well within 32 bits, packed into one number.
 const fn pair(x: i64, y: i64) -> u64 {
     x.cast_unsigned() << 32 | y.cast_unsigned() & 0xFFFF_FFFF
 }
@@ -321,7 +321,7 @@ fn flat(colour: [f32; 4]) -> Fill {
     }
 }
 
-/// `skipped` columns of the row are not painted.
+/// Paints a span after skipping `skipped` columns of its row.
 fn paint_span(
     span: &mut [[u8; 4]],
     fill: &Fill,
@@ -353,7 +353,7 @@ fn paint_span(
     }
 }
 
-/// The values of a plane along a row. Each is computed from the start, so nothing adds up along a wide span.
+/// The values of a plane along a row. Each is computed from the start, so that errors do not accumulate along a wide span.
 fn walk<const N: usize>(
     start: [f32; N],
     step: [f32; N],

@@ -1,13 +1,13 @@
-//! The schema of a table as Arrow has it, by which pyarrow and others find the unit of a column: `schema.field(name).metadata`.
+//! The schema of a table in Arrow's format, from which pyarrow and others read a column's unit: `schema.field(name).metadata`.
 //! Parquet itself has no place for it. The bytes are a flatbuffer (Arrow's `Message.fbs` and `Schema.fbs`), in base64.
 
 use crate::record::export::columns::{ParquetColumn, Values};
 
-/// The key under which readers of Parquet look for it.
+/// Metadata key under which Parquet readers look for the schema.
 pub(crate) const ARROW_SCHEMA: &str = "ARROW:schema";
 /// Version 5 of the format, since Arrow 1.0.
 const VERSION: i16 = 4;
-/// A message that is a schema.
+/// Message type of a schema.
 const SCHEMA: u8 = 1;
 
 /// A value in a flatbuffer.
@@ -21,7 +21,7 @@ enum Flat {
     List(Vec<Self>),
 }
 
-/// The schema of these columns. What else is known of the table is repeated in it, because Arrow looks nowhere else then.
+/// The schema of these columns. It repeats the table's metadata, because Arrow then reads no other.
 pub(crate) fn arrow_schema(columns: &[ParquetColumn], metadata: &[(&str, String)]) -> String {
     let fields = columns.iter().map(field).collect();
     let metadata = metadata.iter().map(|(key, value)| pair(key, value));
@@ -36,7 +36,7 @@ pub(crate) fn arrow_schema(columns: &[ParquetColumn], metadata: &[(&str, String)
     base64(&[head, bytes.0].concat())
 }
 
-/// One column: name, whether it may be empty, type, children, and metadata.
+/// One column: name, nullability, type, children, and metadata.
 fn field(column: &ParquetColumn) -> Flat {
     let (kind, parameters) = match column.values() {
         Values::Int(_) => (2, vec![Flat::Int(32), Flat::Byte(1)]),
@@ -66,7 +66,7 @@ fn pair(key: &str, value: &str) -> Flat {
     Flat::Table(vec![Flat::Text(key.into()), Flat::Text(value.into())])
 }
 
-/// A flatbuffer in the making: what refers to something stands before it.
+/// A flatbuffer under construction: references precede their targets.
 struct FlatBytes(Vec<u8>);
 
 impl FlatBytes {
@@ -80,7 +80,7 @@ impl FlatBytes {
         }
     }
 
-    /// Writes a value at the end, and at `place` how far behind that it stands.
+    /// Appends a value, and writes its offset at `place`.
     fn refer(&mut self, place: usize, value: &Flat) {
         self.align(4);
         let at = match value {
@@ -107,7 +107,7 @@ impl FlatBytes {
         self.put(place, &int(at - place));
     }
 
-    /// Each field stands in four bytes of its own; before them is a list of where each stands, 0 for one that is absent.
+    /// Writes a table: each field occupies four bytes; before them is a vtable with the offset of each, 0 for an absent one.
     fn table(&mut self, fields: &[Flat]) -> usize {
         let (list_len, table_len) = (4 + 2 * fields.len(), 4 + 4 * fields.len());
         while !(self.0.len() + list_len).is_multiple_of(4) {

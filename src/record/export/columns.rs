@@ -1,4 +1,4 @@
-//! Columns of a Parquet file: gathered row by row, written a group of rows at a time.
+//! Columns of a Parquet file: collected row by row, written a row group at a time.
 
 use parquet::basic::{LogicalType, Repetition, TimeUnit, Type as Physical};
 use parquet::data_type::{
@@ -10,29 +10,23 @@ use parquet::schema::types::Type;
 use std::io::Write;
 use std::sync::Arc;
 
-/// The values of one column that are there.
+/// The non-null values of one column.
 #[derive(Debug, Clone)]
 pub(crate) enum Values {
-    /// Whole numbers.
     Int(Vec<i32>),
-    /// Large whole numbers.
     Long(Vec<i64>),
     /// Nanoseconds since 1970, UTC.
     Time(Vec<i64>),
-    /// Numbers.
     Float(Vec<f32>),
-    /// Numbers of full precision.
     Double(Vec<f64>),
-    /// Yes or no.
     Bool(Vec<bool>),
     Text(Vec<ByteArray>),
     /// Lists of one text each.
     Texts(Vec<ByteArray>),
-    /// Lists of so many numbers.
+    /// Lists of this many numbers.
     Floats(usize, Vec<f32>),
 }
 
-/// One value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ParquetCell {
     Int(i32),
@@ -40,7 +34,7 @@ pub(crate) enum ParquetCell {
     Float(f32),
     Double(f64),
     Bool(bool),
-    /// Not read, or not known.
+    /// Not read, or unknown.
     Null,
 }
 
@@ -49,9 +43,9 @@ pub(crate) struct ParquetColumn {
     pub(crate) name: String,
     pub(crate) unit: &'static str,
     values: Values,
-    /// 1 for each row with a value, 0 for each without; 1 for each value of a list.
+    /// Definition level: 1 for each row with a value, 0 for each without; 1 for each value of a list.
     there: Vec<i16>,
-    /// 0 for the first value of a list, 1 for those after it.
+    /// Repetition level: 0 for the first value of a list, 1 for the others.
     further: Vec<i16>,
 }
 
@@ -66,12 +60,12 @@ impl ParquetColumn {
         }
     }
 
-    /// Of what type its values are.
+    /// Values collected so far, which also define the column's type.
     pub(crate) const fn values(&self) -> &Values {
         &self.values
     }
 
-    /// Adds a row. A value of another type than the column's is none.
+    /// Adds a row. A value of another type than the column's becomes null.
     pub(crate) fn push(&mut self, cell: ParquetCell) {
         match (&mut self.values, cell) {
             (Values::Int(all), ParquetCell::Int(value)) => all.push(value),
@@ -100,7 +94,7 @@ impl ParquetColumn {
         }
     }
 
-    /// Adds a row to a column of lists, which must be as long as the column's.
+    /// Adds a row to a column of lists; the list must have the column's length.
     pub(crate) fn push_list(&mut self, list: &[f32]) {
         if let Values::Floats(width, all) = &mut self.values {
             debug_assert_eq!(*width, list.len(), "a list of the column's length");
@@ -111,7 +105,7 @@ impl ParquetColumn {
         }
     }
 
-    /// Its place in the schema.
+    /// Parquet type of the column.
     pub(crate) fn schema(&self) -> Result<Arc<Type>, ParquetError> {
         let (physical, logical) = match self.values {
             Values::Int(_) => (Physical::INT32, None),
@@ -134,7 +128,7 @@ impl ParquetColumn {
         column.with_logical_type(logical).build().map(Arc::new)
     }
 
-    /// Writes what was gathered, and is empty again.
+    /// Writes the collected values and clears them.
     fn put(&mut self, mut to: SerializedColumnWriter<'_>) -> Result<(), ParquetError> {
         let there = Some(self.there.as_slice());
         match &mut self.values {
@@ -180,7 +174,7 @@ impl ParquetColumn {
     }
 }
 
-/// A column of lists, which are always there and have no holes.
+/// A column of lists without null lists or elements.
 fn list(
     name: &str,
     physical: Physical,
@@ -197,7 +191,7 @@ fn list(
     outer.build().map(Arc::new)
 }
 
-/// Writes a group of rows.
+/// Writes a row group.
 pub(crate) fn put<W: Write + Send>(
     columns: &mut [ParquetColumn],
     mut group: SerializedRowGroupWriter<'_, W>,

@@ -1,4 +1,5 @@
-//! A recording as comma-separated values: one line for each moment of receipt, the columns of the history's tables, what happened last.
+//! A recording as comma-separated values: one line for each moment of receipt, the columns of the history's tables, the event
+//! last.
 
 use crate::hand::column::{channel_column, grip_columns, joint_column, text_cell, tip_column};
 use crate::hand::grip::Grip;
@@ -12,13 +13,13 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::iter::Peekable;
 
-/// Channels of a fingertip.
+/// Number of channels of a fingertip.
 const CHANNELS: u8 = 8;
 
 /// The column that names values outside the manual's ranges, whose cells are empty.
 pub(crate) const UNDOCUMENTED: &str = "undocumented";
 
-/// Writes a stretch. Times are seconds from the recording's start.
+/// Writes a time range. Times are seconds from the recording's start.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
@@ -59,7 +60,7 @@ pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportErr
     })
 }
 
-/// What was received at one moment.
+/// Data received at one moment.
 #[derive(Default)]
 struct Line {
     at: Option<Moment>,
@@ -109,7 +110,7 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
         Ok(())
     }
 
-    /// The grip after what the line holds so far.
+    /// Sets the grip after the data of the current line.
     fn grip(&mut self, grip: &Grip) {
         let states = grip::states(grip).map(|state| grip::cell(state).unwrap_or_default());
         for (cell, state) in self
@@ -123,7 +124,7 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
         }
     }
 
-    /// Writes the line that was gathered, and before it what happened until then.
+    /// Writes the collected line, preceded by earlier events.
     fn put(&mut self) -> io::Result<()> {
         let Some(at) = self.line.at.take() else {
             return Ok(());
@@ -145,7 +146,7 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
         writeln!(self.to, ",{}", text_cell(&words))
     }
 
-    /// A line on which nothing was received.
+    /// Writes a line with an event only.
     fn mark(&mut self, mark: &FileMark) -> io::Result<()> {
         self.rows += 1;
         let empty = ",".repeat(self.line.cells.len() + 1);
@@ -166,7 +167,7 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
     }
 }
 
-/// What happened, as the tables of the window say it.
+/// Text of an event, as in the window's tables.
 fn words(mark: &FileMark) -> String {
     let kind = match mark.kind {
         EventKind::LinkLost => "link lost",
@@ -178,7 +179,7 @@ fn words(mark: &FileMark) -> String {
     }
 }
 
-/// The heads of the columns between time and event.
+/// Headers of the columns between time and event.
 fn columns() -> impl Iterator<Item = String> {
     let joints = Quantity::ALL
         .into_iter()
@@ -192,7 +193,7 @@ fn columns() -> impl Iterator<Item = String> {
     joints.chain(tips).chain(channels).chain(grip_columns())
 }
 
-/// A number that no reader takes for a whole one, and then the column for one of whole numbers.
+/// Formats a number with a decimal point, so that no reader infers a column of integers.
 fn decimal(value: f32) -> String {
     let digits = value.to_string();
     if digits.contains('.') {
@@ -202,7 +203,7 @@ fn decimal(value: f32) -> String {
     }
 }
 
-/// The values of those columns that are fresh and known.
+/// Fresh and known values of those columns.
 fn values(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = Option<String>> {
     let joints = Quantity::ALL.into_iter().flat_map(move |quantity| {
         let six = quantity.documented(sample);

@@ -1,4 +1,4 @@
-//! A stretch of a recording as a recording file of its own: closed, with an index, made anew of what could be read.
+//! A time range of a recording as a separate recording file: closed, with an index, rebuilt from the readable entries.
 
 use crate::record::export::output::{Destination, ExportError, Exported, Unfinished};
 use crate::record::export::source::{Broken, Source};
@@ -12,7 +12,7 @@ use std::io::Write;
 /// Entries between two writes to the disk: some hundred kilobytes.
 const ENTRIES_AT_ONCE: u64 = 1024;
 
-/// Writes a stretch.
+/// Writes a time range.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
@@ -20,7 +20,7 @@ pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportErr
     put(source, to, |_| None)
 }
 
-/// Writes all that can be read of a damaged file, and at its end what was lost.
+/// Writes all readable entries of a damaged file, and a final event that reports the loss.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
@@ -60,7 +60,7 @@ pub(crate) struct Copied<W> {
     pub(crate) to: W,
 }
 
-/// Copies a stretch, and then what is to be said of what could not be read.
+/// Copies a time range, and then the event that `said` returns for its damage.
 pub(crate) fn copy<W: Write>(
     source: Source<'_>,
     to: W,
@@ -81,7 +81,7 @@ pub(crate) fn copy<W: Write>(
     Ok(copied)
 }
 
-/// A recording file that is made of entries.
+/// A recording file built from entries.
 pub(crate) struct RecordingCopy<W> {
     writer: RecordingWriter,
     to: W,
@@ -90,12 +90,12 @@ pub(crate) struct RecordingCopy<W> {
 }
 
 impl<W: Write> RecordingCopy<W> {
-    /// Of entries before which there are none.
+    /// Starts a file with no preceding entries.
     pub(crate) fn new(opening: &Opening, to: W) -> Result<Self, Broken> {
         Self::after(opening, to, GripFollower::default())
     }
 
-    /// Of entries before which the grip was followed so far.
+    /// Starts a file with the grip state before its first entry.
     fn after(opening: &Opening, to: W, grip: GripFollower) -> Result<Self, Broken> {
         Ok(Self {
             writer: RecordingWriter::copy(opening, grip)?,

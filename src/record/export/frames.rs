@@ -1,4 +1,4 @@
-//! DatasetFrames at an even rate, made of readings and commands that come when they come.
+//! Frames at an even rate, from readings and commands that arrive at any time.
 
 use crate::hand::grip::Grip;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity};
@@ -10,38 +10,38 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A reading that is older is not taken for what holds now.
+/// Maximum age of a reading in a frame.
 const MIN_GAP: Duration = Duration::from_millis(500);
-/// The same for targets that nobody sent, which are read about twice a second.
+/// Maximum age of targets read from the hand, which are read about twice a second.
 const MIN_TARGET_GAP: Duration = Duration::from_secs(3);
 /// Angles are 0 to 1000.
 const FULL_SCALE: f32 = 1000.0;
-/// Fingertips that are read less often than so many times a second are left out: each frame would be a silence.
+/// Minimum read rate of the fingertips in Hz; at a lower rate they are omitted, because every frame would be a gap.
 const TOUCH_HZ_MIN: f64 = 4.0;
 /// Values of the fingertips: normal, then tangential forces.
 const TOUCH_WIDTH: usize = 10;
-/// Values of the force sensors of the joints, which stand before the fingertips.
+/// Values of the joints' force sensors, which precede the fingertips.
 const FORCE_WIDTH: usize = 6;
 /// States of the grip: the grasp's, then the fingers'.
 const GRIP_WIDTH: usize = 6;
 
-/// What was known at one time.
+/// The known state at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct DatasetFrame {
-    /// In its episode, from 0.
+    /// Number within its episode, from 0.
     pub(crate) number: u64,
     pub(crate) at: Moment,
-    /// Since the episode's first, s.
+    /// Time since the episode's first frame, in seconds.
     pub(crate) time_s: f32,
     /// The note that began the episode.
     pub(crate) note: Option<Arc<str>>,
-    /// A target was set by something else than the writes of the recording.
+    /// True if a target was set by anything other than the recorded writes.
     pub(crate) is_read_back: bool,
     state: [f32; 6],
     action: [f32; 6],
-    /// Forces of the joints, then of the fingertips, if those are there.
+    /// Forces of the joints, then of the fingertips, if included.
     environment: [f32; FORCE_WIDTH + TOUCH_WIDTH],
-    /// Numbers of the states of the grasp and the fingers.
+    /// State numbers of the grasp and the fingers.
     grip: [f32; GRIP_WIDTH],
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn frame_parts(with_touch: bool) -> Vec<(&'static str, usize)> {
 }
 
 impl DatasetFrame {
-    /// Its parts, as [`frame_parts`] names them.
+    /// Its parts, in the order of [`frame_parts`].
     pub(crate) fn parts(&self, with_touch: bool) -> Vec<&[f32]> {
         let (force, touch) = self.environment.split_at(FORCE_WIDTH);
         let mut parts: Vec<&[f32]> = vec![&self.state, &self.action];
@@ -76,7 +76,7 @@ impl DatasetFrame {
     }
 }
 
-/// Whether the fingertips of a recording were read often enough to be in frames.
+/// True if the fingertips of a recording were read often enough for frames.
 pub(crate) fn has_touch(file: &RecordingFile) -> bool {
     #[expect(clippy::cast_precision_loss, reason = "far below 2^53 sweeps")]
     let sweeps = file.overview().counts.touch_sweeps() as f64;
@@ -84,19 +84,19 @@ pub(crate) fn has_touch(file: &RecordingFile) -> bool {
     sweeps > 0.0 && sweeps >= TOUCH_HZ_MIN * length_s
 }
 
-/// How frames are made.
+/// Options of the frames.
 #[derive(Debug, Clone)]
 pub(crate) struct FramePlan {
     pub(crate) fps: u32,
-    /// Whether a frame needs the fingertips.
+    /// True if a frame requires the fingertips.
     pub(crate) with_touch: bool,
-    /// No frame is before this; entries before it say what was commanded.
+    /// Time before which there are no frames; earlier entries only provide the commands.
     pub(crate) from: Moment,
-    /// Where an episode begins, in the order of time; `None` if it begins wherever all is known.
+    /// Starts of the episodes, ordered by time; `None` if an episode begins as soon as all values are known.
     pub(crate) notes: Option<VecDeque<(Moment, Arc<str>)>>,
 }
 
-/// Makes frames of entries.
+/// Builds frames from entries.
 #[derive(Debug)]
 pub(crate) struct DatasetFrames {
     plan: FramePlan,
@@ -123,7 +123,7 @@ impl DatasetFrames {
         }
     }
 
-    /// Gives the frames before this entry, and takes it in.
+    /// Passes on the frames before this entry, and then applies the entry.
     pub(crate) fn take(&mut self, entry: &Entry, mut give: impl FnMut(&DatasetFrame)) {
         let now = entry.at();
         while let Some((at, note)) = self.next_note(now) {
@@ -157,14 +157,14 @@ impl DatasetFrames {
         }
     }
 
-    /// The next note that was made until now.
+    /// Removes the next note up to `now`.
     fn next_note(&mut self, now: Moment) -> Option<(Moment, Arc<str>)> {
         let notes = self.plan.notes.as_mut()?;
         notes.front().filter(|(at, _)| *at <= now)?;
         notes.pop_front()
     }
 
-    /// Begins an episode here, if all is known and one is wanted.
+    /// Begins an episode at `at`, if all values are known and the plan allows it.
     fn begin(&mut self, at: Moment) {
         let is_wanted = self.plan.notes.is_none() || self.note.is_some();
         let is_wanted = is_wanted && at >= self.plan.from;
@@ -172,7 +172,7 @@ impl DatasetFrames {
         self.began = Some(at).filter(|_| is_wanted && self.frame(at, at).is_some());
     }
 
-    /// Gives the frames that are due before this.
+    /// Passes on the frames that are due before `until`.
     fn advance(&mut self, until: Moment, give: &mut impl FnMut(&DatasetFrame)) {
         while let Some((began, at)) = self.next_at().filter(|(_, at)| *at < until) {
             match self.frame(began, at) {
@@ -186,7 +186,7 @@ impl DatasetFrames {
         }
     }
 
-    /// When the next frame is due.
+    /// Start of the episode, and time of the next frame.
     fn next_at(&self) -> Option<(Moment, Moment)> {
         let began = self.began?;
         let micros = self.number.saturating_mul(1_000_000) / u64::from(self.plan.fps.max(1));
@@ -200,7 +200,7 @@ impl DatasetFrames {
         }
     }
 
-    /// The frame of a time; `None` if something in it is not known or too old.
+    /// The frame at a time; `None` if a value is unknown or too old.
     fn frame(&self, began: Moment, at: Moment) -> Option<DatasetFrame> {
         let fresh = |received: Moment, within: Duration| at.since(received) <= within;
         let angle = Quantity::Angle.documented(&self.sample)?;

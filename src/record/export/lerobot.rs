@@ -1,5 +1,5 @@
-//! Recordings as a LeRobot v3.0 data set without video: frames at an even rate, each with the newest reading before its time. What was
-//! not read is never filled in: a silence ends the episode.
+//! Recordings as a LeRobot v3.0 data set without video: frames at an even rate, each with the newest reading before its time.
+//! Missing values are never filled in: a silence ends the episode.
 
 use crate::hand::Moment;
 use crate::hand::grip::GripState;
@@ -26,54 +26,53 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// DatasetFrames that an episode keeps in memory: half an hour at 30 a second. A longer one is written as several groups of rows.
+/// Maximum number of frames of an episode in memory: half an hour at 30 a second. A longer one is written as several row groups.
 const GROUP_FRAMES: u64 = 65_536;
-/// Files of one kind; LeRobot counts them with three digits.
+/// Path of each kind's only file; LeRobot numbers files with three digits.
 const FILE: &str = "chunk-000/file-000.parquet";
-/// What is said of a set in which actions are read back.
+/// Warning in the metadata of a set with read-back actions.
 const READ_BACK: &str = "in action_read_back_frames frames a target was set by something else than the writes of the recording: another controller, or the hand itself for a gesture; the action is what the hand held when it was read, up to half a second late";
-/// What a hand does of which nobody says it.
+/// Default task of a hand.
 const TASK: &str = "grasp";
 
-/// Where an episode begins. A silence ends it in any case.
+/// Start of an episode. A silence ends it in any case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EpisodeStart {
-    /// Where a recording begins, and after each silence.
+    /// At the start of a recording, and after each silence.
     Gap,
-    /// At each note that the user made; what is before the first is left out.
+    /// At each note by the user; frames before the first are omitted.
     Note,
 }
 
-/// How frames are made.
+/// Options of the data set.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeRobotPlan {
-    /// DatasetFrames a second.
+    /// Frames per second.
     pub fps: u32,
-    /// What the hand does, in words; `None` if the note at which an episode begins says it.
+    /// The hand's task; `None` if the note at the start of an episode names it.
     pub task: Option<String>,
-    /// Where episodes begin.
     pub episodes: EpisodeStart,
 }
 
-/// What is in a data set.
+/// Summary of a data set.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LeRobotSet {
-    /// Frames, and what could not be read of each recording.
+    /// Number of frames, and damage, of each recording.
     pub recordings: Vec<Exported>,
-    /// How many episodes.
+    /// Number of episodes.
     pub episodes: u64,
-    /// Frames whose action is not as it was sent, but as the hand held it when it was asked.
+    /// Number of frames whose action was not sent, but read back from the hand.
     pub read_back: u64,
 }
 
 impl LeRobotSet {
-    /// Of all recordings.
+    /// Number of frames of all recordings.
     pub fn frames(&self) -> u64 {
         self.recordings.iter().map(|recording| recording.rows).sum()
     }
 }
 
-/// Writes stretches of recordings as one folder.
+/// Writes time ranges of recordings as one folder.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no folder.
@@ -130,7 +129,7 @@ pub fn write(
     Ok(made)
 }
 
-/// Adds the frames of one recording. It is read from its start, because what was commanded before the stretch holds on in it.
+/// Adds the frames of one recording. It is read from its start, because earlier commands are still in effect in the range.
 fn add(set: &mut DataSet, source: &Source<'_>, plan: &LeRobotPlan) -> Result<Exported, Broken> {
     let mut frames = DatasetFrames::new(FramePlan {
         fps: plan.fps,
@@ -160,7 +159,7 @@ fn add(set: &mut DataSet, source: &Source<'_>, plan: &LeRobotPlan) -> Result<Exp
     })
 }
 
-/// Notes of users in the stretch.
+/// The user's notes in the time range.
 fn notes(source: &Source<'_>) -> VecDeque<(Moment, Arc<str>)> {
     let within = source.stretch.from..=source.stretch.to;
     let marks = source.file.overview().marks.iter();
@@ -172,15 +171,15 @@ fn notes(source: &Source<'_>) -> VecDeque<(Moment, Arc<str>)> {
 
 struct Episode {
     frames: u64,
-    /// The place of its task among all.
+    /// Index of its task.
     task: usize,
-    /// The place of its recording among all, and where in that it begins.
+    /// Index of its recording, and its start within that, in seconds.
     recording: usize,
     from_s: f64,
     read_back: u64,
 }
 
-/// The frames as they are written.
+/// The frames being written.
 struct DataSet {
     to: SerializedFileWriter<BufWriter<Sink>>,
     columns: Vec<ParquetColumn>,
@@ -188,13 +187,13 @@ struct DataSet {
     statistics: Statistics,
     tasks: Vec<String>,
     episodes: Vec<Episode>,
-    /// The place of the recording that is read.
+    /// Index of the recording being read.
     recording: usize,
     index: u64,
     waiting: u64,
 }
 
-/// What was written.
+/// Result of the written frames.
 struct Ended {
     data: BufWriter<Sink>,
     statistics: Statistics,
@@ -235,7 +234,7 @@ impl DataSet {
         })
     }
 
-    /// Adds a frame of a recording that began so.
+    /// Adds a frame of a recording that began at `began`.
     fn frame(
         &mut self,
         frame: &DatasetFrame,
@@ -285,7 +284,7 @@ impl DataSet {
         Ok(())
     }
 
-    /// The place of a task among all.
+    /// Index of a task, which is added if it is new.
     fn task(&mut self, words: &str) -> usize {
         let known = self.tasks.iter().position(|task| task == words);
         known.unwrap_or_else(|| {
@@ -328,7 +327,7 @@ fn writer<W: Write + Send>(
     SerializedFileWriter::new(to, Arc::new(schema.build()?), Arc::new(properties.build()))
 }
 
-/// What stands beside the frames.
+/// Metadata files of the set.
 struct Meta<'a> {
     sources: &'a [Source<'a>],
     side: Side,
@@ -372,7 +371,7 @@ impl Meta<'_> {
         })
     }
 
-    /// How the set was made, and of what.
+    /// Origin of the set: the method and the recordings.
     fn origin(&self) -> Value {
         let recording = |file: &RecordingFile| {
             let opening = file.opening();
@@ -488,7 +487,7 @@ impl Meta<'_> {
         finish(writer(to, &all, Vec::new())?, all)
     }
 
-    /// pandas takes the words for the index of the table only where the file says so.
+    /// pandas uses the task names as the table's index only if the file says so.
     fn tasks(&self, to: BufWriter<File>) -> Result<(), ParquetError> {
         const INDEX: &str = "__index_level_0__";
         let column = |name: Value, field: &str, kind: &str, numpy: &str| json!({ "name": name, "field_name": field, "pandas_type": kind, "numpy_type": numpy, "metadata": null });
@@ -514,7 +513,7 @@ impl Meta<'_> {
     }
 }
 
-/// Writes a table of a few rows.
+/// Writes a table with a few rows.
 fn finish(
     mut to: SerializedFileWriter<BufWriter<File>>,
     mut all: Vec<ParquetColumn>,

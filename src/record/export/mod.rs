@@ -1,5 +1,5 @@
-//! Recordings in the formats of others: tables, a rosbag2 folder, a data set for learners, a cut copy. Each reads the recording as a stream, writes beside its
-//! place, and takes the place only when it is whole.
+//! Exports of recordings: tables, a rosbag2 folder, a data set for machine learning, a cut copy. Each reads the recording as a
+//! stream, writes beside its destination, and is renamed only when complete.
 
 pub(crate) mod arrow_schema;
 pub(crate) mod columns;

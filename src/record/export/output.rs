@@ -1,5 +1,4 @@
-//! Where an export goes: a file or folder that takes its place only when it is whole, and is gone if it does not become whole; or
-//! standard output.
+//! Destination of an export: a file or folder that appears only when complete, and is removed otherwise; or standard output.
 
 use crate::record::file::reader::Damage;
 use crate::system::SystemError;
@@ -10,22 +9,22 @@ use std::io::{self, BufWriter, Write};
 use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 
-/// Why nothing was exported.
+/// Reason why nothing was exported.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ExportError {
-    /// Something has that name.
+    /// The path already exists.
     #[error("{} is already there and is not overwritten", .path.display())]
     Exists { path: PathBuf },
-    /// The system does not let it be written.
+    /// The system refuses to write it.
     #[error("cannot write {}: {error}", .path.display())]
     Unwritable { path: PathBuf, error: SystemError },
-    /// The recording cannot be read on.
+    /// The recording cannot be read to its end.
     #[error("cannot read the recording to its end: {error}")]
     Unreadable { error: SystemError },
-    /// There is nothing of this kind in the stretch.
+    /// The time range holds nothing of this kind.
     #[error("there is nothing to export in this stretch")]
     Empty,
-    /// Episodes begin at notes, and there is none.
+    /// Episodes begin at notes, and there are none.
     #[error("there is no note of a person in this stretch, at which an episode could begin")]
     NoNotes,
     /// A left and a right hand in one data set.
@@ -33,10 +32,10 @@ pub enum ExportError {
         "a left and a right hand cannot be in one data set, because their joints have other names"
     )]
     BothSides,
-    /// The user broke it off.
+    /// The user cancelled the export.
     #[error("interrupted")]
     Interrupted,
-    /// Whoever read standard output does not read on.
+    /// The reader of standard output closed it.
     #[error("the reader of the output went away")]
     ReaderGone,
 }
@@ -47,16 +46,15 @@ pub struct Exported {
     pub rows: u64,
     /// Readings of the hand among the messages; `None` in a table, where each row is one.
     pub readings: Option<u64>,
-    /// What of the recording could not be read and is not in it.
+    /// Parts of the recording that could not be read and are missing.
     pub damage: Damage,
 }
 
-/// Where an export goes.
+/// Destination of an export.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Destination {
     /// A file or folder, which must not exist yet.
     Path(PathBuf),
-    /// Standard output.
     Stdout,
 }
 
@@ -66,7 +64,7 @@ impl From<&Path> for Destination {
     }
 }
 
-/// What takes the bytes of an export.
+/// Writer of an export's bytes.
 #[derive(Debug)]
 pub(crate) enum Sink {
     File(File),
@@ -89,7 +87,7 @@ impl Write for Sink {
     }
 }
 
-/// Something that is being written.
+/// An export in progress.
 #[derive(Debug)]
 pub(crate) struct Unfinished {
     wanted: Destination,
@@ -97,7 +95,7 @@ pub(crate) struct Unfinished {
 }
 
 impl Unfinished {
-    /// For this place, which must be free.
+    /// Prepares this destination, which must not exist.
     pub(crate) fn new(wanted: &Destination) -> Result<Self, ExportError> {
         let mut beside = PathBuf::new();
         if let Destination::Path(path) = wanted {
@@ -113,7 +111,7 @@ impl Unfinished {
         })
     }
 
-    /// What the system said of writing it.
+    /// Converts the system's error on writing it.
     pub(crate) fn error(&self, error: &io::Error) -> ExportError {
         match &self.wanted {
             Destination::Stdout if error.kind() == io::ErrorKind::BrokenPipe => {
@@ -130,7 +128,7 @@ impl Unfinished {
         }
     }
 
-    /// The same of a table, whose errors wrap the system's.
+    /// Converts the error of a table, which wraps the system's.
     pub(crate) fn parquet_error(&self, error: ParquetError) -> ExportError {
         let error = match error {
             ParquetError::External(inner) => match inner.downcast::<io::Error>() {
@@ -142,7 +140,7 @@ impl Unfinished {
         self.error(&error)
     }
 
-    /// The file, in its temporary place. As the recording that it is made of, only its user can read it.
+    /// Creates the file at its temporary path. Like the recording, only its owner can read it.
     pub(crate) fn file(&self) -> Result<BufWriter<Sink>, ExportError> {
         let sink = match self.wanted {
             Destination::Stdout => Sink::Stdout(io::stdout()),
@@ -157,7 +155,7 @@ impl Unfinished {
         Ok(BufWriter::new(sink))
     }
 
-    /// The folder, in its temporary place.
+    /// Creates the folder at its temporary path.
     pub(crate) fn folder(&self) -> Result<&Path, ExportError> {
         let mut folder = DirBuilder::new();
         #[cfg(unix)]
@@ -167,7 +165,7 @@ impl Unfinished {
         Ok(&self.beside)
     }
 
-    /// A file that is written in full goes to the disk.
+    /// Flushes a complete file to the disk.
     pub(crate) fn sync(&self, mut file: BufWriter<Sink>) -> Result<(), ExportError> {
         let synced = file.flush().and_then(|()| match file.get_ref() {
             Sink::File(file) => file.sync_all(),
@@ -176,7 +174,7 @@ impl Unfinished {
         synced.map_err(|error| self.error(&error))
     }
 
-    /// Takes the place, unless it has no rows.
+    /// Renames to the destination, unless it has no rows.
     pub(crate) fn finish(self, rows: u64) -> Result<(), ExportError> {
         if rows == 0 {
             return Err(ExportError::Empty);
@@ -196,7 +194,7 @@ impl Drop for Unfinished {
         if self.wanted == Destination::Stdout {
             return;
         }
-        // One that took its place is not here any more; what cannot be removed stays beside, under a name that tells.
+        // After the rename nothing is left here; if removal fails, a file with a telling name remains.
         let _gone = if self.beside.is_dir() {
             fs::remove_dir_all(&self.beside)
         } else {
@@ -205,12 +203,12 @@ impl Drop for Unfinished {
     }
 }
 
-/// A folder of several exports, which takes its place only when it is whole.
+/// A folder of several exports, which appears only when complete.
 #[derive(Debug)]
 pub struct Folder(Unfinished);
 
 impl Folder {
-    /// For this place, which must be free.
+    /// Prepares this destination, which must not exist.
     ///
     /// # Errors
     /// [`ExportError`].
@@ -220,12 +218,12 @@ impl Folder {
         Ok(Self(folder))
     }
 
-    /// Where it is until it is whole.
+    /// Temporary path of the folder.
     pub fn path(&self) -> &Path {
         &self.0.beside
     }
 
-    /// Takes the place.
+    /// Renames to the destination.
     ///
     /// # Errors
     /// [`ExportError`]; then there is no folder.

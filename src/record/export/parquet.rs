@@ -1,5 +1,5 @@
-//! A recording as a Parquet table: one row for each reading, nothing where it was not part of the reading. Units, the hand and what
-//! happened stand in the file's metadata.
+//! A recording as a Parquet table: one row for each reading, null for values that were not part of it. Units, the hand and events
+//! are in the file's metadata.
 
 use crate::hand::column::{channel_column, grip_columns, joint_column, tip_column};
 use crate::hand::grip::Grip;
@@ -25,10 +25,10 @@ use std::sync::Arc;
 
 /// Rows written at once: 6 MB.
 const GROUP_ROWS: u64 = 8192;
-/// Channels of a fingertip.
+/// Number of channels of a fingertip.
 const CHANNELS: u8 = 8;
 
-/// Writes a stretch. Times are seconds from the recording's start, and nanoseconds since 1970.
+/// Writes a time range. Times are seconds from the recording's start, and nanoseconds since 1970.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
@@ -58,7 +58,7 @@ pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportErr
 }
 
 struct ParquetTable {
-    /// The last names values outside the manual's ranges; those before it tell the grip.
+    /// The last column names values outside the manual's ranges; those before it hold the grip.
     columns: Vec<ParquetColumn>,
     to: SerializedFileWriter<BufWriter<Sink>>,
     start: Moment,
@@ -155,7 +155,7 @@ impl ParquetTable {
     }
 }
 
-/// What stands beside the rows: the unit of each column that has one, the recording, what happened.
+/// Metadata of the file: the columns' units, the recording, the events.
 fn metadata(source: Source<'_>, columns: &[ParquetColumn]) -> Vec<KeyValue> {
     let Source { file, stretch, .. } = source;
     let opening = file.opening();
@@ -241,7 +241,7 @@ fn all_columns() -> Vec<ParquetColumn> {
     all
 }
 
-/// The cells of a row between its times and its texts, in the order of the columns.
+/// Cells of a row between its times and its texts, in the order of the columns.
 fn cells(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = ParquetCell> {
     let measured = Quantity::ALL.into_iter().flat_map(move |quantity| {
         let six = quantity.documented(sample);

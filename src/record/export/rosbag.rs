@@ -1,4 +1,4 @@
-//! A recording as a rosbag2 folder: a copy of the stretch, and beside it the `metadata.yaml` that ROS 2 reads first.
+//! A recording as a rosbag2 folder: a copy of the time range, and beside it the `metadata.yaml` that ROS 2 reads first.
 
 use crate::record::export::cut::{Copied, copy};
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
@@ -10,10 +10,10 @@ use std::fs;
 use std::io::{self, BufWriter};
 use std::path::Path;
 
-/// The version of `metadata.yaml`: the oldest that names each file's own times; newer readers take it.
+/// Version of `metadata.yaml`: the oldest with the times of each file; newer readers accept it.
 const VERSION: u32 = 5;
 
-/// Writes a stretch as a folder.
+/// Writes a time range as a folder.
 ///
 /// # Errors
 /// [`ExportError`]; then there is no folder.
@@ -37,11 +37,11 @@ pub fn write(source: Source<'_>, path: &Path) -> Result<Exported, ExportError> {
     Ok(Exported { rows, ..exported })
 }
 
-/// What rosbag2 wants to know of the file of this name.
+/// Content of `metadata.yaml` for a file of this name.
 fn metadata(counted: &Counted, name: &str) -> String {
     let (first, last) = counted.times;
     let (length, messages) = (last - first, counted.all());
-    // A name in single quotes is a text whatever it holds.
+    // In YAML a name in single quotes is always text.
     let name = name.replace('\'', "''");
     let mut topics = String::new();
     let counts = Topic::all().map(|topic| (topic, counted.messages.get(&topic.channel())));

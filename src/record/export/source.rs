@@ -1,4 +1,4 @@
-//! A stretch of a recording on its way into another format: read entry after entry, watched, and broken off when that is wished.
+//! A time range of a recording as the input of an export: read entry by entry, with progress and cancellation.
 
 use crate::hand::Moment;
 use crate::record::Entry;
@@ -11,36 +11,36 @@ use parquet::errors::ParquetError;
 use std::io;
 use std::ops::ControlFlow;
 
-/// Entries between two looks at whether to go on: some milliseconds.
+/// Entries between two progress reports: some milliseconds.
 const POLL_ENTRIES: u64 = 256;
 
-/// How far an export is, from 0 to 1. Breaks it off where that is wished.
+/// Receives the progress of an export, from 0 to 1. Cancels it by returning `Break`.
 pub type Watch<'a> = dyn Fn(f64) -> ControlFlow<()> + 'a;
 
-/// A stretch of a recording that is exported.
+/// A time range of a recording to export.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
     pub file: &'a RecordingFile,
     pub stretch: Stretch,
-    /// Told how far it is.
+    /// Receives the progress.
     pub watch: &'a Watch<'a>,
 }
 
-/// Why a stretch was not read, or not written, to its end.
+/// Reason why a time range was not read or written to its end.
 #[derive(Debug)]
 pub(crate) enum Broken {
-    /// The recording cannot be read on.
+    /// The recording cannot be read to its end.
     Source(io::Error),
-    /// What is made of it cannot be written.
+    /// The export cannot be written.
     Output(io::Error),
-    /// The same of a table.
+    /// The exported table cannot be written.
     Table(ParquetError),
-    /// The user wished it.
+    /// The user cancelled the export.
     Interrupted,
 }
 
 impl Broken {
-    /// For what was to be written.
+    /// Converts to the error of this export.
     pub(crate) fn of(self, output: &Unfinished) -> ExportError {
         match self {
             Self::Source(error) => ExportError::Unreadable {
@@ -72,7 +72,7 @@ impl From<ParquetError> for Broken {
 }
 
 impl<'a> Source<'a> {
-    /// A stretch that nobody watches.
+    /// A time range without progress reports.
     pub fn new(file: &'a RecordingFile, stretch: Stretch) -> Self {
         let watch = &|_| ControlFlow::Continue(());
         Self {
@@ -82,20 +82,20 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The same without the bytes on the wire.
+    /// Omits the bytes on the wire.
     pub(crate) const fn without_wire(mut self) -> Self {
         self.stretch.wire = false;
         self
     }
 
-    /// The grip as it was followed until the stretch begins: what is told of it in the stretch rests on that.
+    /// State of the grip before the time range, on which the grip within it depends.
     pub(crate) fn grip_before(&self) -> Result<GripFollower, Broken> {
         let mut grip = GripFollower::default();
         let from = self.stretch.from;
         if from <= self.file.first() {
             return Ok(grip);
         }
-        // How far the export is begins with the stretch.
+        // Progress starts with the time range.
         let watch = |_| (self.watch)(0.0);
         let mut before = Source {
             watch: &watch,
@@ -110,7 +110,7 @@ impl<'a> Source<'a> {
         Ok(grip)
     }
 
-    /// Gives each entry to `take`, until one cannot be taken.
+    /// Passes each entry to `take`, until that fails.
     pub(crate) fn entries(
         &self,
         mut take: impl FnMut(Entry) -> Result<(), Broken>,
@@ -134,7 +134,7 @@ impl<'a> Source<'a> {
         done.map(|()| damage)
     }
 
-    /// Tells how far it is.
+    /// Reports the progress.
     fn look(&self, at: Moment) -> Result<(), Broken> {
         let from = self.stretch.from.max(self.file.first());
         let whole = self.stretch.to.min(self.file.last()).since(from);

@@ -1,10 +1,10 @@
-//! Statistics of a data set's columns, in memory that does not grow with it.
+//! Statistics of a data set's columns, in constant memory.
 
 use serde_json::{Map, Value, json};
 
-/// Values kept of one column for the quantiles. Of more, every second is dropped, again and again.
+/// Maximum number of a column's values stored for the quantiles. When it is reached, every second one is dropped.
 const KEPT_MAX: usize = 65_536;
-/// The quantiles that newer policies ask for.
+/// Quantiles that newer policies require.
 const QUANTILES: [(&str, f64); 5] = [
     ("q01", 0.01),
     ("q10", 0.10),
@@ -20,7 +20,7 @@ pub(crate) struct Statistics {
 }
 
 impl Statistics {
-    /// Lists of these names and lengths.
+    /// Lists with these names and lengths.
     pub(crate) fn new(parts: impl Iterator<Item = (&'static str, usize)>) -> Self {
         let part =
             |(name, width): (&str, usize)| (name.to_owned(), vec![ColumnSummary::default(); width]);
@@ -29,7 +29,7 @@ impl Statistics {
         }
     }
 
-    /// Takes in one row.
+    /// Adds one row.
     pub(crate) fn take(&mut self, row: &[&[f32]]) {
         for ((_, summaries), values) in self.parts.iter_mut().zip(row) {
             for (summary, value) in summaries.iter_mut().zip(*values) {
@@ -38,7 +38,7 @@ impl Statistics {
         }
     }
 
-    /// As `stats.json` has them.
+    /// Formats as in `stats.json`.
     pub(crate) fn json(&self) -> Value {
         let mut all = Map::new();
         for (name, summaries) in &self.parts {
@@ -62,13 +62,13 @@ impl Statistics {
     }
 }
 
-/// Of one number.
+/// Statistics of one number.
 #[derive(Debug, Clone)]
 struct ColumnSummary {
     min: f32,
     max: f32,
     count: u64,
-    /// Mean, and sum of squares around it, as Welford keeps them.
+    /// Mean, and sum of squared deviations from it (Welford's method).
     mean: f64,
     squares: f64,
     kept: Vec<f32>,

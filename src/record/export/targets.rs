@@ -1,23 +1,23 @@
-//! The targets of the joints over time: as they were sent, when they were sent. Only a target that nobody sent in the recording is
-//! what the hand held when it was asked.
+//! The targets of the joints over time: as sent, when sent. Only a target that the recording did not send is taken from the
+//! hand's read-back.
 
 use crate::hand::{Dof, Moment, PerDof, Target, Timed};
 use crate::record::WrittenMemory;
 use std::time::Duration;
 
-/// A write may act so late: what is read until then may be of before it.
+/// Maximum time until a write takes effect: values read before then may be older than the write.
 const ACT_DELAY: Duration = Duration::from_secs(2);
-/// Registers by which the hand is told a gesture: it then sets targets of its own.
+/// Registers that start a gesture: the hand then sets its own targets.
 const GESTURES: [u16; 3] = [1008, 2320, 2322];
 
-/// Who set the target of a joint.
+/// Origin of a joint's target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum TargetOrigin {
-    /// The hand held it when it was read first, and since.
+    /// The hand's target at the first read, unchanged since.
     Held,
     /// A write in the recording.
     Sent,
-    /// Something else, while it was recorded: another controller, or the hand itself for a gesture.
+    /// Set during the recording by another controller, or by the hand itself for a gesture.
     ReadBack,
 }
 
@@ -26,36 +26,35 @@ enum TargetOrigin {
 struct JointTarget {
     angle: i16,
     origin: TargetOrigin,
-    /// Read once as another: one reading may be wrong, two are not.
+    /// True after one deviating read-back: one reading may be wrong, two are not.
     doubted: bool,
 }
 
-/// The targets of six joints; `None` for a joint that was only ever left alone.
+/// Targets of six joints; `None` for a joint that has had no target so far.
 type Six = PerDof<Option<JointTarget>>;
 
-/// What the joints were told last.
+/// Last targets of the joints.
 #[derive(Debug, Clone)]
 pub(crate) struct CommandedTargets {
     six: Six,
     sent: Option<Moment>,
-    /// The number of the last write, and what held before it.
+    /// Number of the last write, and the targets before it.
     before: Option<(u64, Six)>,
 }
 
 impl CommandedTargets {
-    /// Nothing is known.
     pub(crate) const UNKNOWN: Self = Self {
         six: PerDof::splat(None),
         sent: None,
         before: None,
     };
 
-    /// The target of a joint; `None` if it was only ever left alone.
+    /// Target of a joint; `None` if it has had none so far.
     pub(crate) fn angle(&self, dof: Dof) -> Option<i16> {
         self.six[dof].map(|target| target.angle)
     }
 
-    /// True if each joint has the target that it was sent; then nothing needs to be read.
+    /// True if each joint has a target that was sent; then no read-back is needed.
     pub(crate) fn are_sent(&self) -> bool {
         let is_sent = |target: &JointTarget| target.origin == TargetOrigin::Sent;
         self.six
@@ -63,7 +62,7 @@ impl CommandedTargets {
             .all(|(_, target)| target.as_ref().is_some_and(is_sent))
     }
 
-    /// True if a target was set by something else than the writes of the recording.
+    /// True if a target was set by anything other than the recorded writes.
     pub(crate) fn are_read_back(&self) -> bool {
         let is_read = |target: &JointTarget| target.origin == TargetOrigin::ReadBack;
         self.six
@@ -71,7 +70,7 @@ impl CommandedTargets {
             .any(|(_, target)| target.as_ref().is_some_and(is_read))
     }
 
-    /// A write left for the hand. A joint that it leaves alone keeps its target.
+    /// Applies a write that left for the hand. A joint without a value in it retains its target.
     pub(crate) fn sent(&mut self, at: Moment, number: u64, write: &WrittenMemory) {
         let before = self.six;
         for (dof, angle) in write.angle_targets().iter() {
@@ -98,18 +97,18 @@ impl CommandedTargets {
         self.before = Some((number, before));
     }
 
-    /// The hand refused a write: it told the joints nothing.
+    /// Reverts a write that the hand refused.
     pub(crate) fn refused(&mut self, number: u64) {
         if let Some((_, before)) = self.before.take_if(|(last, _)| *last == number) {
             self.six = before;
         }
     }
 
-    /// What the hand holds was read.
+    /// Applies targets read from the hand.
     pub(crate) fn read(&mut self, held: Timed<PerDof<Option<Target>>>) {
         let may_be_old = self.sent.is_some_and(|at| held.asked.since(at) < ACT_DELAY);
         for (dof, target) in held.value.iter() {
-            // -1 leaves a joint alone: what it was told before holds on.
+            // -1 means no new target for a joint: its last one stays in effect.
             let Some(angle) = target.and_then(Target::angle).map(|angle| angle.get()) else {
                 continue;
             };
@@ -146,13 +145,13 @@ mod tests {
         Moment::from_micros(1000 * millis)
     }
 
-    /// What happens to the index finger.
+    /// An event for the index finger.
     enum Step {
-        /// Sent at so many milliseconds, with a number; -1 leaves it alone.
+        /// Time of sending in ms, write number, angle; -1 means no new target.
         Sent(u64, u64, i16),
         Gesture(u64),
         Refused(u64),
-        /// Read at so many milliseconds.
+        /// Time of reading in ms, angle.
         Read(u64, i16),
     }
 

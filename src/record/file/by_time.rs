@@ -1,18 +1,18 @@
-//! Messages in the order of time, however they stand in a file, without holding more than some megabytes of them.
+//! Messages ordered by time, regardless of their order in the file, while holding at most some megabytes of them.
 
 use crate::record::file::walk::{ChunkMessage, ChunkPlace};
 use std::io;
 use std::ops::{ControlFlow, RangeInclusive};
 
-/// Bytes of messages held at once: some minutes of one hand. What comes later is read again then.
+/// Maximum bytes of messages held at once: some minutes of one hand. Later ones are read again in the next pass.
 const HELD_MAX: usize = 8 * 1024 * 1024;
-/// What a message takes in memory beside its content.
+/// Memory overhead of a message beside its content.
 const EACH: usize = 128;
 
-/// The order: received, number, place.
+/// Sort key: time of receipt, number, chunk, position.
 type Key = (u64, u32, usize, usize);
 
-/// A message that waits for its turn.
+/// A message waiting in the buffer.
 struct Held {
     key: Key,
     channel: u16,
@@ -20,11 +20,11 @@ struct Held {
     data: Box<[u8]>,
 }
 
-/// Gives the messages of a stretch of time in its order, as `scan` gives those of a chunk. Chunks are in the order of their first
+/// Passes on the messages of a time range in order of time; `scan` reads those of a chunk. Chunks are sorted by their first
 /// message.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub(crate) fn each(
     chunks: &[ChunkPlace],
     within: RangeInclusive<u64>,
@@ -85,7 +85,7 @@ pub(crate) fn each(
     }
 }
 
-/// Leaves the later half for another time; gives the last that stays.
+/// Drops the later half, for the next pass; returns the last key that stays.
 fn leave_out(held: &mut Vec<Held>, bytes: &mut usize) -> Option<Key> {
     held.sort_unstable_by_key(|one| one.key);
     while *bytes > HELD_MAX / 2 && held.len() > 1 {

@@ -1,15 +1,15 @@
-//! The channels and schemas of a file, read by name: numbers of channels are each program's own.
+//! The channels and schemas of a file, matched by name: channel numbers differ between programs.
 
 use crate::record::file::format::topic::Topic;
 use mcap::records::Record;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Definitions of each kind that are taken from one file. Ours have thirteen.
+/// Maximum number of definitions of each kind read from one file. Ours have thirteen.
 const DEFINITIONS_MAX: usize = 1024;
-/// Letters kept of a name, and of what a schema says.
+/// Maximum characters of a name, and of a schema's text.
 const NAME_MAX: usize = 200;
 const FIELDS_MAX: usize = 4096;
-/// How messages and schemas of ours are encoded.
+/// Encodings of our messages and schemas.
 const MESSAGES_IN: &str = "cdr";
 const SCHEMAS_IN: &str = "ros2msg";
 
@@ -29,37 +29,36 @@ struct Channel {
     encoding: String,
 }
 
-/// Messages that are not read, and why.
+/// Messages that are not read, and the reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SkippedTopic {
-    /// The topic's name.
     pub topic: String,
-    /// The name of its schema; empty without one.
+    /// Name of its schema; empty if it has none.
     pub schema: String,
-    /// How its messages are encoded.
+    /// Encoding of its messages.
     pub encoding: String,
-    /// How many they are.
+    /// Number of messages.
     pub messages: u64,
     pub why: SkipReason,
 }
 
-/// Why messages are not read.
+/// Reason why messages are not read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SkipReason {
     /// The topic is not one of Handscope's.
     Unknown,
-    /// The topic is, but its schema or encoding is another.
+    /// The topic is known, but its schema or encoding differs.
     OtherSchema,
-    /// The schema has the right name and other fields.
+    /// The schema has the right name, but different fields.
     OtherFields,
-    /// Nothing in the file says what they are.
+    /// The file does not define the channel.
     Undefined,
-    /// The file says so twice, and not the same.
+    /// The file defines the channel twice, differently.
     Contradicted,
 }
 
 impl SkippedTopic {
-    /// True if it is Handscope's, so that something of the recording is missing.
+    /// True if the topic is Handscope's, so that part of the recording is missing.
     pub const fn is_ours(&self) -> bool {
         !matches!(self.why, SkipReason::Unknown)
     }
@@ -88,7 +87,7 @@ impl std::fmt::Display for SkippedTopic {
     }
 }
 
-/// All that a file defines, and how many messages each channel has.
+/// All definitions of a file, and the number of messages of each channel.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Definitions {
     schemas: BTreeMap<u16, Schema>,
@@ -98,7 +97,7 @@ pub(crate) struct Definitions {
 }
 
 impl Definitions {
-    /// Takes in the record of a schema or a channel.
+    /// Adds the record of a schema or a channel.
     pub(crate) fn take(&mut self, code: u8, record: &[u8]) {
         match mcap::parse_record(code, record) {
             Ok(Record::Schema { header, data }) => {
@@ -128,7 +127,6 @@ impl Definitions {
         }
     }
 
-    /// Counts a message.
     pub(crate) fn count(&mut self, channel: u16) {
         *self.counts.entry(channel).or_default() += 1;
     }
@@ -138,17 +136,17 @@ impl Definitions {
         self.channels.contains_key(&channel)
     }
 
-    /// True if nothing is defined, and no message was counted.
+    /// True if there are no definitions and no counted messages.
     pub(crate) fn is_empty(&self) -> bool {
         self.channels.is_empty() && self.counts.is_empty()
     }
 
-    /// Messages counted.
+    /// Number of counted messages.
     pub(crate) fn messages(&self) -> u64 {
         self.counts.values().sum()
     }
 
-    /// True if each topic has the number that Handscope gives it, and nothing else is defined. The first files tell no grip.
+    /// True if each topic has Handscope's channel number, and nothing else is defined. The first files have no grip.
     pub(crate) fn are_own(&self) -> bool {
         let is_defined = |topic: Topic| self.channels.contains_key(&topic.channel());
         let is_own = |(number, channel): (&u16, &Channel)| {
@@ -159,7 +157,7 @@ impl Definitions {
         since_the_first.all(is_defined) && self.channels.iter().all(is_own)
     }
 
-    /// The topics of the channels, and what is skipped.
+    /// Topics of the channels, and the skipped ones.
     pub(crate) fn topics(&self) -> (BTreeMap<u16, Topic>, Vec<SkippedTopic>) {
         let (mut topics, mut skipped) = (BTreeMap::new(), Vec::new());
         let numbers: BTreeSet<u16> = self
@@ -181,10 +179,10 @@ impl Definitions {
         (topics, skipped)
     }
 
-    /// The namespaces that another program has put before our topics: one for each hand.
+    /// Namespaces that another program has put before our topics: one for each hand.
     pub(crate) fn namespaces(&self) -> BTreeSet<&str> {
         let ours = self.channels.iter().filter_map(|(number, channel)| {
-            // Every robot has joints, of which ours are only a copy.
+            // Every robot has joint states; ours are only a copy.
             let topic = self
                 .topic(*number)
                 .ok()
@@ -206,7 +204,7 @@ impl Definitions {
         let is_ours = schema.name == topic.schema().name
             && schema.encoding == SCHEMAS_IN
             && channel.encoding == MESSAGES_IN;
-        // Every robot has joints of that name, which tell nothing that State does not.
+        // Every robot has joint states of that name; they add nothing to State.
         if !is_ours {
             return Err(match topic {
                 Topic::Joints => SkipReason::Unknown,
@@ -233,7 +231,7 @@ impl Definitions {
     }
 }
 
-/// What stands before the name of one of our topics: nothing, or names as ROS 2 puts before those of one robot of several.
+/// Prefix of a topic's name: empty, or a namespace by which ROS 2 separates several robots; `None` for other names.
 fn namespace(name: &str, topic: Topic) -> Option<&str> {
     let before = name.strip_suffix(topic.name())?;
     (before.is_empty() || before.starts_with('/')).then_some(before)
@@ -243,7 +241,7 @@ fn clipped(text: &str, letters: usize) -> String {
     text.chars().take(letters).collect()
 }
 
-/// The fields of a definition, one a line: without comments and without the types in it, whose names are spelled in two ways.
+/// Fields of a definition, one a line, without comments and nested definitions. Type names are normalised, as two spellings exist.
 fn fields(text: &str) -> String {
     let lines = text.lines().take_while(|line| !line.starts_with("==="));
     let lines = lines.filter_map(|line| {

@@ -1,28 +1,28 @@
-//! Which clock of a file is believed: the times of its log. The times within its messages, their stamps, tell what was how long before,
-//! and how far another program has moved the log. ROS 2 counts a stamp's seconds in 31 bits, which end in January 2038.
+//! Chooses the clock of a file: its log times are used. The stamps within its messages give the order and the intervals, and
+//! reveal a log shifted by another program. ROS 2 counts a stamp's seconds in 31 bits, which end in January 2038.
 
 use crate::record::file::format::message::Time;
 use crate::record::file::format::topic::Topic;
 use std::collections::BTreeMap;
 
-/// Messages of a channel whose stamps are looked at.
+/// Maximum number of messages per channel whose stamps are inspected.
 const SAMPLES_MAX: usize = 256;
 /// Bytes of a message before its first stamp, and of a stamp.
 const HEAD: usize = 4;
 const STAMP: usize = 8;
-/// Places in a message where its stamp may stand.
+/// Positions in a message at which its stamp may be.
 const STAMPS: usize = 2;
 
-/// How the log's clock and the stamps differ, gathered before it is known which channel is which topic.
+/// Differences between the log's clock and the stamps, collected before the channels' topics are known.
 #[derive(Debug, Default)]
 pub(crate) struct LogClock {
     differences: BTreeMap<u16, Vec<[Option<i64>; STAMPS]>>,
-    /// Messages without a time in the log.
+    /// Number of messages per channel without a log time.
     pub(crate) unlogged: BTreeMap<u16, u64>,
 }
 
 impl LogClock {
-    /// Notes a message of this channel, with its time in the log.
+    /// Adds a message of this channel, with its log time.
     pub(crate) fn take(&mut self, channel: u16, log: u64, data: &[u8]) {
         if log == 0 {
             *self.unlogged.entry(channel).or_default() += 1;
@@ -35,7 +35,7 @@ impl LogClock {
         }
     }
 
-    /// By how many nanoseconds the log is after the stamps, in the middle.
+    /// Median difference by which the log is ahead of the stamps, in nanoseconds.
     pub(crate) fn difference(&self, topics: &BTreeMap<u16, Topic>) -> i64 {
         let known = self.differences.iter();
         let known = known.filter_map(|(channel, samples)| Some((topics.get(channel)?, samples)));
@@ -49,7 +49,7 @@ impl LogClock {
     }
 }
 
-/// When a message was received: as the log says, and where it says nothing as the stamp does, by the log's clock.
+/// Time of receipt of a message: its log time, or if that is missing its stamp, converted to the log's clock.
 pub(crate) fn received(topic: Topic, log: u64, data: &[u8], difference: i64) -> u64 {
     if log > 0 {
         return log;
@@ -58,16 +58,16 @@ pub(crate) fn received(topic: Topic, log: u64, data: &[u8], difference: i64) -> 
     stamp.saturating_add_signed(difference)
 }
 
-/// Which of a message's first stamps says when it was received.
+/// Index of the stamp that holds the time of receipt.
 const fn place(topic: Topic) -> usize {
     match topic {
-        // When it was asked for stands before.
+        // The first stamp is the time of the request.
         Topic::State | Topic::Touch(_) => 1,
         _ => 0,
     }
 }
 
-/// A stamp in nanoseconds since 1970; `None` if there is none, or it ends at 2038.
+/// A stamp in nanoseconds since 1970; `None` if it is missing or saturated at 2038.
 fn stamp(data: &[u8], nth: usize) -> Option<u64> {
     let is_little = data.get(1)? & 1 == 1;
     let bytes: &[u8; STAMP] = data.get(HEAD + nth * STAMP..)?.first_chunk()?;

@@ -1,4 +1,4 @@
-//! What can be read of a recording file, found by reading all of it.
+//! The readable contents of a recording file, found by reading all of it.
 
 use crate::hand::Moment;
 use crate::record::file::damage::{Damage, Gap};
@@ -9,20 +9,20 @@ use std::io;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-/// The link tells its figures once a second, whatever the hand does, and a hand is read more often than that. Where nothing is told
-/// for longer, nothing was recorded; where no reading is, the hand did not answer or was not asked.
+/// The link reports its statistics once a second, regardless of the hand, and a hand is read more often than that. A longer
+/// period without any entry was not recorded; one without readings means that the hand did not answer or was not polled.
 const SILENT: Duration = Duration::from_millis(2500);
 
-/// What can be read of a file.
+/// The readable contents of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Contents {
-    /// How much of what. Faults are those that the readings show.
+    /// Number of entries by kind. Faults are those that the readings show.
     pub counts: Counts,
-    /// What is missing: by the sums, by the messages' numbers, as the recorder said, and where nothing was recorded.
+    /// Missing data: by checksums, by message numbers, as the recorder reported, and where nothing was recorded.
     pub damage: Damage,
-    /// Where the hand was not read, though the recording went on. Nothing is missing in the file there.
+    /// Periods in which the hand was not read, although the recording continued. Nothing is missing in the file there.
     pub unread: Vec<Gap>,
-    /// The last moment of which there is anything.
+    /// Time of the last entry.
     pub last: Moment,
 }
 
@@ -30,7 +30,7 @@ impl Contents {
     /// Reads all of a file.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     pub fn of(file: &RecordingFile) -> io::Result<Self> {
         let mut overview = Overview::default();
         let (mut newest, mut told) = (file.first(), Vec::new());
@@ -74,13 +74,13 @@ impl Contents {
     }
 }
 
-/// The stretch between two moments, if it is long.
+/// The period between two moments, if it is a silence.
 fn silence(from: Moment, to: Moment) -> Option<Gap> {
     let messages = 0;
     (to.since(from) > SILENT).then_some(Gap { from, to, messages })
 }
 
-/// Entries that the recorder could not take before this.
+/// Number of entries before this one that the recorder reported as lost.
 fn said_missing(entry: &Entry) -> u64 {
     match entry {
         Entry::Event(event) if event.kind == EventKind::Recording => {

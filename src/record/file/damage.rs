@@ -1,35 +1,35 @@
-//! What of a file is missing, and what else is to be said of how it was found.
+//! Missing parts of a file, and remarks about its condition.
 
 use crate::hand::Moment;
 use crate::record::file::channels::SkippedTopic;
 use crate::record::file::walk::{UNPACKED_MAX, UNPACKED_TIMES};
 use std::time::Duration;
 
-/// What is to be said of a file, beside what is missing in it.
+/// A remark about a file's condition, apart from missing data.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Remark {
-    /// Not as Handscope writes it.
+    /// The file differs from Handscope's own form.
     Rewritten,
     /// Messages that are not read.
     Skipped(SkippedTopic),
-    /// Its index was gone around.
+    /// Its index was stale, and was ignored.
     StaleIndex,
-    /// Messages stand outside of chunks, and the sum over the file is not right.
+    /// Messages are outside of chunks, and the checksum over the file is wrong.
     SumDiffers,
-    /// The times of its log are so many nanoseconds after those in its messages.
+    /// The log times are ahead of those in the messages by this many nanoseconds.
     LogMoved { nanos: i64 },
-    /// So many messages have no time in its log.
+    /// Number of messages without a log time.
     Unlogged(u64),
-    /// Chunks that unpack to so many megabytes were left out.
+    /// Chunks that unpack to this many megabytes were skipped.
     TooMuch { megabytes: u64 },
-    /// What the file says of itself is missing or damaged.
+    /// The file's opening is missing or damaged.
     OpeningLost,
-    /// So many files of the recording do not lie where the others do.
+    /// Number of the recording's files that are not in the same folder.
     FilesMissing(u32),
 }
 
 impl Remark {
-    /// True unless all that Handscope wrote may be there in spite of it.
+    /// True if data written by Handscope may be missing.
     pub const fn is_loss(&self) -> bool {
         match self {
             Self::Skipped(skipped) => skipped.is_ours(),
@@ -93,30 +93,30 @@ impl std::fmt::Display for Remark {
     }
 }
 
-/// Gaps of one file that are listed; more are counted.
+/// Maximum number of listed gaps of one file; further ones are counted.
 const GAPS_MAX: usize = 1000;
 
-/// A stretch of time of which messages are missing.
+/// A period with missing messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Gap {
     /// The last moment before it.
     pub from: Moment,
-    /// The first after it.
+    /// The first moment after it.
     pub to: Moment,
-    /// How many messages are missing; 0 if nobody counted.
+    /// Number of missing messages; 0 if unknown.
     pub messages: u64,
 }
 
-/// What of a file is missing.
+/// Missing parts of a file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Damage {
-    /// Chunks that cannot be read; each holds about what is recorded within [`FLUSH_INTERVAL`](crate::record::file::FLUSH_INTERVAL).
+    /// Unreadable chunks; each holds about what is recorded within [`FLUSH_INTERVAL`](crate::record::file::FLUSH_INTERVAL).
     pub chunks: u64,
     /// Bytes in which no record was found.
     pub bytes: u64,
-    /// Messages that are missing by their numbers.
+    /// Number of messages missing by their numbers.
     pub messages: u64,
-    /// When they are missing, at most a thousand.
+    /// Periods in which they are missing, at most a thousand.
     pub gaps: Vec<Gap>,
 }
 
@@ -128,7 +128,7 @@ impl Damage {
         }
     }
 
-    /// Adds what is missing of another file.
+    /// Adds the damage of another file.
     pub fn add(&mut self, other: &Self) {
         self.chunks += other.chunks;
         self.bytes += other.bytes;
@@ -136,7 +136,7 @@ impl Damage {
         self.gaps.extend(&other.gaps);
     }
 
-    /// The time over which anything is missing.
+    /// Total duration of the gaps.
     pub fn length(&self) -> Duration {
         self.gaps.iter().map(|gap| gap.to.since(gap.from)).sum()
     }

@@ -1,4 +1,4 @@
-//! Where recording files are put: the system's disk, or one that fails on purpose.
+//! The storage of recording files: the system's disk, or in tests one that fails on purpose.
 
 use std::fs::{DirBuilder, File, OpenOptions};
 use std::io::{self, Seek as _, SeekFrom, Write as _};
@@ -8,55 +8,54 @@ use std::os::unix::fs::{DirBuilderExt as _, OpenOptionsExt as _};
 use std::os::windows::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 
-/// A place for files.
+/// Storage for files.
 pub trait Disk: Send + Sync {
-    /// Makes a new file, and the folders it needs.
+    /// Creates a new file, and the folders it needs.
     ///
     /// # Errors
-    /// What the system says; `AlreadyExists` if something has that name.
+    /// The system's error; `AlreadyExists` if the path exists.
     fn create(&self, path: &Path) -> io::Result<Box<dyn DiskFile>>;
 
     /// Removes a file into which nothing could be written.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     fn remove(&self, path: &Path) -> io::Result<()>;
 }
 
-/// An open file.
 pub trait DiskFile: Send {
-    /// Writes all of these bytes at this place. After an error any part of them may have been written.
+    /// Writes all of these bytes at offset `place`. After an error any part of them may have been written.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     fn write_at(&mut self, place: u64, bytes: &[u8]) -> io::Result<()>;
 
-    /// Waits until what was written would survive a loss of power.
+    /// Waits until the written data would survive a power loss.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     fn sync(&mut self) -> io::Result<()>;
 
-    /// Where the file is now that was made at this path.
+    /// Current place of the file that was created at this path.
     fn place(&self, path: &Path) -> FilePlace;
 }
 
-/// Where an open file is.
+/// Place of an open file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum FilePlace {
-    /// Where it was made, as far as the system tells.
+    /// At its original path, as far as the system reports.
     There,
-    /// It has another name now, or its folder has; `None` if the system does not say which. What is written goes on reaching it.
+    /// The file or its folder was renamed; `None` if the system does not report the new path. Writes still reach it.
     Moved(Option<PathBuf>),
-    /// It has no name any more: what is written is lost as soon as it is closed.
+    /// It was deleted: all data is lost as soon as it is closed.
     Removed,
 }
 
-/// Without the right to delete: Windows lets nobody move or remove the file while it is written.
+/// Without delete sharing: Windows refuses to move or remove the file while it is written.
 #[cfg(windows)]
 const FILE_SHARE_READ_WRITE: u32 = 3;
 
-/// The system's disk. Nobody but the user who records can read the files, or enter the folders that are made for them.
+/// The system's disk. Only the user who records can read the files, or enter the folders created for them.
 #[derive(Debug, Clone, Copy)]
 pub struct SystemDisk;
 

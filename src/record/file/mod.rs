@@ -1,11 +1,10 @@
-//! A recording as a file: MCAP whose messages are ROS 2's, so that other programs open it as it is.
+//! A recording as a file: MCAP with ROS 2 messages, so that other programs can open it directly.
 //!
-//! `format` says what stands in it. Written: `writer` makes bytes of entries, `tail` puts them on the disk, `recording` decides when
-//! and into which file, of which there is a new one each hour, and `recorder` is the thread that does it. Read: `parts` tells which
-//! files are of one recording, `walk` finds the pieces of a file that may be damaged, `channels` tells its topics apart, `clock` which
-//! of its times is believed, `reader`
-//! reads its entries, `by_time` those of a file that another program wrote. `damage` is what was missing, `contents` what can be
-//! read, `overview` what a file tells without being read whole.
+//! `format` defines the content. Writing: `writer` encodes entries, `tail` puts the bytes on the disk, `recording` decides when
+//! and into which file (a new one each hour), and `recorder` is the thread that does it. Reading: `parts` finds the files of one
+//! recording, `walk` finds the records of a file that may be damaged, `channels` identifies its topics, `clock` chooses among its
+//! times, `reader` reads its entries, `by_time` those of a file that another program wrote. `damage` describes missing data,
+//! `contents` the readable contents, `overview` the summary that is available without reading the whole file.
 
 mod by_time;
 mod channels;

@@ -1,5 +1,5 @@
-//! What a recording file tells without being read whole: least and greatest of each quantity for each second, what happened, and
-//! counts. The writer puts it into the file a minute at a time; a reader makes what is missing anew.
+//! Summary of a recording file that is available without reading it whole: minimum and maximum of each quantity for each second,
+//! events, and counts. The writer stores it a minute at a time; a reader recomputes missing parts.
 
 use crate::hand::{
     Dof, Fault, Faults, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, Touch,
@@ -8,18 +8,18 @@ use crate::record::file::format::cdr;
 use crate::record::{Entry, Event, EventKind, LinkState, Record};
 use serde::{Deserialize, Serialize};
 
-/// Quantities of a row: those of the six joints, and both of the five fingertips.
+/// Number of quantities of a row: those of the six joints, and both forces of the five fingertips.
 pub const LINES: usize =
     Quantity::ALL.len() * Dof::ALL.len() + Touch::ALL.len() * Finger::ALL.len();
-/// Marks kept of one file: more than the user looks at, and a bound for a damaged file.
+/// Maximum number of marks of one file: more than the user reads, and a bound for a damaged file.
 pub const MARKS_MAX: usize = 100_000;
-/// Seconds kept of one file: two days, in 56 MB; a longer one is drawn without its end.
+/// Maximum number of seconds of one file: two days, in 56 MB; a longer one is drawn without its end.
 pub const SECONDS_MAX: usize = 2 * 86_400;
 
-/// Least and greatest of all quantities over one second; NaN where nothing is known.
+/// Minimum and maximum of all quantities over one second; NaN if unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OverviewRow {
-    /// The second, counted as moments are.
+    /// The second, in whole seconds of a moment.
     pub second: u32,
     pub least: [f32; LINES],
     pub greatest: [f32; LINES],
@@ -51,17 +51,17 @@ impl OverviewRow {
     }
 }
 
-/// The place of a joint's quantity in a row.
+/// Index of a joint's quantity in a row.
 pub const fn joint_line(quantity: Quantity, dof: Dof) -> usize {
     quantity as usize * Dof::ALL.len() + dof.index()
 }
 
-/// The place of a fingertip's quantity in a row.
+/// Index of a fingertip's quantity in a row.
 pub const fn tip_line(touch: Touch, finger: Finger) -> usize {
     Quantity::ALL.len() * Dof::ALL.len() + touch as usize * Finger::ALL.len() + finger.index()
 }
 
-/// How much there is of what.
+/// Number of entries by kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Counts {
     /// Replies with the angles of the joints.
@@ -70,11 +70,11 @@ pub struct Counts {
     pub touch_blocks: u64,
     /// Writes that left for the hand.
     pub writes: u64,
-    /// Faults that came.
+    /// New faults.
     pub faults: u64,
-    /// Notes of the user.
+    /// Notes by the user.
     pub notes: u64,
-    /// Entries that the recorder could not take.
+    /// Entries that the recorder lost.
     pub missing: u64,
 }
 
@@ -94,7 +94,7 @@ impl Counts {
     }
 }
 
-/// Something that happened, for lists and time lines.
+/// An event, for lists and time lines.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileMark {
     pub at: Moment,
@@ -102,12 +102,12 @@ pub struct FileMark {
     pub words: String,
 }
 
-/// What a file tells without being read whole.
+/// Summary of a file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overview {
-    /// In the order of time, one a second; seconds without a reading are left out.
+    /// Ordered by time, one a second; seconds without a reading are omitted.
     pub rows: Vec<OverviewRow>,
-    /// In the order of time, at most [`MARKS_MAX`].
+    /// Ordered by time, at most [`MARKS_MAX`].
     pub marks: Vec<FileMark>,
     pub counts: Counts,
     faults: PerDof<u8>,
@@ -116,10 +116,10 @@ pub struct Overview {
     was_live: bool,
 }
 
-/// A minute of an overview as it stands in a file.
+/// A minute of an overview as stored in a file.
 #[derive(Debug, Serialize, Deserialize)]
 struct Block {
-    /// Where in the file the chunks begin that it is about.
+    /// Offset in the file of the first chunk that it covers.
     from: u64,
     counts: Counts,
     seconds: Vec<u32>,
@@ -131,7 +131,7 @@ struct Block {
 }
 
 impl Overview {
-    /// Takes in an entry, and gives what it shows to have happened that no entry says.
+    /// Adds an entry, and returns the events that it implies.
     pub fn take(&mut self, entry: &Entry) -> Vec<FileMark> {
         let mut derived = Vec::new();
         match entry {
@@ -178,7 +178,7 @@ impl Overview {
                     .and_then(|word| word.parse().ok());
                 self.counts.missing += number.unwrap_or(0);
             }
-            // A recording that was imported has them as entries, because its readings do not tell them.
+            // An imported recording has them as entries, because they cannot be derived from its readings.
             EventKind::Fault => self.counts.faults += 1,
             kind if !kind.is_listed() => return,
             _ => {}
@@ -239,7 +239,7 @@ impl Overview {
         self.drives(sample, fresh, derived);
     }
 
-    /// Faults that came: new bits of ERROR, and protective codes of STATUS that no bit explains (manual 2.6.18, 2.6.19).
+    /// New faults: new bits of ERROR, and protective codes of STATUS that no bit explains (manual 2.6.18, 2.6.19).
     fn drives(&mut self, sample: &HandSample, fresh: Groups, derived: &mut Vec<FileMark>) {
         let mut fault = |at: Moment, dof: Dof, what: &str| {
             derived.push(FileMark {
@@ -281,7 +281,7 @@ impl Overview {
         }
     }
 
-    /// The row of a second, near the end.
+    /// The row of a second, which is near the end; `None` if there are too many.
     fn row(&mut self, second: u32) -> Option<&mut OverviewRow> {
         let place = self.rows.partition_point(|row| row.second < second);
         if self.rows.get(place).is_none_or(|row| row.second != second) {
@@ -289,7 +289,7 @@ impl Overview {
                 return None;
             }
             if self.rows.len() == self.rows.capacity() {
-                // By half and not twice, so that the most is never exceeded.
+                // By half instead of doubling, so that the maximum is never exceeded.
                 let room = (self.rows.len() / 2).max(64);
                 self.rows
                     .reserve_exact(room.min(SECONDS_MAX - self.rows.len()));
@@ -304,14 +304,14 @@ impl Overview {
         Some((self.rows.first()?.second, self.rows.last()?.second))
     }
 
-    /// Rows of a stretch of seconds; both ends belong to it.
+    /// Rows of a range of seconds, both ends included.
     pub fn rows_within(&self, from: u32, to: u32) -> &[OverviewRow] {
         let begin = self.rows.partition_point(|row| row.second < from);
         let end = self.rows.partition_point(|row| row.second <= to);
         self.rows.get(begin..end.max(begin)).unwrap_or_default()
     }
 
-    /// Gives away what was taken in since the last time, as bytes for a file whose chunks about it begin at `from`.
+    /// Encodes and clears the data since the last call, as a block for chunks from offset `from` on.
     pub(crate) fn give_block(&mut self, from: u64) -> Vec<u8> {
         let rows = std::mem::take(&mut self.rows);
         let marks = std::mem::take(&mut self.marks);
@@ -328,7 +328,7 @@ impl Overview {
         cdr::encode(&block)
     }
 
-    /// Adds a block of a file; gives where the chunks begin that it is about. `None` for bytes that are no block.
+    /// Adds a block of a file; returns the offset of the first chunk that it covers. `None` for bytes that are not a block.
     pub(crate) fn take_block(&mut self, bytes: &[u8]) -> Option<u64> {
         let block: Block = cdr::decode(bytes)?;
         let (least, _) = block.least.as_chunks::<LINES>();
@@ -358,7 +358,7 @@ impl Overview {
         Some(block.from)
     }
 
-    /// Of the file after: nothing yet, and what holds on at the hand does not come again.
+    /// Overview of the next file: empty, but with the state of the hand, so that ongoing states are not reported again.
     pub(crate) fn next(&self) -> Self {
         Self {
             rows: Vec::new(),
@@ -368,7 +368,7 @@ impl Overview {
         }
     }
 
-    /// Adds that of the file after.
+    /// Adds the overview of the next file.
     pub(crate) fn add(&mut self, later: Self) {
         for read in later.rows {
             if let Some(row) = self.row(read.second) {
@@ -380,7 +380,7 @@ impl Overview {
         self.sort();
     }
 
-    /// Puts all in the order of time, once everything was taken in.
+    /// Sorts the marks by time, once all entries were added.
     pub(crate) fn sort(&mut self) {
         self.marks.sort_by_key(|mark| mark.at);
     }

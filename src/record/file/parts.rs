@@ -1,4 +1,4 @@
-//! Which files of a folder are of one recording. What each says of itself tells, and not its name: people rename files.
+//! Finds the files of a folder that belong to one recording, by their openings and not by their names, which users change.
 
 use crate::record::file::format::opening::{Opening, Part};
 use crate::record::file::walk::{self, MAGIC};
@@ -7,14 +7,14 @@ use std::fs::{self, File};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-/// Files of one folder that are looked at.
+/// Maximum number of inspected files of one folder.
 const FILES_MAX: usize = 4096;
-/// Folders of days that are looked into.
+/// Maximum number of inspected day folders.
 const FOLDERS_MAX: usize = 4000;
-/// What a file says of itself stands in so many bytes at its beginning, unless another program rewrote it.
+/// Bytes at the start of a file that contain its opening, unless another program rewrote it.
 const HEAD_BYTES: u64 = 4096;
 
-/// The files of the recording that this file is of, in the order of time; itself alone if it is of none.
+/// The files of this file's recording, ordered by time; only itself if it belongs to none.
 pub fn of(path: &Path) -> Vec<PathBuf> {
     let alone = || vec![path.to_owned()];
     if said(path).and_then(|opening| opening.part).is_none() {
@@ -37,12 +37,12 @@ pub fn of(path: &Path) -> Vec<PathBuf> {
         .unwrap_or_else(alone)
 }
 
-/// What a folder of rosbag2 says of itself.
+/// Metadata file of a rosbag2 folder.
 const BAG: &str = "metadata.yaml";
-/// It names few files.
+/// Maximum number of bytes read from it; it names few files.
 const BAG_MAX: u64 = 1024 * 1024;
 
-/// The files that a folder of rosbag2 names, in their order; `None` if it is none.
+/// The files that a rosbag2 folder lists, in their order; `None` if it is not one.
 pub fn of_bag(folder: &Path) -> Option<Vec<PathBuf>> {
     let about = folder.join(BAG);
     if !fs::metadata(&about).ok()?.is_file() {
@@ -55,7 +55,7 @@ pub fn of_bag(folder: &Path) -> Option<Vec<PathBuf>> {
         .lines()
         .filter_map(|line| line.trim().strip_prefix("- "));
     let names = items.map(|item| item.trim().trim_matches(['"', '\'']));
-    // The list of files is written twice, and paths with "path: " before them in the second.
+    // The files are listed twice, in the second list with "path: " before each path.
     let mut files: Vec<PathBuf> = Vec::new();
     for name in names.filter_map(|name| Path::new(name).file_name()) {
         let path = folder.join(name);
@@ -67,7 +67,7 @@ pub fn of_bag(folder: &Path) -> Option<Vec<PathBuf>> {
     (!files.is_empty()).then_some(files)
 }
 
-/// The files of each recording among these, in the order of time. One that was copied within its folder is another recording.
+/// Groups these files by recording, ordered by time. A copy within the same folder counts as another recording.
 pub fn recordings(mut paths: Vec<PathBuf>) -> Vec<Vec<PathBuf>> {
     // A copy has the longer name.
     paths.sort_by_cached_key(|path| (path.as_os_str().len(), path.clone()));
@@ -103,12 +103,12 @@ pub fn recordings(mut paths: Vec<PathBuf>) -> Vec<Vec<PathBuf>> {
     alone
 }
 
-/// The hand that a file says it is of, as an endpoint.
+/// Endpoint of the hand in a file's opening.
 pub fn hand(path: &Path) -> Option<String> {
     said(path).map(|opening| opening.hand)
 }
 
-/// The MCAP files in a folder and in the folders in it.
+/// The MCAP files in a folder and its direct subfolders.
 pub fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = |folder: &Path| {
         let read = fs::read_dir(folder).into_iter().flatten().flatten();
@@ -130,9 +130,9 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// What a file says of itself, as far as that is seen without opening it as a recording.
+/// Opening of a file, as far as it can be read without opening it as a recording.
 fn said(path: &Path) -> Option<Opening> {
-    // Opening a pipe would wait for whoever writes into it.
+    // Opening a pipe would wait for its writer.
     if !fs::metadata(path).ok()?.is_file() {
         return None;
     }

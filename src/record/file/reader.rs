@@ -1,5 +1,4 @@
-//! Reads a recording file, and with it the others of its recording: what it is at once, its entries by stretches of time, and what of
-//! it is missing.
+//! Reads a recording file, and with it the others of its recording: summary, entries by time range, and missing data.
 
 use crate::hand::Moment;
 use crate::record::file::by_time;
@@ -27,27 +26,27 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// No block of the overview is longer; what a longer one is about is made anew.
+/// Maximum length of an overview block; the data of a longer one is recomputed.
 pub(crate) const BLOCK_MAX: u64 = 1024 * 1024;
 
-/// Entries before a stretch that are read along, so that what is read seldom is known in it.
+/// Time before a range from which entries are read as well, so that slowly polled groups are known in it.
 const WARM_UP: Duration = Duration::from_secs(6);
 
-/// The hand's parameters are recorded so soon; reading them may take ten seconds.
+/// Time within which the hand's parameters are recorded; reading them may take ten seconds.
 const PARAMETERS_TIMEOUT: Duration = Duration::from_secs(60);
 
-/// Entries of several sources come in almost the order of time: also those at the border of two files.
+/// Maximum deviation from the order of time between several sources, also at the border of two files.
 const APART: Duration = Duration::from_secs(1);
 
-/// As files are measured.
+/// Bytes in a megabyte, as used for file sizes.
 pub(crate) const MEGABYTE: u64 = 1024 * 1024;
 
-/// Of the beginning of a file, so much is looked at: the header, what is said of the recording, and the definitions.
+/// Bytes read from the beginning of a file: header, opening and definitions.
 const BEGINNING: u64 = 64 * 1024;
-/// What our files begin with.
+/// Library prefix in the header of our files.
 const LIBRARY: &str = "handscope ";
 
-/// Why a file cannot be opened as a recording.
+/// Reason why a file cannot be opened as a recording.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
     /// The system could not read it.
@@ -61,7 +60,7 @@ pub enum OpenError {
     /// MCAP of another program.
     #[error("it is an MCAP file of another program: none of its topics is Handscope's")]
     Foreign,
-    /// Recordings of several hands were put together.
+    /// Merged recordings of several hands.
     #[error("it holds recordings of several hands, whose values cannot be told apart: {hands}")]
     SeveralHands { hands: String },
     /// It unpacks to more than any recording does.
@@ -69,7 +68,7 @@ pub enum OpenError {
         "its chunks unpack to {megabytes} MB more than is read of a file: {} MB, and {UNPACKED_TIMES} times its length", UNPACKED_MAX / MEGABYTE
     )]
     TooMuch { megabytes: u64 },
-    /// Nothing that could be read.
+    /// It contains nothing readable.
     #[error("nothing in it can be read: it holds no whole piece of a recording")]
     Empty,
 }
@@ -101,40 +100,40 @@ pub struct RecordingFile {
     path: PathBuf,
     file: Mutex<File>,
     found: Found,
-    /// Which topic the messages of a channel are about.
+    /// Topic of each channel.
     topics: BTreeMap<u16, Topic>,
     order: Order,
-    /// By how many nanoseconds the times of its log are after those in its messages.
+    /// Nanoseconds by which the log times are ahead of those in the messages.
     difference: i64,
-    /// Whether some of its messages have no time in the log.
+    /// True if some of its messages have no log time.
     has_unlogged: bool,
-    /// What is missing as far as opening the file has shown.
+    /// Missing data found when the file was opened.
     damage: Damage,
     remarks: Vec<Remark>,
     opening: Opening,
     overview: Overview,
     last: Moment,
-    /// The files after it, in the order of time. Remarks, overview and last moment of this one are those of all.
+    /// The following files, ordered by time. Remarks, overview and last moment of this file cover all of them.
     later: Vec<Self>,
 }
 
-/// How the messages of a file follow each other.
+/// Order of the messages in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Order {
-    /// As Handscope wrote them: each has a number that is one more than that before, and they stand nearly in the order of time.
+    /// As Handscope wrote them: numbered consecutively, and nearly in the order of time.
     Numbered,
-    /// In any order.
+    /// Any order.
     Any,
 }
 
-/// What to read of the entries.
+/// Selects the entries to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stretch {
-    /// From here.
+    /// Start of the time range.
     pub from: Moment,
-    /// To here, included.
+    /// End of the time range, included.
     pub to: Moment,
-    /// Whether bytes on the wire are read, too.
+    /// True if bytes on the wire are read, too.
     pub wire: bool,
 }
 
@@ -148,11 +147,11 @@ impl Stretch {
 }
 
 impl RecordingFile {
-    /// Opens a file, and the others of its recording that lie beside it. One of those that cannot be opened is as if it were missing.
-    /// Opens a folder of rosbag2 by the files that it names.
+    /// Opens a file, and the other files of its recording in the same folder. Those that cannot be opened count as missing. Opens
+    /// a rosbag2 folder by the files that it lists.
     ///
     /// # Errors
-    /// [`OpenError`], of this file.
+    /// [`OpenError`] of this file.
     pub fn open(path: &Path) -> Result<Self, OpenError> {
         if let Some(files) = parts::of_bag(path) {
             let (all, refused) = Self::open_all(&files);
@@ -166,7 +165,7 @@ impl RecordingFile {
         }
     }
 
-    /// Opens the files of one recording, and tells which cannot be opened.
+    /// Opens the files of one recording; also returns those that cannot be opened.
     pub fn open_all(paths: &[PathBuf]) -> (Option<Self>, Vec<(PathBuf, OpenError)>) {
         let (mut all, mut refused) = (None::<Self>, Vec::new());
         for path in paths {
@@ -194,7 +193,7 @@ impl RecordingFile {
         Self::of(File::open(path)?, path)
     }
 
-    /// The same of a file that is open; the path is for those who ask where it lies.
+    /// Opens a file from a handle; `path` is only stored for reference.
     ///
     /// # Errors
     /// [`OpenError`].
@@ -216,7 +215,7 @@ impl RecordingFile {
         Ok(recording)
     }
 
-    /// As Handscope wrote it.
+    /// Opens a file in Handscope's own form.
     fn numbered(path: &Path, file: File, mut found: Found) -> Self {
         found.chunks.retain(|chunk| chunk.last_nanos > 0);
         let topics = Topic::all().map(|topic| (topic.channel(), topic));
@@ -240,7 +239,7 @@ impl RecordingFile {
         }
     }
 
-    /// As another program wrote or changed it.
+    /// Opens a file that another program wrote or changed.
     fn surveyed(path: &Path, file: File, survey: Survey) -> Result<Self, OpenError> {
         let (topics, skipped) = survey.definitions.topics();
         let counted = survey.definitions.messages();
@@ -312,7 +311,7 @@ impl RecordingFile {
         })
     }
 
-    /// Takes in the file after it.
+    /// Appends the next file.
     fn join(&mut self, mut later: Self) {
         self.last = self.last.max(later.last);
         self.overview.add(std::mem::take(&mut later.overview));
@@ -329,62 +328,60 @@ impl RecordingFile {
         std::iter::once(self).chain(&self.later)
     }
 
-    /// Where all its files lie, in the order of time.
+    /// Paths of all its files, ordered by time.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         self.parts().map(|file| file.path.as_path())
     }
 
-    /// Bytes of all its files.
+    /// Total size of its files in bytes.
     pub fn bytes(&self) -> u64 {
         let files = self.paths().map(std::fs::metadata);
         files.flatten().map(|about| about.len()).sum()
     }
 
-    /// Where it lies, or the first of its files.
+    /// Path of the first file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What it began with.
     pub const fn opening(&self) -> &Opening {
         &self.opening
     }
 
-    /// What it tells without being read whole.
     pub const fn overview(&self) -> &Overview {
         &self.overview
     }
 
-    /// The first moment.
+    /// Time of the first entry.
     pub const fn first(&self) -> Moment {
         self.opening.began
     }
 
-    /// The last moment.
+    /// Time of the last entry.
     pub const fn last(&self) -> Moment {
         self.last
     }
 
-    /// True if the recording was ended as it should be, and not by a crash.
+    /// True if the recording was closed properly, and not by a crash.
     pub fn is_closed(&self) -> bool {
         self.parts().all(|file| file.found.closed)
     }
 
-    /// True if opening the file has shown that something of it is missing.
+    /// True if missing data was found when the file was opened.
     pub fn is_damaged(&self) -> bool {
         self.parts().any(|file| file.damage != Damage::default())
     }
 
-    /// What is to be said of how it was found.
+    /// Remarks about the file's condition.
     pub fn remarks(&self) -> &[Remark] {
         &self.remarks
     }
 
-    /// Gives each entry of a stretch of time to `take`, in the order of the file, until it breaks off; in the order of time where
-    /// another program wrote it. A reading holds the newest of everything, as far as it was read in the seconds before the stretch.
+    /// Passes each entry of a time range to `take`, in file order, or in order of time if another program wrote the file, until
+    /// `take` breaks. A reading holds the newest of all groups that were read in the seconds before the range.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     pub fn entries(
         &self,
         stretch: Stretch,
@@ -406,10 +403,10 @@ impl RecordingFile {
         })
     }
 
-    /// Gives each message of the file as it stands, in its order: topic, times in nanoseconds since 1970 (received, asked), bytes.
+    /// Passes on each message as stored, in file order: topic, times in nanoseconds since 1970 (received, asked), bytes.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     pub fn messages(
         &self,
         from: Moment,
@@ -425,7 +422,7 @@ impl RecordingFile {
         })
     }
 
-    /// Gives each message that is read of the chunks that reach into a stretch.
+    /// Passes on each message of a known topic in the chunks that overlap a time range.
     fn each(
         &self,
         from: Moment,
@@ -451,7 +448,7 @@ impl RecordingFile {
         Ok(damage)
     }
 
-    /// The same of one file.
+    /// The messages of one file.
     fn each_of_file(
         &self,
         from: Moment,
@@ -468,7 +465,7 @@ impl RecordingFile {
         }
     }
 
-    /// Gives the messages of a stretch in the order of time, each with the time that is believed.
+    /// Passes on the messages of a time range in order of time, each with its corrected time.
     fn each_by_time(
         &self,
         within: RangeInclusive<u64>,
@@ -480,7 +477,7 @@ impl RecordingFile {
                     take(self.timed(message));
                 }
             };
-            // Whether it is whole was seen when the file was opened.
+            // Its integrity was checked when the file was opened.
             if chunk.kind == ChunkKind::Long {
                 let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
                 let mut file = BufReader::new(&mut *file);
@@ -498,7 +495,7 @@ impl RecordingFile {
         by_time::each(&self.found.chunks, within, scan, take)
     }
 
-    /// A message with the time that is believed.
+    /// A message with its corrected time.
     fn timed<'a>(&self, message: ChunkMessage<'a>) -> ChunkMessage<'a> {
         let Some(topic) = self.topics.get(&message.channel) else {
             return message;
@@ -511,7 +508,7 @@ impl RecordingFile {
         ChunkMessage { times, ..message }
     }
 
-    /// When the first and the last message were received, nanoseconds since 1970.
+    /// Times of receipt of the first and the last message, nanoseconds since 1970.
     fn span(&self) -> io::Result<Option<(u64, u64)>> {
         let mut span = None;
         let mut note = |first: u64, last: u64| {
@@ -533,7 +530,7 @@ impl RecordingFile {
         Ok(span)
     }
 
-    /// The same in the order of the file, holding the messages' numbers against each other.
+    /// Passes on the messages in file order, and detects gaps in their numbers.
     fn each_numbered(
         &self,
         from: Moment,
@@ -564,7 +561,7 @@ impl RecordingFile {
                 return Ok(damage);
             }
         }
-        // What is missing at the end has nothing after it that would show it.
+        // A loss at the end is not followed by a message that would reveal it.
         let last = self.found.chunks.last();
         if let Some(last) = last.filter(|_| numbers.next_chunk == self.found.chunks.len()) {
             let (number, nanos) = numbers.last.unwrap_or((0, last.first_nanos));
@@ -581,17 +578,17 @@ impl RecordingFile {
         Ok(damage)
     }
 
-    /// A stretch in nanoseconds since 1970, the whole last microsecond included.
+    /// A time range in nanoseconds since 1970, including the whole last microsecond.
     fn nanos(&self, from: Moment, to: Moment) -> RangeInclusive<u64> {
         let base = self.opening.base_nanos;
         nanos_of(base, from)..=nanos_of(base, to).saturating_add(999)
     }
 
-    /// The chunks that reach into a stretch, and which they are.
+    /// The chunks that overlap a time range, with their indices.
     fn reaching(&self, from: Moment, to: Moment) -> impl Iterator<Item = (usize, &ChunkPlace)> {
         let (from, to) = self.nanos(from, to).into_inner();
         let all = self.found.chunks.as_slice();
-        // The times in a chunk's head may be damaged: it reaches at least from the chunk before it to the one after.
+        // The times in a chunk's header may be damaged: it spans at least from the previous chunk to the next one.
         let before = std::iter::once(0).chain(all.iter().map(|chunk| chunk.last_nanos));
         let after = all.iter().skip(1).map(|chunk| chunk.first_nanos);
         let around = before.zip(after.chain([u64::MAX]));
@@ -607,7 +604,7 @@ impl RecordingFile {
         walk::whole(&mut *file, place)
     }
 
-    /// What the file says of itself. Where that is lost, what can be known without it.
+    /// Reads the file's opening. If that is lost, derives what it can.
     fn find_opening(&mut self) -> Result<(), OpenError> {
         let span = self.span()?;
         let file = self.file.get_mut().unwrap_or_else(PoisonError::into_inner);
@@ -617,7 +614,7 @@ impl RecordingFile {
             let hands = Vec::from_iter(hands).join(", ");
             return Err(OpenError::SeveralHands { hands });
         }
-        // Of recordings of one hand that were put together, the first.
+        // Picks the first of merged recordings of one hand.
         let opening = told.into_iter().min_by_key(Opening::began_since_1970);
         match opening {
             Some(opening) if is_moved(self.difference) => {
@@ -639,7 +636,7 @@ impl RecordingFile {
         Ok(())
     }
 
-    /// The hand as its parameters name it, which are recorded soon after the beginning.
+    /// Finds the hand named in its parameters, which are recorded soon after the beginning.
     fn find_hand(&mut self) -> io::Result<()> {
         let mut hand = None;
         let stretch = Stretch {
@@ -691,24 +688,24 @@ impl RecordingFile {
     }
 }
 
-/// True if another program has moved the times of the log: entries of several sources differ less.
+/// True if another program has shifted the log times: the deviation between sources is smaller.
 fn is_moved(difference: i64) -> bool {
     Duration::from_nanos(difference.unsigned_abs()) > APART
 }
 
-/// Messages' numbers, chunk after chunk.
+/// Checks the message numbers across chunks.
 #[derive(Debug, Default)]
 struct Numbers {
-    /// The last message: its number and time.
+    /// Number and time of the last message.
     last: Option<(u32, u64)>,
-    /// The chunk after the last one.
+    /// Index of the chunk after the last one.
     next_chunk: usize,
-    /// Whether a chunk brought no message since the last that did.
+    /// True if all chunks since the last message were empty.
     empty_chunks: bool,
 }
 
 impl Numbers {
-    /// Another chunk begins. What was left out between two is not missing.
+    /// Starts a chunk. Chunks that were skipped between two are not counted as missing.
     fn chunk(&mut self, place: usize, began_nanos: u64) {
         if place != self.next_chunk {
             self.last = None;
@@ -720,7 +717,7 @@ impl Numbers {
         self.empty_chunks = true;
     }
 
-    /// The time before, and how many messages are missing before this one.
+    /// The previous message's time and the number of messages missing before this one; `None` if none is missing.
     fn message(&mut self, number: u32, nanos: u64) -> Option<(u64, u64)> {
         self.empty_chunks = false;
         let (last, at) = self.last.replace((number, nanos))?;
@@ -733,8 +730,8 @@ impl Numbers {
     }
 }
 
-/// The records of a file that Handscope wrote and nobody changed; `None` for any other. It begins with a header that says so, what is
-/// known of the recording, and a chunk that holds nothing but our own definitions.
+/// The records of a file that Handscope wrote and no other program changed; `None` for any other. Such a file begins with our
+/// header, the opening, and a chunk with only our own definitions.
 fn own(file: &mut File) -> io::Result<Option<Found>> {
     let mut begin = Vec::new();
     file.seek(SeekFrom::Start(MAGIC.len() as u64))?;
@@ -757,7 +754,7 @@ fn own(file: &mut File) -> io::Result<Option<Found>> {
             offset: MAGIC.len() as u64 + (begin.len() - rest.len()) as u64,
             len: walk::record_len(rest),
         };
-        // One that reaches beyond the end of the file is cut.
+        // A chunk that extends beyond the end of the file is truncated.
         if let Ok(mut chunk) = walk::whole(file, place) {
             is_whole = records(&mut chunk, ChunkKind::Chunk, |record| match record {
                 ChunkRecord::Definition(code, content) => definitions.take(code, content),
@@ -773,7 +770,7 @@ fn own(file: &mut File) -> io::Result<Option<Found>> {
     walk::walk(file).map(Some)
 }
 
-/// What the file says of itself; several times if recordings were put together.
+/// The file's openings; several if recordings were merged.
 fn openings(file: &mut File, places: &[Place]) -> io::Result<Vec<Opening>> {
     let mut all = Vec::new();
     for place in places {
@@ -781,7 +778,7 @@ fn openings(file: &mut File, places: &[Place]) -> io::Result<Vec<Opening>> {
         all.extend(Opening::of_record(&content));
     }
     if all.is_empty() {
-        // Perhaps its record cannot be found, but stands where it always does: behind the header.
+        // Its record may be unreachable, but still be in its usual position after the header.
         let mut begin = Vec::new();
         file.seek(SeekFrom::Start(0))?;
         file.take(BEGINNING).read_to_end(&mut begin)?;
@@ -797,7 +794,7 @@ fn openings(file: &mut File, places: &[Place]) -> io::Result<Vec<Opening>> {
     Ok(all)
 }
 
-/// The blocks of the file, and what they miss made anew.
+/// The stored overview blocks, with missing parts recomputed.
 fn overview(file: &mut File, found: &Found, opening: &Opening) -> Result<Overview, OpenError> {
     let mut overview = Overview::default();
     let mut covered = Vec::new();
@@ -838,7 +835,7 @@ fn overview(file: &mut File, found: &Found, opening: &Opening) -> Result<Overvie
     Ok(overview)
 }
 
-/// The sum over an attachment stands in its last four bytes.
+/// Verifies an attachment: its checksum is in its last four bytes.
 fn is_whole(content: &[u8], crc: u32) -> bool {
     let body = content
         .len()

@@ -1,4 +1,5 @@
-//! Puts a recording on the disk from a thread of its own. Nobody waits for it: what it cannot take is counted, and said in the file.
+//! Writes a recording to disk from a thread of its own, without blocking callers: entries that it cannot accept are counted, and
+//! the file records the loss.
 
 use crate::record::Entry;
 use crate::record::file::recording::{
@@ -10,18 +11,18 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
-/// Entries that may wait for the thread: 20 seconds of one hand, in which a slow disk stalls; about 10 MB.
+/// Maximum number of queued entries: 20 seconds of one hand, to bridge a stalled disk; about 10 MB.
 pub const QUEUE_MAX: usize = 16_384;
-/// Entries are taken this often.
+/// Interval at which entries are dequeued.
 const BATCH: Duration = Duration::from_millis(20);
-/// While it ends, a disk that failed is tried again after this.
+/// Retry delay of a failed disk while the recording ends.
 const END_RETRY: Duration = Duration::from_millis(50);
 
-/// What entries are given to. Copies give to the same recording.
+/// Input of a recording. Clones feed the same recording.
 #[derive(Debug, Clone)]
 pub struct RecorderInput {
     given: SyncSender<Given>,
-    /// Entries that found no room since the last that did.
+    /// Entries lost since the last accepted one.
     lost: Arc<AtomicU64>,
 }
 
@@ -32,7 +33,7 @@ impl RecorderInput {
         (Self { given, lost }, taken)
     }
 
-    /// Gives an entry. One that finds no room is counted.
+    /// Queues an entry. If the queue is full, the entry is counted as lost.
     pub fn push(&self, entry: Entry) {
         let lost_before = self.take_lost();
         let given = Given {
@@ -45,7 +46,7 @@ impl RecorderInput {
         }
     }
 
-    /// Gives an entry and waits until the recorder has taken it and all before it, however busy the computer is.
+    /// Queues an entry and waits until the recorder has processed it and all before it, however busy the computer is.
     pub fn push_in_step(&self, entry: Entry) {
         let (open, taken) = sync_channel(0);
         let given = Given {
@@ -59,12 +60,12 @@ impl RecorderInput {
         }
     }
 
-    /// Counts entries that were lost on the way here.
+    /// Counts entries that were lost before they got here.
     pub fn missed(&self, entries: u64) {
         self.lost.fetch_add(entries, Ordering::Relaxed);
     }
 
-    /// Entries that were lost since the last one that was taken.
+    /// Returns and resets the number of lost entries.
     pub fn take_lost(&self) -> u64 {
         match self.lost.load(Ordering::Relaxed) {
             0 => 0,
@@ -73,7 +74,7 @@ impl RecorderInput {
     }
 }
 
-/// A recording. It ends when this is dropped, without waiting for the disk.
+/// A recording. Dropping it ends the recording, without waiting for the disk.
 #[derive(Debug)]
 pub struct Recorder {
     input: RecorderInput,
@@ -88,10 +89,11 @@ impl Drop for Recorder {
 }
 
 impl Recorder {
-    /// Begins a recording.
+    /// Starts a recording.
     ///
     /// # Errors
-    /// What the system says if it gives no thread. A disk that fails is no error here: it is tried again and told.
+    /// The system's error if it cannot start a thread. A failing disk is not an error here: it is retried and shown in the
+    /// status.
     pub fn start(plan: RecordingPlan) -> io::Result<Self> {
         let (input, taken) = RecorderInput::new(QUEUE_MAX);
         let began = Instant::now();
@@ -114,12 +116,11 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Where entries are given to.
     pub fn input(&self) -> RecorderInput {
         self.input.clone()
     }
 
-    /// How it goes.
+    /// Current status, including entries lost in the queue.
     pub fn status(&self) -> RecorderStatus {
         let status = self.status.lock().unwrap_or_else(PoisonError::into_inner);
         let mut status = status.clone();
@@ -127,7 +128,7 @@ impl Recorder {
         status
     }
 
-    /// Ends the file and waits for that, at most a few seconds.
+    /// Ends the recording and waits for that, at most a few seconds.
     pub fn end(self) -> RecorderStatus {
         self.ends.store(true, Ordering::Release);
         let until = Instant::now() + END_TIMEOUT + Duration::from_millis(500);
@@ -153,7 +154,7 @@ fn now(began: Instant) -> Now {
     }
 }
 
-/// What the thread does: it takes what waits, and lets the recording do what is due.
+/// Work of the thread: it dequeues entries, and runs the recording's due steps.
 struct Work {
     recording: RecordingTask,
     taken: Receiver<Given>,
@@ -170,13 +171,13 @@ impl Work {
             match self.taken.recv_timeout(FLUSH_INTERVAL / 2) {
                 Ok(given) => {
                     self.recording.take(&given);
-                    // Woken for each entry, the thread would cost as much as the work it does.
+                    // Waking up for each entry would cost as much as the work itself.
                     std::thread::sleep(BATCH);
                 }
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => ends = true,
             }
-            // What was given before the end was asked for belongs to the recording.
+            // Entries queued before the request to end belong to the recording.
             ends |= self.ends.load(Ordering::Acquire);
             for _ in 0..QUEUE_MAX {
                 let Ok(given) = self.taken.try_recv() else {

@@ -1,4 +1,4 @@
-//! One recording, step by step: what is taken, when it goes to the disk, and when another file is begun. Times are arguments.
+//! One recording, step by step: accepts entries, schedules disk writes, and starts new files. Times are arguments.
 
 use crate::hand::Moment;
 use crate::record::file::disk::{Disk, FilePlace};
@@ -12,58 +12,58 @@ use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 
-/// Bytes that may wait for the disk: two minutes of one hand.
+/// Maximum bytes waiting for the disk: two minutes of one hand.
 pub(crate) const PENDING_MAX: usize = 8 * 1024 * 1024;
-/// What was taken goes to the file at least this often, so that a killed program loses no more than a quarter of a second.
+/// Maximum interval of writes to the file, so that a killed program loses at most a quarter of a second.
 pub const FLUSH_INTERVAL: Duration = Duration::from_millis(125);
-/// What a file says of the next part of the same recording, whose name follows.
+/// Event text that names the next file of the same recording, whose name follows.
 pub const GOES_ON_IN: &str = "the recording goes on in ";
-/// The same of the file before.
+/// Event text that names the previous file.
 pub const GOES_ON_FROM: &str = "this file goes on after ";
-/// A recording goes on in a new file after this, because of each chunk something is remembered until a file is ended.
+/// Duration after which a recording continues in a new file, because memory grows with each chunk until a file is ended.
 pub const PART_LENGTH: Duration = Duration::from_secs(3600);
-/// How often it is looked whether the file is still there and the computer's clock was set.
+/// Interval of the checks for a moved or removed file and a changed clock.
 pub(crate) const POLL_INTERVAL: Duration = Duration::from_secs(1);
-/// A clock that differs by more was set, or the computer slept.
+/// Clock deviation above which the clock was set, or the computer slept.
 pub(crate) const CLOCK_SET: Duration = Duration::from_secs(1);
-/// A file that cannot be ended in this time is left as it is; a reader can do without its end.
+/// Time limit for ending a file; after that it is left without its end, which a reader does not need.
 pub(crate) const END_TIMEOUT: Duration = Duration::from_secs(2);
-/// Notices of one recording; what comes after them says nothing new.
+/// Maximum number of notices of one recording; later ones add nothing new.
 const NOTICES_MAX: usize = 20;
-/// Files begun because one took nothing any more; a disk that spoils more of them is broken.
+/// Maximum number of files started in place of unwritable ones; a disk with more of them is broken.
 const REPLACED_MAX: u32 = 20;
 
-/// Where a recording goes.
+/// Destination and parameters of a recording.
 #[derive(Clone)]
 pub struct RecordingPlan {
-    /// The first file. Where something has its name a number is put to it, as to those of the files after it.
+    /// Path of the first file. If it is in use, a number is appended, as to the files after it.
     pub path: PathBuf,
-    /// What the file begins with.
+    /// Opening of the first file.
     pub opening: Opening,
-    /// Where it lies.
+    /// Storage of the files.
     pub disk: Arc<dyn Disk>,
-    /// After which another file is begun: [`PART_LENGTH`], but in tests.
+    /// Length of a file: [`PART_LENGTH`], except in tests.
     pub part_length: Duration,
 }
 
-/// Something that the user must know of a recording under way.
+/// A notice to the user about a running recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RecorderNotice {
-    /// Its file or a folder above has another name now. It is written on.
+    /// Its file or a parent folder was renamed. Writing continues.
     Moved {
         from: PathBuf,
-        /// Where it is; `None` if the system does not tell.
+        /// New path; `None` if the system does not report it.
         to: Option<PathBuf>,
     },
-    /// Its file was removed, with so many entries. What comes now goes into a new one.
+    /// Its file was removed. The recording continues in a new one.
     Removed {
         path: PathBuf,
-        /// Entries that are gone.
+        /// Number of lost entries.
         entries: u64,
     },
-    /// The computer's clock was set, or it slept. What comes now goes into another file.
+    /// The computer's clock was set, or it slept. The recording continues in another file.
     ClockSet {
-        /// The name of that file.
+        /// Name of that file.
         next: String,
     },
 }
@@ -95,31 +95,31 @@ impl std::fmt::Display for RecorderNotice {
     }
 }
 
-/// How a recording goes.
+/// Status of a recording.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RecorderStatus {
-    /// The file that is being written, the newest of several; `None` before there is one.
+    /// The file being written, the newest of several; `None` before there is one.
     pub path: Option<PathBuf>,
-    /// Bytes that the system took.
+    /// Bytes accepted by the system.
     pub bytes: u64,
     /// Bytes of earlier files of the same recording.
     pub earlier_bytes: u64,
-    /// Entries taken, without those that were lost since.
+    /// Accepted entries, without those that were lost since.
     pub entries: u64,
     /// Entries that are in no file.
     pub missing: u64,
-    /// Why nothing can be written now, in the system's words.
+    /// Reason why nothing can be written now, in the system's words.
     pub trouble: Option<String>,
-    /// What happened to its files so far, in order.
+    /// Notices about its files so far, in order.
     pub notices: Vec<RecorderNotice>,
-    /// Since when it records.
+    /// Duration of the recording so far.
     pub since: Duration,
-    /// The recording is over; whole, if nothing is missing and there is no trouble.
+    /// The recording is over; it is complete if nothing is missing and there is no trouble.
     pub ended: bool,
 }
 
 impl RecorderStatus {
-    /// Megabytes an hour, once there is enough to tell.
+    /// Megabytes per hour; `None` in the first 5 s.
     pub fn megabytes_an_hour(&self) -> Option<f64> {
         #[expect(clippy::cast_precision_loss, reason = "far below 2^53 bytes")]
         let bytes = (self.bytes + self.earlier_bytes) as f64;
@@ -128,21 +128,21 @@ impl RecorderStatus {
     }
 }
 
-/// The present time, by both clocks.
+/// The current time, by both clocks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Now {
-    /// Since the recording began; never goes back.
+    /// Time since the recording began; never goes back.
     pub(crate) since: Duration,
-    /// Nanoseconds since 1970, as the computer's clock says.
+    /// Nanoseconds since 1970 by the computer's clock.
     pub(crate) wall_nanos: i64,
 }
 
-/// An entry, and how many before it found no room.
+/// An entry, and the number of entries lost before it.
 #[derive(Debug)]
 pub struct Given {
     pub entry: Entry,
     pub lost_before: u64,
-    /// Closed once this entry is taken; for whoever waits for that.
+    /// Dropped with the entry, which wakes a caller that waits for it.
     pub(crate) _taken: Option<SyncSender<()>>,
 }
 
@@ -150,15 +150,15 @@ pub struct Given {
 pub(crate) struct RecordingTask {
     opening: Opening,
     part_length: Duration,
-    /// Since when it is written into this file.
+    /// Time at which this file was started.
     part_since: Duration,
     writer: RecordingWriter,
-    /// What the writer holds that no file was given yet.
+    /// Content of the writer that was not passed to a file yet.
     open: Content,
     tail: FileTail,
-    /// The file before, until all of it is written.
+    /// The previous file, until it is completely written.
     ending: Option<FileTail>,
-    /// Lost, and not said in a file yet.
+    /// Lost entries not yet recorded in a file.
     untold: u64,
     entries: u64,
     missing: u64,
@@ -166,7 +166,7 @@ pub(crate) struct RecordingTask {
     replaced: u32,
     earlier_bytes: u64,
     newest: Moment,
-    /// What the next file must repeat to be understood alone.
+    /// Repeated at the start of the next file, so that it is complete by itself.
     link: Option<LinkReport>,
     parameters: Option<Event>,
     clock: Now,
@@ -178,10 +178,10 @@ pub(crate) struct RecordingTask {
 }
 
 impl RecordingTask {
-    /// A recording that begins now.
+    /// Starts a recording.
     ///
     /// # Errors
-    /// [`McapError`], which writing to memory does not bring.
+    /// [`McapError`], which does not occur when writing to memory.
     pub(crate) fn new(plan: RecordingPlan, now: Now) -> Result<Self, McapError> {
         let began = plan.opening.began;
         let opening = Opening {
@@ -226,7 +226,7 @@ impl RecordingTask {
         self
     }
 
-    /// Takes an entry, or counts it if too much waits for the disk.
+    /// Accepts an entry, or counts it as lost if too much data waits for the disk.
     pub(crate) fn take(&mut self, given: &Given) {
         self.lose(given.lost_before);
         let ending = self.ending.as_ref().map_or(0, FileTail::held);
@@ -243,13 +243,13 @@ impl RecordingTask {
         self.write(&given.entry);
     }
 
-    /// Counts entries that never came here.
+    /// Counts entries as lost.
     pub(crate) const fn lose(&mut self, entries: u64) {
         self.untold += entries;
         self.missing += entries;
     }
 
-    /// Does what is due.
+    /// Runs the due writes and checks.
     pub(crate) fn step(&mut self, now: Now) {
         if now.since.saturating_sub(self.flushed_at) >= FLUSH_INTERVAL {
             self.flushed_at = now.since;
@@ -266,7 +266,7 @@ impl RecordingTask {
         }
     }
 
-    /// Ends the file, as far as the disk takes it.
+    /// Begins to end the file.
     pub(crate) fn end(&mut self, now: Now) {
         self.flush();
         self.look(now);
@@ -276,7 +276,7 @@ impl RecordingTask {
         self.end_step(now.since);
     }
 
-    /// Goes on with ending; true once it is ended or given up.
+    /// Continues ending; true once it is ended or given up.
     pub(crate) fn end_step(&mut self, now: Duration) -> bool {
         self.put(now, true);
         let is_late = self.end_by.is_some_and(|by| now >= by);
@@ -291,7 +291,7 @@ impl RecordingTask {
         self.ended
     }
 
-    /// How it goes.
+    /// Current status.
     pub(crate) fn status(&self, since: Duration) -> RecorderStatus {
         let ending = self.ending.as_ref();
         let path = self.tail.path().or_else(|| ending?.path());
@@ -332,7 +332,7 @@ impl RecordingTask {
         }
     }
 
-    /// Counts as lost what a file was given.
+    /// Counts a file's content as lost.
     const fn take_back(&mut self, lost: Content) {
         self.entries -= lost.entries;
         self.missing += lost.entries;
@@ -406,7 +406,7 @@ impl RecordingTask {
         }
     }
 
-    /// Looks whether the files are still there and take bytes, and whether the clock goes on as before.
+    /// Checks that the files still exist and are writable, and that the clock runs normally.
     fn look(&mut self, now: Now) {
         if let Some(mut ending) = self.ending.take() {
             match (ending.look(), ending.is_dead(now.since)) {
@@ -447,14 +447,14 @@ impl RecordingTask {
         }
     }
 
-    /// Nanoseconds by which the computer's clock is ahead of what it should be.
+    /// Nanoseconds by which the computer's clock is ahead of its expected time.
     fn drift(&self, now: Now) -> i128 {
         let passed = now.since.saturating_sub(self.clock.since).as_nanos();
         let wall = i128::from(now.wall_nanos) - i128::from(self.clock.wall_nanos);
         wall.saturating_sub_unsigned(passed)
     }
 
-    /// Goes on in another file, whose times are those of the clock as it is now.
+    /// Continues in another file, whose times are those of the changed clock.
     fn follow_clock(&mut self, now: Now, drift: i128) {
         let seconds = Duration::from_nanos(u64::try_from(drift.unsigned_abs()).unwrap_or(u64::MAX));
         let seconds = format!("{:.1} s", seconds.as_secs_f64());
@@ -474,7 +474,7 @@ impl RecordingTask {
         self.tell(RecorderNotice::ClockSet { next: name });
     }
 
-    /// Tries another file in place of one that takes nothing any more; what waits for the old one is lost if that goes.
+    /// Tries another file in place of one that cannot be written; if that works, the data waiting for the old one is lost.
     fn replace(&mut self, now: Now) {
         self.tail.spare(now.since);
         if self.replaced >= REPLACED_MAX {
@@ -501,7 +501,7 @@ impl RecordingTask {
         }
     }
 
-    /// Goes on in the next file of the same recording.
+    /// Continues in the next file of the same recording.
     fn begin_part(&mut self, now: Now) {
         self.tell_missing(self.newest);
         self.finish();
@@ -513,7 +513,7 @@ impl RecordingTask {
         self.ending = Some(self.begin_next(now, self.tail.next(), part));
     }
 
-    /// Begins another file, and gives back the one before.
+    /// Starts another file, and returns the previous one.
     fn begin_next(&mut self, now: Now, next: FileTail, part: Part) -> FileTail {
         let drift = self.drift(now);
         if drift.unsigned_abs() > CLOCK_SET.as_nanos() {
@@ -541,7 +541,7 @@ impl RecordingTask {
     }
 }
 
-/// Of a recording that begins.
+/// The first part of a recording.
 const fn first_part(recording_began: Moment) -> Part {
     Part {
         recording_began,

@@ -1,4 +1,4 @@
-//! The end of a file that is being written: bytes that wait for the disk, and bytes that the disk has and may still lose.
+//! The end of a file being written: bytes waiting for the disk, and written bytes that may still be lost.
 
 use crate::record::file::disk::{Disk, DiskFile, FilePlace};
 use std::collections::VecDeque;
@@ -7,20 +7,20 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Against a loss of power.
+/// Interval of syncs, against a loss of power.
 pub(crate) const SYNC_INTERVAL: Duration = Duration::from_millis(700);
-/// A disk that failed is tried again after this.
+/// Retry delay of a failed disk.
 pub(crate) const RETRY_DELAY: Duration = Duration::from_millis(500);
-/// An open file that takes nothing for so long while its disk is not full will not come back: a plug was pulled.
+/// Time after which an open file that accepts nothing, on a disk that is not full, counts as dead: the medium was unplugged.
 pub(crate) const DEAD_TIMEOUT: Duration = Duration::from_secs(10);
-/// Files of one name in one folder; beyond that something is wrong with the folder.
+/// Maximum number of files with one name in one folder; beyond that the folder is faulty.
 const NAMES_MAX: u32 = 100;
 
-/// How many entries some bytes hold.
+/// Number of entries in some bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Content {
     pub(crate) entries: u64,
-    /// Entries of which they say that they are missing.
+    /// Number of entries that they report as missing.
     pub(crate) told: u64,
 }
 
@@ -46,20 +46,20 @@ struct Portion {
 pub(crate) struct FileTail {
     disk: Arc<dyn Disk>,
     asked: PathBuf,
-    /// The number that is put to the name; 1 is the name itself.
+    /// Number appended to the name; 1 means the plain name.
     number: u32,
     path: Option<PathBuf>,
-    /// The file has a name that nobody knows.
+    /// True if the file was renamed, but its new name is unknown.
     is_lost: bool,
     file: Option<Box<dyn DiskFile>>,
-    /// Bytes that the system took.
+    /// Bytes accepted by the system.
     written: u64,
-    /// What they hold.
+    /// Content of the written bytes.
     content: Content,
     pending: VecDeque<Portion>,
-    /// Written since the disk last said that all is safe. A disk that fails to say so may have lost any of it.
+    /// Written since the last successful sync. If a sync fails, any of it may be lost.
     unsynced: VecDeque<Portion>,
-    /// Bytes of both.
+    /// Bytes in both queues.
     held: usize,
     synced_at: Duration,
     retry_at: Option<Duration>,
@@ -68,7 +68,7 @@ pub(crate) struct FileTail {
 }
 
 impl FileTail {
-    /// Of a file that is made when there is something to write; if its name is taken, a number is put to it.
+    /// For a file that is created at the first write; if its name is in use, a number is appended.
     pub(crate) fn new(disk: Arc<dyn Disk>, asked: PathBuf) -> Self {
         Self {
             disk,
@@ -89,7 +89,7 @@ impl FileTail {
         }
     }
 
-    /// Another file in its place, of the same name.
+    /// Another file in its place, with the same name.
     pub(crate) fn again(&self) -> Self {
         Self {
             number: self.number,
@@ -97,7 +97,7 @@ impl FileTail {
         }
     }
 
-    /// Another file beside it, of the next number.
+    /// Another file beside it, with the next number.
     pub(crate) fn next(&self) -> Self {
         Self {
             number: self.number + u32::from(self.path.is_some()),
@@ -105,7 +105,7 @@ impl FileTail {
         }
     }
 
-    /// Its name, as far as that can be told before it is made.
+    /// Its name, which is preliminary until the file is created.
     pub(crate) fn name(&self) -> String {
         let path = self.path.clone();
         let path = path.unwrap_or_else(|| numbered(&self.asked, self.number));
@@ -132,17 +132,17 @@ impl FileTail {
         self.held
     }
 
-    /// Why nothing can be written now, in the system's words.
+    /// Reason why nothing can be written now, in the system's words.
     pub(crate) fn trouble(&self) -> Option<String> {
         self.failure.as_ref().map(ToString::to_string)
     }
 
-    /// True if all was written and is safe.
+    /// True if everything is written and synced.
     pub(crate) fn is_done(&self) -> bool {
         self.pending.is_empty() && self.unsynced.is_empty()
     }
 
-    /// Where the file is, if that is not where it was at the last look.
+    /// Checks the place of the file; a move is returned only once.
     pub(crate) fn look(&mut self) -> FilePlace {
         let (Some(path), Some(file)) = (&self.path, &self.file) else {
             return FilePlace::There;
@@ -161,7 +161,7 @@ impl FileTail {
         place
     }
 
-    /// True if the file fails for so long that another one should be tried. A full disk is no reason for that.
+    /// True if the file has failed long enough that another one should be tried. A full disk does not count.
     pub(crate) fn is_dead(&self, now: Duration) -> bool {
         let is_full = self.failure.as_ref().is_some_and(|error| {
             matches!(
@@ -173,12 +173,12 @@ impl FileTail {
         since.is_some_and(|since| !is_full && now.saturating_sub(since) >= DEAD_TIMEOUT)
     }
 
-    /// Lets it be tried for as long again.
+    /// Restarts the timeout of [`Self::is_dead`].
     pub(crate) const fn spare(&mut self, now: Duration) {
         self.fails_since = Some(now);
     }
 
-    /// What waits for the disk.
+    /// Content waiting for the disk.
     pub(crate) fn waiting(&self) -> Content {
         let mut all = Content::default();
         self.pending
@@ -187,7 +187,7 @@ impl FileTail {
         all
     }
 
-    /// Everything that was given to this file.
+    /// All content passed to this file.
     pub(crate) fn everything(&self) -> Content {
         let mut all = self.waiting();
         all.add(self.content);
@@ -199,11 +199,11 @@ impl FileTail {
         let disk = Arc::clone(&self.disk);
         let path = self.path.clone();
         drop(self);
-        // A file that cannot be removed lies there empty and harms nobody.
+        // A file that cannot be removed remains empty and does no harm.
         let _removed = path.map(|path| disk.remove(&path));
     }
 
-    /// Gives the disk what waits. What fails waits on, and is tried again at the same place.
+    /// Writes the waiting bytes. Failed writes are retried later at the same offset.
     pub(crate) fn put(&mut self, now: Duration) {
         if self.retry_at.is_some_and(|at| now < at) {
             return;
@@ -212,7 +212,7 @@ impl FileTail {
         self.attempt(now, is_due);
     }
 
-    /// The same at once, and all of it is to be safe.
+    /// Writes the waiting bytes without delay, and syncs.
     pub(crate) fn put_safely(&mut self, now: Duration) {
         self.attempt(now, true);
     }
@@ -257,7 +257,7 @@ impl FileTail {
         };
         match file.sync() {
             Err(error) if !is_unknown(&error) => {
-                // The system says this once, and may have thrown away what it could not write.
+                // The system reports this only once, and may have discarded the data that it could not write.
                 self.rewind();
                 Err(error)
             }
@@ -282,7 +282,7 @@ fn length(portion: &Portion) -> u64 {
     u64::try_from(portion.bytes.len()).unwrap_or_default()
 }
 
-/// True if the file system does not know what it is to make a file safe.
+/// True if the file system does not support sync.
 fn is_unknown(error: &io::Error) -> bool {
     matches!(
         error.kind(),
@@ -290,7 +290,7 @@ fn is_unknown(error: &io::Error) -> bool {
     )
 }
 
-/// The name with a number.
+/// The path with a number appended to its name.
 fn numbered(asked: &Path, number: u32) -> PathBuf {
     let stem = asked.file_stem().unwrap_or_default().to_string_lossy();
     match number {
@@ -299,7 +299,7 @@ fn numbered(asked: &Path, number: u32) -> PathBuf {
     }
 }
 
-/// A new file of this name with this number or the next that is free, and the number.
+/// Creates a file with this or the next free number; returns it with its number.
 fn create(disk: &dyn Disk, asked: &Path, from: u32) -> io::Result<(Box<dyn DiskFile>, u32)> {
     let mut last = io::Error::from(ErrorKind::AlreadyExists);
     for number in from..from.saturating_add(NAMES_MAX) {

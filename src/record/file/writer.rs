@@ -1,4 +1,4 @@
-//! Bytes of a recording file made of entries. Writes to memory only; times are arguments.
+//! Encodes entries as the bytes of a recording file. Writes to memory only; times are arguments.
 
 use crate::hand::Moment;
 use crate::record::Entry;
@@ -16,16 +16,16 @@ use std::io::{self, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// A chunk is closed at this size before compression: what a flipped bit costs.
+/// Size of a chunk before compression, at which it is closed: the loss from one flipped bit.
 const CHUNK_BYTES: u64 = 32 * 1024;
-/// The same of a copy, of any length.
+/// Size of a chunk of a copy, which may have any length.
 const COPY_CHUNK_BYTES: u64 = 256 * 1024;
-/// How much of the recording one block of the overview is about.
+/// Time range covered by one block of the overview.
 const BLOCK_OF: Duration = Duration::from_secs(60);
-/// The name of the blocks of the overview among a file's attachments.
+/// Name of the overview blocks among a file's attachments.
 pub(crate) const OVERVIEW: &str = "handscope-overview";
 
-/// Bytes that the crate made and nobody has taken.
+/// Bytes written by the mcap crate, not collected yet.
 #[derive(Debug, Clone, Default)]
 struct Waiting(Arc<Mutex<Vec<u8>>>);
 
@@ -46,31 +46,31 @@ impl Write for Waiting {
     }
 }
 
-/// How much there is in a file.
+/// Message counts and times of a finished file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Counted {
-    /// Messages of each channel.
+    /// Number of messages of each channel.
     pub messages: BTreeMap<u16, u64>,
     /// Times of the first and the last message, nanoseconds since 1970.
     pub times: (u64, u64),
 }
 
 impl Counted {
-    /// Messages of all channels.
+    /// Number of messages of all channels.
     pub fn all(&self) -> u64 {
         self.messages.values().sum()
     }
 }
 
-/// Makes the bytes of one recording file. Of each of its chunks the crate's writer remembers 300 bytes until the end.
+/// Encodes one recording file. The crate's writer retains 300 bytes for each chunk until the end.
 pub struct RecordingWriter {
     mcap: mcap::Writer<NoSeek<Waiting>>,
     waiting: Waiting,
     encoder: EntryEncoder,
     overview: Overview,
-    /// Bytes given away so far.
+    /// Number of bytes already collected.
     given: u64,
-    /// Where the chunks begin that the next block is about, and the first moment in them.
+    /// Offset of the first chunk that the next block covers, and the first moment in it.
     block_from: u64,
     block_began: Option<Moment>,
     sequence: u32,
@@ -79,16 +79,16 @@ pub struct RecordingWriter {
 }
 
 impl RecordingWriter {
-    /// A new file.
+    /// Starts a new file.
     ///
     /// # Errors
-    /// [`McapError`], which writing to memory does not bring.
+    /// [`McapError`], which does not occur when writing to memory.
     pub fn new(opening: &Opening) -> Result<Self, McapError> {
         Self::with_chunks(opening, CHUNK_BYTES, GripFollower::default())
     }
 
-    /// A copy, of which nothing is lost if the program is killed: its chunks are larger, so that it may be days long. `grip` as it
-    /// was followed until it begins.
+    /// Starts a copy, which is complete or discarded: its chunks are larger, so that it may be days long. `grip` is the state of
+    /// the grip before its first entry.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -127,7 +127,7 @@ impl RecordingWriter {
         Ok(writer)
     }
 
-    /// The file after this one: what holds on at the hand does not begin again in it.
+    /// Starts the recording's next file: ongoing states of the hand are not reported as new.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -139,7 +139,7 @@ impl RecordingWriter {
         })
     }
 
-    /// Bytes of the file so far.
+    /// Length of the file so far, in bytes.
     pub fn length(&self) -> u64 {
         self.given + u64::try_from(self.waiting.bytes().len()).unwrap_or_default()
     }
@@ -178,7 +178,7 @@ impl RecordingWriter {
         self.mcap.write_to_known_channel(&header, &message.bytes)
     }
 
-    /// Closes the chunk, so that everything so far can be taken.
+    /// Closes the chunk, so that everything so far can be collected.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -186,7 +186,7 @@ impl RecordingWriter {
         self.mcap.flush()
     }
 
-    /// Writes the overview of what was pushed since the last block.
+    /// Writes the overview of the entries since the last block.
     fn block(&mut self) -> Result<(), McapError> {
         let data = self.overview.give_block(self.block_from);
         let log_time = nanos_of(self.base_nanos, self.newest);
@@ -201,7 +201,7 @@ impl RecordingWriter {
         Ok(())
     }
 
-    /// Ends the file; how much there is in it. Nothing can be pushed any more.
+    /// Ends the file and returns its counts. No further entry can be pushed.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -214,7 +214,7 @@ impl RecordingWriter {
         })
     }
 
-    /// The bytes that were made since the last call. They follow those of before.
+    /// Returns the bytes written since the last call, in sequence.
     pub fn take_bytes(&mut self) -> Vec<u8> {
         let bytes = std::mem::take(&mut *self.waiting.bytes());
         self.given += u64::try_from(bytes.len()).unwrap_or_default();
@@ -222,7 +222,7 @@ impl RecordingWriter {
     }
 }
 
-/// Says which channels there are, and of what their messages consist.
+/// Writes the definitions of all channels and their schemas.
 fn define(mcap: &mut mcap::Writer<NoSeek<Waiting>>) -> Result<(), McapError> {
     for topic in Topic::all() {
         let schema = topic.schema();

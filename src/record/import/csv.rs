@@ -1,5 +1,5 @@
-//! A recording out of the comma-separated values that `export::csv` writes: its columns are known by their names, whatever their order.
-//! What no column says stays unknown: the day, the hand, its settings, the bytes on the wire.
+//! Imports a recording from comma-separated values as `export::csv` writes them, with columns identified by name, in any order.
+//! Data without a column stays unknown: the date, the hand, its settings, the bytes on the wire.
 
 use crate::hand::column::{channel_column, grip_columns, joint_column, tip_column};
 use crate::hand::feedback::sample::SET_OUT_OF_RANGE;
@@ -21,42 +21,41 @@ use std::io::{self, BufRead};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Channels of a fingertip.
+/// Number of channels of a fingertip.
 const CHANNELS: usize = 8;
-/// Ten years. Nobody recorded longer.
+/// Maximum duration of a recording: ten years.
 const SECONDS_MAX: f64 = 10.0 * 366.0 * 86_400.0;
-/// Seconds since 1970 that a table can tell: up to the year 2286.
+/// Upper limit of times since 1970: the year 2286.
 const SINCE_1970_MAX_S: f64 = 1e10;
-/// Lines that were received at nearly one time may stand in another order.
+/// Maximum step back in time: lines received at nearly the same time may be swapped.
 const BACK_MAX_S: f64 = 0.01;
-/// Lines between two looks at whether to go on: some milliseconds.
+/// Lines between two checks for cancellation: some milliseconds.
 const POLL_ENTRIES: u64 = 256;
-/// Whole numbers up to here are exact as numbers with a point.
+/// Integers up to this are exact as floating-point numbers.
 const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
-/// Names and cells are told this far.
+/// Maximum characters of a name or cell in an error.
 const TOLD_MAX: usize = 40;
-/// Unknown columns that are named.
+/// Maximum number of unknown columns that are named.
 const UNKNOWN_MAX: usize = 20;
-/// Temperatures above the manual's range: 255 means that the hand does not know.
+/// Temperature above the manual's range: the hand does not know it.
 const TEMPERATURE_UNKNOWN: u8 = 255;
-/// Words of a direction that are neither an angle nor "no contact".
+/// Raw direction that is neither an angle nor "no contact".
 const DIRECTION_UNKNOWN: u16 = 65_534;
 
-/// Why nothing was imported.
+/// Reason why nothing was imported.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImportError {
     /// The system could not read it.
     #[error("it cannot be read: {message}")]
     Unreadable {
-        /// What the system says.
+        /// The system's error text.
         message: String,
     },
-    /// A line of it is wrong.
+    /// A line is invalid.
     #[error("line {line}: {fault}")]
     Line {
         /// Counted from 1.
         line: u64,
-        /// What is wrong with it.
         fault: CsvFault,
     },
     /// The recording file could not be written.
@@ -64,18 +63,18 @@ pub enum ImportError {
     Output(#[from] ExportError),
 }
 
-/// What can be wrong with a line.
+/// Problem of a line.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CsvFault {
-    /// It cannot be taken apart.
+    /// Its cells cannot be separated.
     #[error(transparent)]
     Cells(#[from] LineFault),
-    /// The first line is not that of such a file.
+    /// The first line is not the header of such a file.
     #[error(
         "there is no column time_s between commas, semicolons or tabs, so these are not the values of a recording"
     )]
     NoTime,
-    /// A later line is of an earlier moment.
+    /// A line's time is earlier than the previous one's.
     #[error(
         "the time goes back from {before_s:.3} s to {time_s:.3} s; a table holds one recording: make one of each take"
     )]
@@ -83,23 +82,22 @@ pub enum CsvFault {
     /// No column but the time is known.
     #[error("no column of it but time_s is known")]
     NothingKnown,
-    /// One column twice.
+    /// Duplicate column.
     #[error("the column {name} is there twice")]
     Twice { name: String },
-    /// Other cells than the first line has.
+    /// The number of cells differs from the first line's.
     #[error("it has {cells} cells, and the first line has {columns}")]
     Ragged {
-        /// Of this line.
+        /// Cells of this line.
         cells: usize,
-        /// Of the first line.
+        /// Cells of the first line.
         columns: usize,
     },
-    /// A cell that is no value of its column.
+    /// A cell that is not a valid value of its column.
     #[error("invalid value '{text}' in column {column}")]
     BadValue {
-        /// The column's name.
         column: String,
-        /// What stands there, or its beginning.
+        /// Text of the cell, or its beginning.
         text: String,
     },
 }
@@ -108,17 +106,17 @@ pub enum CsvFault {
 pub struct Imported {
     /// Lines after the first.
     pub rows: u64,
-    /// Columns of another meaning, which were skipped; the first of them.
+    /// Skipped columns of unknown meaning; only the first ones are listed.
     pub unknown: Vec<String>,
-    /// It has columns of the grip, which were left out: the grip is found anew from the readings.
+    /// True if it has grip columns, which are ignored: the grip is derived from the readings.
     pub has_grip: bool,
-    /// Readings of a fingertip without all of its forces' and channels' columns, which were left out.
+    /// Skipped readings of fingertips that lack a column of a force or a channel.
     pub incomplete_tips: u64,
-    /// Its times count from 1970, so the recording begins with the first of them.
+    /// True if its times count from 1970; the recording then begins with the first of them.
     pub counts_from_1970: bool,
 }
 
-/// Reads values, and writes what they say as a recording file, as long as it is to go on.
+/// Reads values, and writes them as a recording file, until `watch` cancels.
 ///
 /// # Errors
 /// [`ImportError`]; then there is no recording file.
@@ -165,7 +163,7 @@ pub struct CsvValues<R> {
     columns: CsvColumns,
     sample: HandSample,
     imported: Imported,
-    /// The time of the first line, if that counts from 1970, and of the last one.
+    /// Time of the first line, if it counts from 1970, and of the last one.
     zero_s: f64,
     last_s: Option<f64>,
 }
@@ -257,7 +255,7 @@ fn read<R: BufRead>(
     })
 }
 
-/// What is known of a recording that is read from values: not the day, and not the hand.
+/// Opening of an imported recording, whose date and hand are unknown.
 fn imported_opening() -> Opening {
     Opening {
         base_nanos: Opening::NO_DATE,
@@ -270,7 +268,7 @@ fn imported_opening() -> Opening {
     }
 }
 
-/// What a column tells.
+/// Meaning of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum CsvColumn {
     Time,
@@ -279,7 +277,7 @@ enum CsvColumn {
     Channel(usize, Finger),
     Undocumented,
     Event,
-    /// The grip of the grasp, or of a finger: found out anew from the readings.
+    /// The grip of the grasp or of a finger; ignored, as it is derived from the readings.
     Grip(usize),
     Unknown,
 }
@@ -329,7 +327,7 @@ impl CsvColumns {
         all.any(|(_, column)| matches!(column, CsvColumn::Grip(_)))
     }
 
-    /// Makes points of the commas in numbers.
+    /// Replaces decimal commas by points.
     fn decimal_points(&self, cells: &mut [String]) {
         for ((_, column), cell) in self.all.iter().zip(cells) {
             let is_text = matches!(column, CsvColumn::Event | CsvColumn::Undocumented);
@@ -390,13 +388,13 @@ fn known() -> BTreeMap<String, CsvColumn> {
     known
 }
 
-/// As much of a text as an error tells.
+/// A text shortened for an error.
 fn told(text: &str) -> String {
     let plain = text.chars().filter(|letter| !letter.is_control());
     plain.take(TOLD_MAX).collect()
 }
 
-/// What is known of a fingertip.
+/// Values of a fingertip.
 #[derive(Debug, Clone, Copy, Default)]
 struct TipCells {
     forces: [Option<f32>; 2],
@@ -409,8 +407,8 @@ impl TipCells {
         forces || self.channels.iter().any(Option::is_some)
     }
 
-    /// The block as the hand would send it. A count has no number that means "not known", so without all of them there is none.
-    /// The check word is wrong on purpose: these bytes are not the hand's.
+    /// The block as the hand would send it. Counts cannot express "unknown", so all of them are required. The check word is wrong
+    /// on purpose: these bytes do not come from the hand.
     fn block(&self) -> Option<[u8; BLOCK_LEN]> {
         let [normal, tangential] = self.forces.map(|force| force.unwrap_or(f32::NAN));
         let mut bytes = Vec::with_capacity(BLOCK_LEN);
@@ -435,19 +433,19 @@ impl TipCells {
 #[derive(Debug, Default)]
 struct CsvRow {
     at: Moment,
-    /// As it stands there.
+    /// Time as written in the file.
     time_s: f64,
     joints: [PerDof<Option<i16>>; Quantity::ALL.len()],
-    /// Values outside the manual's ranges, as they were sent.
+    /// Raw values outside the manual's ranges.
     undocumented: Vec<Undocumented>,
-    /// Whether there is a column for those.
+    /// True if there is a column for those.
     tells_undocumented: bool,
     tips: PerFinger<TipCells>,
     event: Option<(EventKind, String)>,
 }
 
 impl CsvRow {
-    /// Reads one cell; `None` if its text is not valid in the column.
+    /// Parses one cell; `None` if its text is not valid in the column.
     fn take(&mut self, column: CsvColumn, cell: &str) -> Option<()> {
         match column {
             CsvColumn::Unknown | CsvColumn::Grip(_) => {}
@@ -465,7 +463,7 @@ impl CsvRow {
                 let value = whole(cell)?.try_into().ok()?;
                 let six = self.joints.get_mut(quantity as usize)?;
                 six[dof] = Some(value);
-                // Only what the manual knows is written, so nothing else is read.
+                // Only documented values are written, so no others are accepted.
                 documented(quantity, six)[dof]?;
             }
             CsvColumn::Tip(touch, finger) => {
@@ -482,7 +480,7 @@ impl CsvRow {
         Some(())
     }
 
-    /// The six values, and where there is none what the hand sent outside of the range.
+    /// The six values, with the raw out-of-range ones where the cell is empty.
     fn as_sent(&self, quantity: Quantity, six: &PerDof<Option<i16>>) -> PerDof<Option<i16>> {
         let mut six = *six;
         let of_it = |one: &&Undocumented| one.group == quantity.group();
@@ -491,12 +489,12 @@ impl CsvRow {
             if six[one.dof].is_none() {
                 let mut alone = PerDof::splat(None);
                 alone[one.dof] = Some(raw);
-                // A name alone makes no value of what is in the range.
+                // A name alone does not define a value within the range.
                 let is_known = documented(quantity, &alone)[one.dof].is_some();
                 six[one.dof] = Some(raw).filter(|_| !is_known);
             }
         }
-        // A target that is neither there nor named is -1: the joint is left alone.
+        // A target that is neither given nor named is -1: no new target for the joint.
         let is_left = self.tells_undocumented && quantity == Quantity::TargetAngle;
         if is_left && six.iter().any(|(_, value)| value.is_some()) {
             six = six.map(|value| value.or(Some(Target::Leave.raw())));
@@ -510,7 +508,7 @@ impl CsvRow {
         u64::try_from(incomplete.count()).unwrap_or(u64::MAX)
     }
 
-    /// The entries of the line. When a reading was asked for is not known, so it is when it was received.
+    /// The entries of the line. The request time of a reading is unknown, so it equals the time of receipt.
     fn entries(self, sample: &mut HandSample) -> Vec<Entry> {
         let mut fresh = Groups::NONE;
         for (quantity, six) in Quantity::ALL.into_iter().zip(&self.joints) {
@@ -548,7 +546,7 @@ fn reply(group: Group, bytes: &[u8], at: Moment) -> Reply<'_> {
     }
 }
 
-/// What the hand's memory would hold. A value that is not known is one that the manual does not know.
+/// Memory of the hand with these values. An unknown value is encoded as an undocumented one.
 fn memory(quantity: Quantity, six: &PerDof<Option<i16>>) -> Vec<u8> {
     let values = six.iter().map(|(_, value)| *value);
     if quantity == Quantity::Temperature {
@@ -573,14 +571,14 @@ fn documented(quantity: Quantity, six: &PerDof<Option<i16>>) -> PerDof<Option<i1
     read.map_or_else(|| PerDof::splat(None), |read| read.value)
 }
 
-/// What tables of others write where there is nothing.
+/// True for the words by which other programs mark a missing value.
 fn is_no_number(cell: &str) -> bool {
     ["nan", "na", "n/a", "null", "none"]
         .iter()
         .any(|word| cell.eq_ignore_ascii_case(word))
 }
 
-/// A whole number, also as pandas writes it in a column with holes: `316.0`.
+/// Parses an integer, also in pandas' form for columns with missing values: `316.0`.
 fn whole(cell: &str) -> Option<i64> {
     let exact = cell.parse().ok();
     exact.or_else(|| {
@@ -591,7 +589,7 @@ fn whole(cell: &str) -> Option<i64> {
     })
 }
 
-/// Seconds from the recording's start, to the microsecond.
+/// Converts seconds from the recording's start, to the microsecond.
 fn moment(seconds: f64) -> Option<Moment> {
     let seconds = seconds.max(0.0);
     if !(0.0..=SECONDS_MAX).contains(&seconds) {
@@ -606,7 +604,7 @@ fn moment(seconds: f64) -> Option<Moment> {
     Some(Moment::from_micros(micros))
 }
 
-/// What happened, and its words. What is none of our kinds is the user's note.
+/// Kind and text of an event. An unknown kind becomes a note by the user.
 fn event(cell: &str) -> (EventKind, String) {
     let (key, words) = cell.split_once(": ").unwrap_or((cell, ""));
     let kind = match key {

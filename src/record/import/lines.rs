@@ -1,17 +1,16 @@
-//! Tables of text line by line, in bounded memory: cells that commas, semicolons or tabs separate, quoted ones, which may hold line
-//! breaks, and a count of lines for errors. The crate `csv` reads the same, but a line as long as it likes.
+//! Reads text tables line by line, in bounded memory: cells separated by commas, semicolons or tabs, quoted cells, which may
+//! contain line breaks, and a line count for errors. The crate `csv` reads the same, but without a limit on the line length.
 
 use std::io::{self, BufRead, Read as _};
 
-/// Bytes of one line with all its quoted line breaks: more than the longest note.
+/// Maximum bytes of one line with all its quoted line breaks: more than the longest note.
 pub(crate) const LINE_MAX: usize = 1024 * 1024;
-/// Cells of one line.
+/// Maximum number of cells of one line.
 pub(crate) const CELLS_MAX: usize = 4096;
 
-/// Why a line cannot be taken apart.
+/// Reason why the cells of a line cannot be separated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum LineFault {
-    /// Too many bytes.
     #[error("it is longer than {} KiB", LINE_MAX / 1024)]
     TooLong,
     #[error("it has more than {CELLS_MAX} cells")]
@@ -19,12 +18,12 @@ pub enum LineFault {
     /// Not UTF-8.
     #[error("it is no text in UTF-8")]
     NotText,
-    /// The file ends within quotation marks, or something follows them.
+    /// The file ends within quotation marks, or text follows them.
     #[error("unmatched quote")]
     Unquoted,
 }
 
-/// One line or why there is none; the system's words where the file cannot be read on.
+/// Reason why there is no line: the system's error, or an invalid line.
 #[derive(Debug)]
 pub(crate) enum LineError {
     System(io::Error),
@@ -37,18 +36,18 @@ impl From<io::Error> for LineError {
     }
 }
 
-/// What can separate the cells of a table, the likeliest first.
+/// Possible cell separators, the most likely first.
 const SEPARATORS: [char; 3] = [',', ';', '\t'];
-/// Spreadsheets name the separator so, in a line before the first.
+/// Prefix of a line before the header, in which spreadsheets name the separator.
 const NAMED: &str = "sep=";
 
 /// The lines of a file.
 #[derive(Debug)]
 pub(crate) struct CsvLines<R> {
     from: R,
-    /// What separates its cells, once its first line told.
+    /// Cell separator, once the first line was read.
     separator: Option<char>,
-    /// The number of the line that is read, and of the one after it.
+    /// Number of the current line, and of the one after it.
     number: u64,
     next: u64,
     bytes: Vec<u8>,
@@ -65,17 +64,17 @@ impl<R: BufRead> CsvLines<R> {
         }
     }
 
-    /// Counted from 1, as editors do.
+    /// Line number from 1, as in editors.
     pub(crate) const fn number(&self) -> u64 {
         self.number
     }
 
-    /// True where a comma separates no cells: numbers may be written with it.
+    /// True if the comma is not the separator, and may be a decimal comma.
     pub(crate) fn has_free_comma(&self) -> bool {
         self.separator.is_some_and(|separator| separator != ',')
     }
 
-    /// The cells of the next line that is not empty; `None` at the end.
+    /// Reads the cells of the next line that is not empty; `None` at the end.
     pub(crate) fn next(&mut self, cells: &mut Vec<String>) -> Result<Option<()>, LineError> {
         loop {
             self.number = self.next;
@@ -87,7 +86,7 @@ impl<R: BufRead> CsvLines<R> {
             }
             let text = std::str::from_utf8(&self.bytes);
             let text = text.map_err(|_utf8| LineError::Fault(LineFault::NotText))?;
-            // A spreadsheet marks UTF-8 so.
+            // Spreadsheets mark UTF-8 with a byte order mark.
             let text = text.strip_prefix('\u{feff}').unwrap_or(text);
             let separator = match self.separator {
                 Some(separator) => separator,
@@ -140,10 +139,10 @@ impl<R: BufRead> CsvLines<R> {
     }
 }
 
-/// What separates the cells of a first line: what stands in it most often.
+/// Guesses the separator of a header line: the one that occurs most often.
 fn separator(line: &str) -> char {
     let count = |separator: &char| line.matches(*separator).count();
-    // The last of several that are as many is the maximum.
+    // On a tie `max_by_key` returns the last.
     let found = SEPARATORS.into_iter().rev().max_by_key(count);
     found.unwrap_or(',')
 }
@@ -175,7 +174,7 @@ fn split(line: &str, separator: char, cells: &mut Vec<String>) -> Result<(), Lin
     }
 }
 
-/// The text up to the closing mark, and what follows that. Two marks stand for one.
+/// The text up to the closing quote, and the rest. Two quotes encode one.
 fn unquoted(mut rest: &str) -> Result<(String, &str), LineFault> {
     let mut text = String::new();
     while let Some((part, after)) = rest.split_once('"') {

@@ -1,4 +1,4 @@
-//! Recordings out of what others can write. What such a file does not say stays unknown.
+//! Imports recordings from other formats. Data missing there stays unknown.
 
 pub mod csv;
 mod lines;

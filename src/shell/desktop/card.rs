@@ -1,14 +1,14 @@
-//! Whether this machine has a graphics card that programs can draw with. Where it has none, OpenGL is software too, and
-//! three times slower at this window than our own.
+//! Detects a graphics card that programs can draw with. Without one, OpenGL is software too, and for this window three times
+//! slower than our own renderer.
 
 use std::path::Path;
 
-/// False where the system says that there is none. Other systems than Linux are believed to have one.
+/// False if the system reports no graphics card. Always true on systems other than Linux.
 pub fn may_draw_with_a_card() -> bool {
     !cfg!(target_os = "linux") || has_card(Path::new("/dev"))
 }
 
-/// True where this folder of devices has one that draws: a render node, or the makers' own.
+/// True if this device folder has a render node or a maker's own device.
 fn has_card(devices: &Path) -> bool {
     let named = |folder: &Path, begin: &str| {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();

@@ -4,12 +4,12 @@ use crate::app::env::ChooseFile;
 use futures::future::BoxFuture;
 use std::path::PathBuf;
 
-/// The system's own dialogs, asked without holding the window up.
+/// The system's own dialogs; they do not block the window.
 pub(crate) struct NativeDialog;
 
 impl ChooseFile for NativeDialog {
     fn choose(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>> {
-        // Begun here, on the window's thread, as some systems demand.
+        // Started here, on the window's thread, as some systems require.
         let asked = asking(suggested).save_file();
         Box::pin(async move { asked.await.map(|file| file.path().to_path_buf()) })
     }

@@ -1,5 +1,5 @@
-//! The end of the window as the system wants it: a signal holds every hand at once, whether or not the window still answers, and
-//! then asks the window to close. One that shows no sign of life is ended with the program.
+//! Shutdown by signal: a signal holds every hand at once, whether or not the window still responds, and then asks the window to
+//! close. A frozen window is ended with the program.
 
 use crate::hand::Moment;
 use crate::link::{Clock, guard};
@@ -8,21 +8,21 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-/// So long hands get to rest when the program ends.
+/// Time for the hands to come to rest when the program ends.
 pub(crate) const END_TIMEOUT: Duration = Duration::from_secs(1);
-/// A window that gives no sign of life for so long is not waited for: the slowest frames take a part of it.
+/// Time without activity after which a window counts as frozen; well above the slowest frames.
 const FREEZE_TIMEOUT: Duration = Duration::from_secs(3);
-/// How often it is looked whether the window still lives.
+/// Interval of the checks for a frozen window.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// What the window and whoever ends it from outside know of each other.
+/// State shared between the window and the signal task.
 #[derive(Debug)]
 pub(crate) struct Ending {
     clock: Clock,
     wanted: AtomicBool,
-    /// The window has ended, and with it whatever could freeze.
+    /// True after the window has ended; it can no longer freeze.
     gone: AtomicBool,
-    /// When the window last took in what happened, in microseconds.
+    /// Time of the window's last activity, in microseconds.
     lived_us: AtomicU64,
     window: OnceLock<egui::Context>,
 }
@@ -38,28 +38,28 @@ impl Ending {
         })
     }
 
-    /// This window is to be woken when the program is to end.
+    /// Registers the window to wake when the program has to end.
     pub(crate) fn wakes(&self, window: &egui::Context) {
         let _set_before = self.window.set(window.clone());
     }
 
-    /// The window lives.
+    /// Records activity of the window.
     pub(crate) fn lives(&self, now: Moment) {
         self.lived_us.store(now.micros(), Ordering::Relaxed);
     }
 
-    /// The window has ended by itself.
+    /// Records that the window has ended by itself.
     pub(crate) fn ended(&self) {
         self.gone.store(true, Ordering::Relaxed);
     }
 
-    /// True if the window is to close, whatever it shows.
+    /// True if the window must close, regardless of its state.
     pub(crate) fn is_wanted(&self) -> bool {
         self.wanted.load(Ordering::Relaxed)
     }
 
     fn want(&self) {
-        // From now on it has to show that it lives.
+        // From now on the window has to show activity.
         self.lives(self.clock.now());
         self.wanted.store(true, Ordering::Relaxed);
         if let Some(window) = self.window.get() {
@@ -73,7 +73,7 @@ impl Ending {
     }
 }
 
-/// Waits for a signal that ends the program, on the thread of the links, which no window keeps waiting.
+/// Waits for a signal that ends the program, on the links' runtime, which the window cannot block.
 pub(crate) async fn on_signals(ending: Arc<Ending>) {
     let Ok(mut interrupt) = Interrupt::listen() else {
         return;
@@ -84,7 +84,7 @@ pub(crate) async fn on_signals(ending: Arc<Ending>) {
     loop {
         tokio::time::sleep(POLL_INTERVAL).await;
         if ending.is_frozen() {
-            // The link task goes on beside this one until all hands rest.
+            // Meanwhile the link task continues until all hands rest.
             let held = tokio::task::spawn_blocking(|| guard::hold_all_within(END_TIMEOUT));
             let _held = held.await;
             std::process::exit(status);

@@ -1,9 +1,9 @@
-//! Why there is no window, each as one sentence with the way out. Opens none.
+//! Reasons for a missing window, each as one sentence with the remedy. Opens none.
 
 use crate::shell::desktop::libraries;
 use crate::shell::desktop::libraries::{ALL, OPENGL, Package, install};
 
-/// Why there is no window.
+/// Reason why the window could not be opened.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DesktopError {
     /// Neither X11 nor Wayland.
@@ -11,7 +11,7 @@ pub enum DesktopError {
         "the window cannot open: there is no display here ({cause}); start it in a desktop session, or use 'handscope snapshot' for pictures and 'handscope watch' for values"
     )]
     NoDisplay {
-        /// The system's words.
+        /// The system's error text.
         cause: String,
     },
     /// A library that windows need is not installed.
@@ -20,9 +20,9 @@ pub enum DesktopError {
         install(package)
     )]
     MissingLibrary {
-        /// The file that was looked for.
+        /// File name of the library.
         library: &'static str,
-        /// The packages that bring it.
+        /// Packages that contain it.
         package: &'static Package,
     },
     /// OpenGL does not start. A window without it may.
@@ -30,35 +30,35 @@ pub enum DesktopError {
         "the window cannot open with OpenGL ({cause}); start 'handscope --software', or install a driver: {}", install(&OPENGL)
     )]
     NoOpenGl {
-        /// The system's words.
+        /// The system's error text.
         cause: String,
     },
-    /// The display shows no pixels of ours.
+    /// The display cannot show software-rendered pixels.
     #[error(
         "the window cannot draw on this display ({cause}); use 'handscope snapshot' for pictures"
     )]
     NoSurface {
-        /// The system's words.
+        /// The system's error text.
         cause: String,
     },
-    /// Anything else that the system refused.
+    /// Any other refusal by the system.
     #[error(
         "the window cannot open ({cause}); {}, or use 'handscope snapshot' for pictures", install(&ALL)
     )]
     Refused {
-        /// The system's words.
+        /// The system's error text.
         cause: String,
     },
     /// The thread for the links could not be started.
     #[error("the program cannot start its link thread: {cause}")]
     Runtime {
-        /// The system's words.
+        /// The system's error text.
         cause: String,
     },
 }
 
 impl DesktopError {
-    /// From the words of winit, glutin, or a panic inside them: they tell the causes apart by nothing else.
+    /// Classifies the error text of winit, glutin, or a panic inside them; only the text distinguishes the causes.
     pub(crate) fn of(words: &str) -> Self {
         let cause = cause_of(words);
         let words = cause.to_lowercase();
@@ -75,7 +75,7 @@ impl DesktopError {
         ]) {
             return Self::NoDisplay { cause };
         }
-        // Winit does not say which.
+        // Winit does not name the library.
         if words.contains("shared librar")
             && let Some(missing) = libraries::missing_here()
         {
@@ -97,7 +97,7 @@ impl From<&'static libraries::SharedLibrary> for DesktopError {
     }
 }
 
-/// The words without the place in a library's own source that some put before what went wrong, and on one line.
+/// The text on one line, without the source position of a library that some errors begin with.
 pub(crate) fn cause_of(words: &str) -> String {
     let after = words
         .rsplit_once(".rs:")
@@ -107,7 +107,7 @@ pub(crate) fn cause_of(words: &str) -> String {
     line.join(" ").trim_end_matches('.').to_owned()
 }
 
-/// What a caught panic said.
+/// Message of a caught panic.
 pub(crate) fn panic_words(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     text.or_else(|| panic.downcast_ref::<String>().cloned())

@@ -1,15 +1,15 @@
-//! The system's file manager, started to show a file where it lies. Changes no file.
+//! Starts the system's file manager to show a file in its folder. Changes no file.
 
 use std::io;
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::Duration;
 
-/// What could not begin has ended by then; a manager that runs on in the foreground has not.
+/// Time by which a failed start has ended; a manager that stays in the foreground has not.
 const START_TIMEOUT: Duration = Duration::from_secs(3);
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Starts the file manager at a file. Waits until it is known whether that worked.
+/// Opens the file manager at a file. Waits until success or failure is known.
 pub(crate) fn show(file: &Path) -> io::Result<()> {
     let mut command = command(file);
     command.stdin(Stdio::null());
@@ -17,7 +17,7 @@ pub(crate) fn show(file: &Path) -> io::Result<()> {
     begin(&mut command)
 }
 
-/// Explorer selects the file, as the Finder does; other systems only know how to open its folder.
+/// Explorer and Finder select the file; other systems can only open its folder.
 fn command(file: &Path) -> Command {
     if cfg!(windows) {
         let mut command = Command::new("explorer");
@@ -46,7 +46,7 @@ fn begin(command: &mut Command) -> io::Result<()> {
     Ok(())
 }
 
-/// Explorer ends with 1 where it did what was asked.
+/// Explorer exits with 1 on success.
 fn judge(status: ExitStatus) -> io::Result<()> {
     if status.success() || cfg!(windows) {
         Ok(())
@@ -55,7 +55,7 @@ fn judge(status: ExitStatus) -> io::Result<()> {
     }
 }
 
-/// Waits for the end of what runs on, so that no dead process stays behind.
+/// Waits for the child's end in a thread, so that no zombie process remains.
 fn reap(mut child: Child) {
     std::thread::spawn(move || child.wait());
 }

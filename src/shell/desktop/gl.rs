@@ -22,7 +22,7 @@ pub(crate) fn run(beginning: &Rc<Beginning>) -> Result<(), DesktopError> {
 fn failed(error: &eframe::Error) -> DesktopError {
     let words = error.to_string();
     match error {
-        // The template of what was looked for says nothing to the user.
+        // The template of the requested configuration does not help the user.
         eframe::Error::NoGlutinConfigs(_, error) => no_opengl(&error.to_string()),
         eframe::Error::Glutin(_) | eframe::Error::OpenGL(_) => no_opengl(&words),
         eframe::Error::AppCreation(_)

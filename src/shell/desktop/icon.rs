@@ -1,9 +1,9 @@
-//! The window's icon: an open hand with five fingertips, drawn in code so that no file has to be kept beside it.
+//! The window's icon: an open hand with five fingertips, drawn in code so that no image file is needed.
 
 use egui::{Color32, IconData, Pos2, Rgba, pos2};
 use std::sync::Arc;
 
-/// Its width and height, pixels.
+/// Width and height in pixels.
 const SIZE: u16 = 64;
 const GROUND: Color32 = Color32::from_rgb(24, 34, 46);
 const HAND: Color32 = Color32::from_rgb(226, 232, 238);
@@ -19,7 +19,7 @@ const FINGERS: [(Pos2, Pos2); 5] = [
 /// The palm, as a thick line.
 const PALM: (Pos2, Pos2) = (pos2(28.0, 46.0), pos2(36.0, 46.0));
 
-/// The icon as every window system takes it.
+/// The icon in the format of all window systems.
 pub(crate) fn icon() -> Arc<IconData> {
     let rows = (0..SIZE).map(|y| f32::from(y) + 0.5);
     let points = rows.flat_map(|y| (0..SIZE).map(move |x| pos2(f32::from(x) + 0.5, y)));
@@ -31,7 +31,7 @@ pub(crate) fn icon() -> Arc<IconData> {
 }
 
 fn pixel(at: Pos2) -> [u8; 4] {
-    // A square with round corners: all that is near enough to a smaller square.
+    // A rounded square: all points near a smaller square.
     let inner = pos2(at.x.clamp(14.0, 50.0), at.y.clamp(14.0, 50.0));
     let mut color = Rgba::from(GROUND) * covered(at.distance(inner), 13.0);
     let palm = covered(distance(at, PALM), 10.0);
@@ -43,7 +43,7 @@ fn pixel(at: Pos2) -> [u8; 4] {
     Color32::from(color).to_srgba_unmultiplied()
 }
 
-/// How much of a pixel a shape of this radius covers whose middle is so far away.
+/// Coverage of a pixel by a disc of this radius at a distance from its centre.
 fn covered(distance: f32, radius: f32) -> f32 {
     (radius + 0.5 - distance).clamp(0.0, 1.0)
 }

@@ -1,8 +1,8 @@
-//! The libraries that a window needs on Linux, and the packages that bring them. Loads none.
+//! Libraries that a window needs on Linux, and the packages that contain them. Loads none.
 
 use std::path::{Path, PathBuf};
 
-/// The names of a package in the three large families of distributions.
+/// Package names in the three large families of distributions.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Package {
     debian: &'static str,
@@ -10,14 +10,12 @@ pub struct Package {
     arch: &'static str,
 }
 
-/// A library and where it comes from.
+/// A library and its packages.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct SharedLibrary {
-    /// What it is called by those who look for it, in small letters.
+    /// Name as in error texts, in lower case.
     name: &'static str,
-    /// Its file.
     pub(crate) file: &'static str,
-    /// What brings it.
     pub(crate) package: Package,
 }
 
@@ -27,14 +25,14 @@ pub(crate) const OPENGL: Package = Package::of(
     "mesa-libGL mesa-dri-drivers",
     "libglvnd mesa",
 );
-/// What small installations lack most often.
+/// Packages most often missing on small installations.
 pub(crate) const ALL: Package = Package::of(
     "libxcursor1 libxi6 libxkbcommon-x11-0 libgl1",
     "libXcursor libXi libxkbcommon-x11 mesa-libGL",
     "libxcursor libxi libxkbcommon-x11 libglvnd",
 );
 
-/// What X11 needs. The longer names first: some begin with another.
+/// Libraries of X11, longer names first, because some begin with another.
 static OF_X11: [SharedLibrary; 6] = [
     SharedLibrary {
         name: "libxkbcommon-x11",
@@ -78,7 +76,7 @@ impl Package {
     }
 }
 
-/// What to type to get a package. Windows has no such packages, but drivers.
+/// Command that installs a package. On Windows, a hint about drivers instead.
 pub(crate) fn install(package: &Package) -> String {
     let Package {
         debian,
@@ -93,12 +91,12 @@ pub(crate) fn install(package: &Package) -> String {
     )
 }
 
-/// The library that these words, in small letters, are about.
+/// The library named in this lower-case text.
 pub(crate) fn named_in(words: &str) -> Option<&'static SharedLibrary> {
     OF_X11.iter().find(|library| words.contains(library.name))
 }
 
-/// The first library of X11 that is in none of the places where this system keeps libraries.
+/// The first X11 library that is in none of the system's library folders.
 pub(crate) fn missing_here() -> Option<&'static SharedLibrary> {
     missing_from(&places())
 }
@@ -106,7 +104,7 @@ pub(crate) fn missing_here() -> Option<&'static SharedLibrary> {
 fn missing_from(places: &[PathBuf]) -> Option<&'static SharedLibrary> {
     let is_there = |file: &str| places.iter().any(|place| place.join(file).is_file());
     let any = OF_X11.iter().any(|library| is_there(library.file));
-    // A system that keeps them elsewhere is not told wrong things.
+    // If none is found, the system uses other folders, and none is reported.
     let missing = OF_X11.iter().find(|library| !is_there(library.file));
     missing.filter(|_| any)
 }

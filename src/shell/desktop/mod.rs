@@ -1,4 +1,4 @@
-//! The real window: with OpenGL, or without where there is none. Draws nothing itself; views live in `ui`.
+//! The real window, with or without OpenGL. Draws nothing itself; views live in `ui`.
 
 pub(crate) mod card;
 pub(crate) mod dialog;

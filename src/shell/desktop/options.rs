@@ -1,4 +1,4 @@
-//! What the window starts with.
+//! Options of the window at its start.
 
 use crate::app::exhibit::Exhibition;
 use crate::app::files::settings_file::Loaded;
@@ -6,32 +6,32 @@ use crate::shell::Snap;
 use crate::transport::Endpoint;
 use std::path::PathBuf;
 
-/// What draws the window.
+/// Renderer of the window.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Drawing {
     #[default]
     OpenGl,
-    /// This program itself, on the processor, as the user asked for it.
+    /// Rendered by the program on the processor, at the user's request.
     Software,
-    /// The same, because OpenGL did not start, for this reason.
+    /// Rendered by the program, because OpenGL did not start for this reason.
     InPlaceOfOpenGl(String),
 }
 
-/// What the window starts with.
+/// Options of the window at its start.
 pub struct DesktopStart {
     /// The hands named on the command line.
     pub endpoints: Vec<Endpoint>,
     pub drawing: Drawing,
-    /// What was kept from last time, and what is to be said about it.
+    /// Settings of the last run, and a notice about loading them.
     pub loaded: Loaded,
-    /// Where it is kept.
+    /// Path of the settings file.
     pub settings_path: Option<PathBuf>,
-    /// What makes pictures of the plots.
+    /// Renders pictures of the plots.
     pub snap: Snap,
-    /// Whether what happens at hands is recorded, as far as the settings say so.
+    /// True if sessions are recorded, subject to the settings.
     pub records: bool,
     /// An exhibition to show in place of the window.
     pub exhibit: Option<Exhibition>,
-    /// A recording to begin with.
+    /// A recording to open first.
     pub replay: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! The program behind either window: title, closing with the hand held, when to draw again. Opens no window.
+//! The program behind either window: title, closing with the hand held, repaint timing. Opens no window.
 
 use crate::app::action::Action;
 use crate::app::connect::SimDial;
@@ -24,16 +24,16 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Ages and countdowns move on this often when nothing comes in.
+/// Repaint interval without updates, for ages and countdowns.
 pub(crate) const REPAINT_AT_LEAST: Duration = Duration::from_millis(250);
 
-/// Places, menus and cards fade for so long, in seconds.
+/// Duration of the fades of tabs, menus and cards, in seconds.
 const FADE_S: f32 = 0.12;
 
-/// A window that does not fill its screen, and should, is told to again after this.
+/// Interval at which the full-screen request is repeated if the window does not fill its screen.
 const FILL_INTERVAL: Duration = Duration::from_millis(500);
 
-/// How the window is to stand.
+/// Initial state of the window.
 pub(crate) fn viewport(layout: &Layout) -> ViewportBuilder {
     ViewportBuilder::default()
         .with_title("Handscope")
@@ -45,16 +45,16 @@ pub(crate) fn viewport(layout: &Layout) -> ViewportBuilder {
         .with_min_inner_size(WINDOW_LEAST)
 }
 
-/// What the program runs on.
+/// Services that the program runs on.
 pub(crate) struct Services {
-    /// The thread of all links.
+    /// Runtime of all links.
     pub(crate) runtime: tokio::runtime::Handle,
     pub(crate) clock: Clock,
-    /// How the window is told that the program is to end.
+    /// Signals the window that the program has to end.
     pub(crate) ending: Arc<Ending>,
 }
 
-/// What becomes the program once there is a window to show it.
+/// Becomes the program once its window exists.
 pub(crate) struct Beginning {
     waiting: RefCell<Option<(DesktopStart, Services)>>,
     stands: Arc<AtomicBool>,
@@ -69,14 +69,14 @@ impl Beginning {
         }
     }
 
-    /// How the window stood last time.
+    /// Layout of the window in the last run.
     pub(crate) fn layout(&self) -> Layout {
         let waiting = self.waiting.borrow();
         let settings = waiting.as_ref().map(|(start, _)| &start.loaded.settings);
         settings.map_or_else(Layout::default, |settings| settings.layout)
     }
 
-    /// The program; `None` if it began before.
+    /// Starts the program; `None` if it was started before.
     pub(crate) fn begin(&self, ctx: &egui::Context) -> Option<Program> {
         let (start, services) = self.waiting.take()?;
         self.stands.store(true, Ordering::Relaxed);
@@ -84,7 +84,7 @@ impl Beginning {
     }
 }
 
-/// Lets places, menus and cards fade, unless the system asks for reduced motion; followed while the subscription is kept.
+/// Enables fades unless the system requests reduced motion; active while the subscription exists.
 fn follow_reduced_motion(ctx: &egui::Context) -> Subscription {
     let ctx = ctx.clone();
     Preferences::subscribe(Interest::ReducedMotion, move |wished| {
@@ -102,14 +102,14 @@ fn follow_reduced_motion(ctx: &egui::Context) -> Subscription {
 pub(crate) struct Program {
     desktop_app: DesktopApp,
     clock: Clock,
-    /// How soon news are drawn while no hand moves.
+    /// Maximum delay of a frame after an update while no hand moves.
     at_rest: Duration,
-    /// How soon they are now, in milliseconds.
+    /// Current maximum delay, in milliseconds.
     frame_within_ms: Arc<AtomicU64>,
     titled: Option<String>,
-    /// The window was made to fit its screen.
+    /// True once the window was fitted to its screen.
     fits: bool,
-    /// How it fills its screen, while it should.
+    /// Full-screen state; `None` outside an exhibition.
     fills: Option<Filling>,
     closing: bool,
     ending: Arc<Ending>,
@@ -117,7 +117,7 @@ pub(crate) struct Program {
 }
 
 impl Drop for Program {
-    /// However the window ends, with a panic too: each hand that may move is held, and gets time to rest.
+    /// However the window ends, even by a panic: holds each hand that may move, and gives it time to rest.
     fn drop(&mut self) {
         self.ending.ended();
         guard::hold_all_within(END_TIMEOUT);
@@ -189,7 +189,7 @@ impl Program {
         }
     }
 
-    /// Takes in what happened. To be called before each frame, and [`REPAINT_AT_LEAST`] often while nothing is drawn.
+    /// Applies updates. Call it before each frame, and at least every [`REPAINT_AT_LEAST`] while nothing is drawn.
     pub(crate) fn logic(&mut self, ctx: &egui::Context) {
         let now = self.clock.now();
         self.ending.lives(now);
@@ -212,7 +212,7 @@ impl Program {
         self.desktop_app.ui(ui, self.clock.now());
     }
 
-    /// Names the hand in the window's title, so that a simulated one is told apart in the task bar too.
+    /// Names the hand in the window's title, so that a simulated one is also recognisable in the task bar.
     fn title(&mut self, ctx: &egui::Context) {
         let state = self.desktop_app.state();
         let title = match &state.hand().connection.endpoint {
@@ -232,7 +232,7 @@ impl Program {
         }
     }
 
-    /// During an exhibition the window fills its screen, above all others, whatever anybody did to it.
+    /// During an exhibition, keeps the window full-screen and on top, even if its state is changed from outside.
     fn fill(&mut self, ctx: &egui::Context, now: Moment) {
         let wanted = self.desktop_app.state().exhibit.is_some();
         let level = |level| ViewportCommand::WindowLevel(level);
@@ -255,7 +255,7 @@ impl Program {
                 }
                 let mut commands = vec![
                     ViewportCommand::Minimized(false),
-                    // A screen may be smaller than the window ever is.
+                    // A screen may be smaller than the window's minimum size.
                     ViewportCommand::MinInnerSize(Vec2::ZERO),
                     ViewportCommand::Decorations(false),
                     ViewportCommand::Fullscreen(true),
@@ -274,7 +274,7 @@ impl Program {
         }
     }
 
-    /// Once a run, a window that reaches beyond its screen with its frame is made smaller. The frame is known late.
+    /// Shrinks the window, once per run, if it and its frame exceed the screen. The frame's size is known late.
     fn fit(&mut self, ctx: &egui::Context) {
         let known = ctx.input(|input| {
             let view = input.viewport();
@@ -290,8 +290,7 @@ impl Program {
         }
     }
 
-    /// Keeps the size that the user gave the window, and whether it is maximised; what the system made of it full screen or
-    /// minimised is not kept.
+    /// Saves the size that the user gave the window, and its maximised state; full-screen and minimised sizes are not saved.
     fn keep_size(&mut self, ctx: &egui::Context, now: Moment) {
         let (shown, maximized) = ctx.input(|input| {
             let view = input.viewport();
@@ -299,7 +298,7 @@ impl Program {
             let maximized = view.maximized.filter(|_| !forced);
             (view.inner_rect.filter(|_| !forced), maximized)
         });
-        // Without the zoom: the window is made before there is any.
+        // Without the zoom, which does not exist yet when the window is created.
         let shown = shown.map(|shown| shown.size() * ctx.zoom_factor());
         let Some(shown) = shown else { return };
         let desktop_app = &mut self.desktop_app;
@@ -320,9 +319,9 @@ impl Program {
         }
     }
 
-    /// A moving hand is held before the window goes.
+    /// Holds a moving hand before the window closes.
     fn close(&mut self, ctx: &egui::Context, now: Moment) {
-        // Nobody is asked whom the system ends.
+        // A shutdown by the system shows no question.
         self.closing |= self.ending.is_wanted();
         if !self.closing {
             let asked = ctx.input(|input| input.viewport().close_requested());
@@ -345,17 +344,17 @@ impl Program {
     }
 }
 
-/// A window that is to fill its screen.
+/// Full-screen state of a window.
 #[derive(Debug, Default)]
 struct Filling {
-    /// When it was told to.
+    /// Time of the last request.
     told: Option<Moment>,
-    /// Nobody does what full screen asks for, as there is no window manager: size and place are set.
+    /// True if there is no window manager to obey the request: size and position are set directly.
     by_hand: bool,
 }
 
 impl Filling {
-    /// Whether the window is to be told now: at first, and later where it has not the size of its screen, both ways.
+    /// True if a request is due: at first, and later whenever the window is not as large as its screen.
     fn is_due(&mut self, view: &ViewportInfo, now: Moment) -> bool {
         let waits = |told| now.since(told) < FILL_INTERVAL;
         if self.told.is_some_and(waits) {
@@ -379,7 +378,7 @@ impl Filling {
     }
 }
 
-/// The inside of a window that is to fit on the screen with its frame; `None` if it does.
+/// Inner size at which the window fits on the screen with its frame; `None` if it already fits.
 fn fitting(inner: Vec2, outer: Vec2, screen: Vec2) -> Option<Vec2> {
     let over = (outer - screen).max(Vec2::ZERO);
     (over != Vec2::ZERO).then(|| inner - over)

@@ -1,4 +1,4 @@
-//! The window's pixels without OpenGL: what egui drew goes through the rasteriser to the display. Knows no program.
+//! The window's pixels without OpenGL: egui's output goes through the rasteriser to the display. Independent of the program.
 
 use crate::draw::raster::{Changed, Raster};
 use egui::epaint::ClippedShape;
@@ -8,20 +8,20 @@ use std::num::NonZeroU32;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-/// A display that keeps no copy of a window loses what another window covered; nobody says so.
+/// Interval of full redraws: a display that keeps no copy of a window loses covered parts without notice.
 const WHOLE_EVERY: Duration = Duration::from_secs(1);
 
 /// A window's surface and the picture that is shown on it.
 pub(crate) struct Screen {
     surface: Surface<Rc<Window>, Rc<Window>>,
     raster: Raster,
-    /// When all of it was shown last, changed or not.
+    /// Time of the last full redraw.
     whole_at: Instant,
 }
 
 impl Screen {
     /// # Errors
-    /// What the display system says.
+    /// The display system's error.
     pub(crate) fn new(window: &Rc<Window>) -> Result<Self, SoftBufferError> {
         let context = Context::new(Rc::clone(window))?;
         Ok(Self {
@@ -31,15 +31,15 @@ impl Screen {
         })
     }
 
-    /// Takes over changed textures, drawn or not.
+    /// Applies changed textures, whether the frame is drawn or not.
     pub(crate) fn textures(&mut self, delta: &mut egui::TexturesDelta) {
         self.raster.apply_textures(delta);
     }
 
-    /// Draws and shows a frame. Nothing happens while the window has no area.
+    /// Draws and shows a frame. Does nothing while the window has no area.
     ///
     /// # Errors
-    /// What the display system says.
+    /// The display system's error.
     pub(crate) fn show(
         &mut self,
         window: &Window,
@@ -107,10 +107,9 @@ fn damage(changed: &Changed) -> Option<softbuffer::Rect> {
     })
 }
 
-/// What egui drew in one pass.
+/// Output of one egui pass.
 pub(crate) struct DrawnFrame {
-    /// What is to be painted.
     pub(crate) shapes: Vec<ClippedShape>,
-    /// Scale of the pass.
+    /// Scale of the pass, pixels per point.
     pub(crate) pixels_per_point: f32,
 }

@@ -1,4 +1,4 @@
-//! The window without OpenGL: its event loop, and when it draws. Pixels are the screen's matter.
+//! The window without OpenGL: its event loop and draw timing. The screen module handles the pixels.
 
 use crate::shell::desktop::failure::{DesktopError, cause_of};
 use crate::shell::desktop::program::{Beginning, Program, REPAINT_AT_LEAST, viewport};
@@ -13,11 +13,11 @@ use egui_winit::{State, create_window, process_viewport_commands, update_viewpor
 use std::rc::Rc;
 use std::time::Instant;
 
-/// What reaches the event loop from elsewhere.
+/// Events sent to the event loop.
 enum LoopEvent {
-    /// Something changed that is to be drawn by then.
+    /// A change has to be drawn by this time.
     DrawBy(Instant),
-    /// A screen reader asks.
+    /// Request of a screen reader.
     Access(accesskit_winit::Event),
 }
 
@@ -54,32 +54,31 @@ struct Software {
     failed: Option<DesktopError>,
 }
 
-/// Whether the window stays.
+/// State of the window after a frame.
 #[derive(PartialEq, Eq)]
 enum Stays {
     Open,
     Closes,
 }
 
-/// The window that stands.
 struct OpenWindow {
     window: Rc<Window>,
     state: State,
     screen: Screen,
     program: Program,
     info: ViewportInfo,
-    /// Input that no frame has taken yet.
+    /// Input that no frame has consumed yet.
     pending: RawInput,
     covered: bool,
-    /// When the next frame is wanted.
+    /// Time of the next requested frame.
     due: Option<Instant>,
-    /// When a frame was asked of the display that has not come yet.
+    /// Time of a redraw request that the display has not answered yet.
     asked: Option<Instant>,
 }
 
 impl Software {
     fn stand(&self, events: &ActiveEventLoop) -> Result<OpenWindow, DesktopError> {
-        // A screen reader has to be told of the window before it shows.
+        // A screen reader must know the window before it is shown.
         let hidden = viewport(&self.beginning.layout()).with_visible(false);
         let window = create_window(&self.ctx, events, &hidden)
             .map_err(|error| DesktopError::of(&error.to_string()))?;
@@ -100,7 +99,7 @@ impl Software {
         update_viewport_info(&mut info, &self.ctx, &window, true);
         let wishes = self.wishes.clone();
         self.ctx.set_request_repaint_callback(move |wanted| {
-            // A loop that has ended draws no more.
+            // A loop that has ended draws nothing.
             let _sent = wishes.send_event(LoopEvent::DrawBy(Instant::now() + wanted.delay));
         });
         let program = self.beginning.begin(&self.ctx);
@@ -204,8 +203,8 @@ impl OpenWindow {
         self.due = Some(self.due.map_or(at, |due| due.min(at)));
     }
 
-    /// When there is something to do, drawn or not. Displays keep frames back from windows that nobody sees, some
-    /// without a word: what has not come within [`REPAINT_AT_LEAST`] is not waited for.
+    /// Time of the next action, drawn or not. Displays withhold frames from invisible windows, some silently, so a frame is
+    /// awaited for at most [`REPAINT_AT_LEAST`].
     fn next(&self) -> Option<Instant> {
         self.asked
             .map_or(self.due, |asked| Some(asked + REPAINT_AT_LEAST))
@@ -223,7 +222,7 @@ impl OpenWindow {
         input
     }
 
-    /// One frame, drawn.
+    /// Runs one frame and draws it.
     fn frame(&mut self, ctx: &Context) -> Result<Stays, DesktopError> {
         (self.due, self.asked) = (None, None);
         let input = self.input(ctx);
@@ -251,7 +250,7 @@ impl OpenWindow {
         Ok(self.obey(ctx, root.commands, closing))
     }
 
-    /// What happens while nobody sees the window: the link is drained, a stop is followed, nothing is drawn.
+    /// Runs a step while the window is invisible: drains the link and follows a stop, but draws nothing.
     fn logic(&mut self, ctx: &Context) -> Result<Stays, DesktopError> {
         (self.due, self.asked) = (None, None);
         let input = self.input(ctx);
@@ -268,7 +267,7 @@ impl OpenWindow {
         if closing && !commands.contains(&ViewportCommand::CancelClose) {
             return Stays::Closes;
         }
-        // Screenshots and the like are asked for by nobody here.
+        // Screenshots and similar commands are not used here.
         let mut others = Vec::new();
         process_viewport_commands(ctx, &mut self.info, commands, &self.window, &mut others);
         if !self.info.events.is_empty() {

@@ -1,4 +1,4 @@
-//! Which of the two windows opens, and the one thread that all links run on. Opens none itself.
+//! Chooses one of the two windows, and starts the thread for all links. Opens no window itself.
 
 use crate::link::Clock;
 use crate::shell::desktop::ending::{Ending, on_signals};
@@ -16,8 +16,8 @@ use std::time::Duration;
 /// Opens the window and runs until it is closed.
 ///
 /// # Errors
-/// [`DesktopError`] if no window can be opened. After [`DesktopError::NoOpenGl`] one without OpenGL may still open, in a
-/// new process: a second event loop in one process is refused.
+/// [`DesktopError`] if no window can be opened. After [`DesktopError::NoOpenGl`] one without OpenGL may still open, in a new
+/// process: a second event loop in one process is refused.
 pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(1)
@@ -54,8 +54,8 @@ pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
     }
 }
 
-/// Some graphics libraries panic where a part is missing. Until the window stands this is told in a sentence, so this
-/// thread's panics print nothing; after that they print as ever.
+/// Some graphics libraries panic if a part is missing. Until the window exists, that is reported as an error, so this thread's
+/// panics print nothing; afterwards they print as usual.
 fn silence_until(stands: &Arc<AtomicBool>) {
     let (stands, here) = (Arc::clone(stands), std::thread::current().id());
     let before = std::panic::take_hook();

@@ -1,4 +1,4 @@
-//! A screen without a window: runs a `ui`, settles it, makes its picture and its labels. Reads no clock, drives no app.
+//! A screen without a window: runs a `ui` until it settles, returns its picture and its labels. Reads no clock, drives no app.
 
 use std::time::Duration;
 
@@ -10,13 +10,13 @@ use serde_json::Value;
 use crate::draw::raster::Raster;
 use crate::shell::headless::labels::labels_json;
 
-/// Passes a picture may take to settle. Layout is final at the second; a live view asks for more for ever.
+/// Maximum number of passes of a picture. Layout is final at the second; a live view requests repaints for ever.
 const MAX_PASSES: usize = 4;
-/// Pixels a side may have, so that a mistyped size is not an attempt to take all memory.
+/// Maximum pixels per side, so that a mistyped size does not exhaust the memory.
 const MAX_SIDE: f32 = 16_384.0;
 
-/// An egui context set up so that the same `ui` at the same time gives the same bytes: no animation, no blinking, no
-/// fonts of the system, a fixed scale, dark unless a theme is set.
+/// An egui context that yields the same bytes for the same `ui` at the same time: no animation, no blinking, no system fonts, a
+/// fixed scale, dark unless a theme is set.
 #[derive(Debug)]
 pub struct Canvas {
     context: Context,
@@ -25,20 +25,19 @@ pub struct Canvas {
     scale: f32,
 }
 
-/// What one pass left behind.
+/// Output of one pass.
 #[derive(Debug, Clone)]
 pub struct FrameOut {
-    /// What is to be painted.
     pub shapes: Vec<ClippedShape>,
     /// Scale of the pass, pixels per point.
     pub pixels_per_point: f32,
     /// Everything accessible on screen.
     pub tree: Option<TreeUpdate>,
-    /// When egui wants the next pass; [`Duration::MAX`] for never.
+    /// Delay until egui's next pass; [`Duration::MAX`] for never.
     pub repaint_after: Duration,
 }
 
-/// A finished picture with what stands in it.
+/// A finished picture with its labels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
     /// RGB8, row by row from the top left: pictures are opaque.
@@ -50,8 +49,8 @@ pub struct Picture {
 }
 
 impl Canvas {
-    /// A screen of `size` points (width, height) with `scale` pixels per point; the picture has `size * scale` pixels.
-    /// A scale that is not a positive number is taken as 1.
+    /// A screen of `size` points (width, height) with `scale` pixels per point; the picture has `size * scale` pixels. A scale
+    /// that is not a positive number counts as 1.
     pub fn new(size: (u32, u32), scale: f32) -> Self {
         let scale = if scale.is_finite() && scale > 0.0 {
             scale
@@ -77,7 +76,7 @@ impl Canvas {
         &self.context
     }
 
-    /// Turns off all that moves by itself in the present styles.
+    /// Disables animation and blinking in the current styles.
     pub fn hold_still(&mut self) {
         self.context.all_styles_mut(|style| {
             style.animation_time = 0.0;
@@ -85,8 +84,8 @@ impl Canvas {
         });
     }
 
-    /// Runs one pass at `time_s` seconds. The root `ui` covers the screen, without margin or background.
-    /// Changed textures are taken over, so passes that are never drawn are fine.
+    /// Runs one pass at `time_s` seconds. The root `ui` covers the screen, without margin or background. Changed textures are
+    /// applied even if the pass is never drawn.
     pub fn frame(&mut self, time_s: f64, ui: impl FnMut(&mut Ui)) -> FrameOut {
         let mut output = self.context.run_ui(self.input(time_s), ui);
         self.raster.apply_textures(&mut output.textures_delta);
@@ -99,7 +98,7 @@ impl Canvas {
         }
     }
 
-    /// Runs passes at `time_s` seconds until egui wants no other, at most `MAX_PASSES`, and draws the last.
+    /// Runs passes at `time_s` seconds until egui requests no further one, at most `MAX_PASSES`, and draws the last.
     pub fn picture(&mut self, time_s: f64, mut ui: impl FnMut(&mut Ui)) -> Picture {
         let mut last = self.frame(time_s, &mut ui);
         for _ in 1..MAX_PASSES {

@@ -1,4 +1,4 @@
-//! Cards over the window, brought there as the user brings them. Draws nothing.
+//! Cards over the window, opened by the user's actions. Draws nothing.
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
@@ -17,35 +17,35 @@ use std::time::Duration;
 /// A card that can be shown over the view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SceneCard {
-    /// The question before the factory's parameters.
+    /// Confirmation of a factory reset.
     Reset,
-    /// The checks before a calibration of the force sensors.
+    /// Checks before a calibration of the force sensors.
     Calibrate,
-    /// The question before another IP address.
+    /// Confirmation of another IP address.
     Address,
-    /// The question whether a new id stays, while time runs.
+    /// Countdown during which a new id can be confirmed.
     Keep,
-    /// The question before defaults that hit hard.
+    /// Confirmation of defaults with a high force.
     Danger,
-    /// The page of an exhibition in place of the window: armed, and a visitor plays.
+    /// The page of an exhibition in place of the window: armed, while a visitor plays.
     Exhibit,
-    /// The same with the pad on which staff choose a PIN.
+    /// The page of an exhibition with the keypad on which staff choose a PIN.
     ExhibitPin,
 }
 
-/// A tile that shows more than a fist.
+/// A tile with more motion than a fist.
 const PLAYED_TILE: usize = 3;
-/// An address of this computer, so that the way to it is the same everywhere.
+/// An address of this computer, so that the route to it is the same everywhere.
 const OTHER_ADDRESS: Ipv4Addr = Ipv4Addr::new(127, 0, 0, 20);
-/// A calibration wants the force steady for two seconds.
+/// A calibration requires a steady force for two seconds.
 const CHECK_TIMEOUT: Duration = Duration::from_millis(2600);
-/// A port that is nobody's: nothing is opened.
+/// A placeholder port, which is not opened.
 const LINE: &str = "rs485:/dev/ttyUSB0?baud=115200&id=1";
-/// The id that the hand is given.
+/// The hand's new id.
 const OTHER_ID: i32 = 7;
-/// A hand that changes its id is found long before.
+/// Upper limit: a hand with a changed id is found much earlier.
 const MOVE_TIMEOUT: Duration = Duration::from_secs(20);
-/// Joints with thresholds that hit harder than the factory's.
+/// Joints with higher force thresholds than the factory's.
 const HARD: [(Dof, i32); 3] = [
     (Dof::Middle, 1500),
     (Dof::Index, 1500),
@@ -53,12 +53,12 @@ const HARD: [(Dof, i32); 3] = [
 ];
 
 impl SceneCard {
-    /// True if a hand has to be written to before it is shown, or might be: only the built-in one is.
+    /// True if the card writes to a hand, or might: only the built-in hand may be written to.
     pub const fn wants_built_in(self) -> bool {
         matches!(self, Self::Keep | Self::Danger | Self::Exhibit)
     }
 
-    /// The line that the built-in hand has to stand at, if it has to.
+    /// The line on which the built-in hand must be simulated; `None` if the card does not need one.
     pub fn line(self) -> Option<Endpoint> {
         match self {
             Self::Keep => LINE.parse().ok(),
@@ -68,7 +68,7 @@ impl SceneCard {
 }
 
 impl Driver {
-    /// Opens a card, and lets its checks be made. The question on it is left open.
+    /// Opens a card and runs its checks. Its question stays open.
     pub fn open_card(&mut self, card: SceneCard) {
         match card {
             SceneCard::Reset => self.act(Action::FactoryReset),

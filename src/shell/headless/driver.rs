@@ -1,5 +1,5 @@
-//! The whole program without a window: lets time pass and takes pictures. A built-in hand is driven in virtual time,
-//! so that seconds take milliseconds and two runs give equal bytes. Leaves no file behind.
+//! The whole program without a window: advances time and takes pictures. A built-in hand runs in virtual time, so that seconds
+//! take milliseconds and two runs give equal bytes. Leaves no file behind.
 
 use crate::app::action::Action;
 use crate::app::connect::SimDial;
@@ -29,89 +29,86 @@ use std::time::Duration;
 use tempfile::TempDir;
 use tokio::runtime::{Builder, Runtime};
 
-/// Time between two looks at the link, as the window has between two frames at 50 Hz.
+/// Interval of polling the link, like the window's frames at 50 Hz.
 pub const STEP: Duration = Duration::from_millis(20);
-/// Arming takes less.
+/// Upper limit for arming.
 const ARM_TIMEOUT: Duration = Duration::from_millis(400);
-/// A small grid of grasps takes less.
+/// Upper limit for a small grid of grasps.
 const GRASP_TIMEOUT: Duration = Duration::from_secs(300);
-/// Opening a recording and going to a moment in it: a long one is read from a slow disk.
+/// Upper limit for opening and seeking in a long recording on a slow disk.
 const REPLAY_TIMEOUT: Duration = Duration::from_secs(60);
-/// A hand that is there answers long before.
+/// Upper limit for an answer of a hand; most answer much faster.
 pub const ANSWER_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// What is to be shown, and how.
+/// Options of the pictures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// The hand.
     pub endpoint: Endpoint,
     /// Width and height in points.
     pub size: (u32, u32),
-    /// Pixels a point.
+    /// Pixels per point.
     pub scale: f32,
-    /// Dark or light.
     pub theme: Theme,
     /// Language of the window.
     pub language: Language,
 }
 
-/// Why there is nothing to show.
+/// Reason why there is nothing to show.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum DriveError {
-    /// The runtime could not be made.
+    /// The runtime could not be created.
     #[error("the program cannot start its runtime: {cause}")]
     Runtime {
-        /// The system's words.
+        /// The system's error text.
         cause: String,
     },
-    /// There is no room for what is kept meanwhile.
+    /// The folder for backups could not be created.
     #[error("the program cannot make a folder for backups: {cause}")]
     NoFolder {
-        /// The system's words.
+        /// The system's error text.
         cause: String,
     },
-    /// The link says why the hand does not answer.
+    /// The link reports why the hand does not answer.
     #[error("no hand at {endpoint}: {trouble}")]
     NoHand {
-        /// The hand that was wanted.
+        /// Endpoint of the hand.
         endpoint: Endpoint,
-        /// Why it is not there.
+        /// Trouble reported by the link.
         trouble: LinkTrouble,
     },
-    /// A recording was not opened in time, or not at all.
+    /// A recording could not be opened, or not in time.
     #[error("{} was not opened within {within_s} s", path.display())]
     NotReplayed {
-        /// The file.
         path: PathBuf,
-        /// How long was waited.
+        /// Time limit in seconds.
         within_s: u64,
     },
-    /// Nothing at all was heard in time.
+    /// The hand sent nothing in time.
     #[error(
         "no hand at {endpoint}: nothing came within {after_s} s; check power, cable, address and id"
     )]
     Unanswered {
-        /// The hand that was wanted.
+        /// Endpoint of the hand.
         endpoint: Endpoint,
-        /// How long was waited.
+        /// Time limit in seconds.
         after_s: u64,
     },
 }
 
 /// A running program and the screen it is drawn on.
 pub struct Driver {
-    // The desktop_app's link lives on the runtime, so it goes first.
+    // Dropped first, because its link lives on the runtime.
     desktop_app: DesktopApp,
     canvas: Canvas,
     clock: Clock,
     endpoint: Endpoint,
     runtime: Runtime,
-    /// What a program without a home of its own keeps; it goes with the driver.
+    /// Temporary settings folder, removed with the driver.
     _kept: Option<TempDir>,
 }
 
 impl Driver {
-    /// Starts the program and begins to connect. Nothing is written to the hand, and no settings are read or kept.
+    /// Starts the program and begins to connect. Writes nothing to the hand, and neither reads nor saves settings.
     ///
     /// # Errors
     /// [`DriveError::Runtime`].
@@ -119,8 +116,7 @@ impl Driver {
         Self::begin(scene, scene.endpoint.clone(), None)
     }
 
-    /// As [`Driver::start`] with a built-in hand, which stands at the end of this line, and with a folder for backups, which is
-    /// removed at the end.
+    /// Starts as [`Driver::start`] with a built-in hand on this line, and with a folder for backups, which is removed at the end.
     ///
     /// # Errors
     /// [`DriveError::Runtime`], [`DriveError::NoFolder`].
@@ -178,7 +174,7 @@ impl Driver {
         Ok(driver)
     }
 
-    /// The first frame puts fonts and style into the screen; they must hold still after that.
+    /// Renders a first frame, which installs fonts and style, and then disables animation.
     pub(crate) fn hold_still(&mut self) {
         let now = self.now();
         let desktop_app = &mut self.desktop_app;
@@ -186,7 +182,7 @@ impl Driver {
         self.canvas.hold_still();
     }
 
-    /// Puts on other colours and another language.
+    /// Sets theme and language.
     pub fn dress(&mut self, theme: Theme, language: Language) {
         for wish in [Action::Theme(theme), Action::Language(language)] {
             self.act(wish);
@@ -205,19 +201,19 @@ impl Driver {
         &mut self.desktop_app
     }
 
-    /// Lets one [`STEP`] pass, or what is left if that is less.
+    /// Advances time by one [`STEP`], or by `left` if that is less.
     pub(crate) fn step(&mut self, left: Duration) {
-        // A timer can be made only inside the runtime.
+        // A timer can be created only inside the runtime.
         self.runtime
             .block_on(async { tokio::time::sleep(left.min(STEP)).await });
         let now = self.now();
         let _inside = self.runtime.enter();
         self.desktop_app.logic(now);
-        // What would be drawn between two pictures.
+        // Counts as drawn between two pictures.
         self.desktop_app.app().drawn(now);
     }
 
-    /// Lets time pass until the hand answers.
+    /// Advances time until the hand answers.
     ///
     /// # Errors
     /// [`DriveError::NoHand`] with the first trouble, [`DriveError::Unanswered`] after [`ANSWER_TIMEOUT`].
@@ -257,7 +253,7 @@ impl Driver {
         Ok(())
     }
 
-    /// Lets `time` pass in steps.
+    /// Advances time by `time` in steps.
     pub fn run_for(&mut self, time: Duration) {
         let begun = self.now();
         loop {
@@ -269,14 +265,14 @@ impl Driver {
         }
     }
 
-    /// Asks for something as the user does.
+    /// Performs an action of the user.
     pub(crate) fn act(&mut self, action: Action) {
         let now = self.now();
         let _inside = self.runtime.enter();
         self.desktop_app.app().act(action, now);
     }
 
-    /// Lets time pass until something is so, or for so long at most.
+    /// Advances time until the condition holds, by `within` at most.
     pub(crate) fn until(&mut self, within: Duration, so: impl Fn(&State) -> bool) {
         let begun = self.now();
         while !so(self.desktop_app.state()) && self.now().since(begun) < within {
@@ -284,7 +280,7 @@ impl Driver {
         }
     }
 
-    /// Replays a recording: shows its hand as it was at the end of this stretch, and in the plots just the stretch.
+    /// Replays a recording: shows its hand at the end of a time range, and exactly that range in the plots.
     ///
     /// # Errors
     /// [`DriveError::NotReplayed`].
@@ -306,13 +302,13 @@ impl Driver {
         if !is_there(self.desktop_app.state()) {
             return Err(DriveError::NotReplayed { path, within_s });
         }
-        // The plots begin anew with a hand they see for the first time.
+        // The plots start over with a hand that they see for the first time.
         self.hold_still();
         self.desktop_app.show_stretch((from, to));
         Ok(())
     }
 
-    /// Reads what the hand keeps, and waits for it.
+    /// Reads the hand's stored parameters if due, and waits for them.
     pub(crate) fn read_rows(&mut self) {
         let now = self.now();
         if !self.desktop_app.state().hand().params.is_due(now) {
@@ -322,7 +318,7 @@ impl Driver {
         self.until(ANSWER_TIMEOUT, |state| !state.hand().params.is_busy());
     }
 
-    /// Tries a small grid of grasps on a built-in hand, and lets it run to its end: real trials, in virtual time.
+    /// Runs a small grid of grasps on a built-in hand to its end: real trials, in virtual time.
     pub fn try_grasps(&mut self) {
         let index = |angle| PerDof::from_fn(|dof| (dof == Dof::Index).then_some(angle));
         let first = TrialPlan::default();
@@ -353,8 +349,8 @@ impl Driver {
         self.until(GRASP_TIMEOUT, |state| state.hand().series.is_none());
     }
 
-    /// The whole window with this view open, as it is now. Time stands still, but for a view that reads from the hand when it is
-    /// opened: that is waited for.
+    /// The whole window with this view open, in its current state. Time does not advance, except to wait for a view that reads
+    /// from the hand when it is opened.
     pub fn picture(&mut self, view: View) -> Picture {
         let is_tried = !self.desktop_app.state().trials.sessions.is_empty();
         if view == View::Device || is_tried && matches!(view, View::Tune | View::Compare) {

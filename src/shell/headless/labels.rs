@@ -1,20 +1,20 @@
-//! What stands on screen, as a list for scripts. Draws nothing and presses nothing.
+//! The content of the screen as a list for scripts. Draws nothing and presses nothing.
 
 use std::collections::HashMap;
 
 use egui::accesskit::{Node, NodeId, Role, Toggled, TreeUpdate};
 use serde_json::{Value, json};
 
-/// Rectangles are rounded to this part of a point, so that noise does not change the list.
+/// Rectangles are rounded to this fraction of a point, so that noise does not change the list.
 const PARTS_OF_A_POINT: f64 = 100.0;
 
-/// Everything named or valued in `update`, depth first, as a list of objects
-/// `{"role", "name", "value", "rect": [x, y, w, h], "disabled", "toggled"}`.
+/// Lists everything named or valued in `update`, depth first, as objects `{"role", "name", "value", "rect": [x, y, w, h],
+/// "disabled", "toggled"}`.
 ///
-/// `role` is in `lower_snake_case`. `name` is the visible text, or `null`. `value` is a number, a text, or `null`.
-/// A label that shows a reading has the reading's name as `name` and what is written as `value`.
-/// `rect` is in points from the top left, or `null`. `toggled` is `true`, `false`, `"mixed"`, or `null` if it cannot be.
-/// The order is that of drawing, so equal screens give equal lists.
+/// `role` is in `lower_snake_case`. `name` is the visible text, or `null`. `value` is a number, a text, or `null`. A label that
+/// shows a reading has the reading's name as `name` and the displayed text as `value`. `rect` is in points from the top left, or
+/// `null`. `toggled` is `true`, `false`, `"mixed"`, or `null` if it does not apply. The order is that of drawing, so equal
+/// screens give equal lists.
 pub fn labels_json(update: &TreeUpdate) -> Value {
     let mut nodes: HashMap<NodeId, &Node> =
         update.nodes.iter().map(|(id, node)| (*id, node)).collect();
@@ -26,11 +26,11 @@ pub fn labels_json(update: &TreeUpdate) -> Value {
     let mut list = Vec::new();
     let mut open: Vec<NodeId> = update.tree.iter().map(|tree| tree.root).collect();
     while let Some(id) = open.pop() {
-        // Taken out, so that a node is listed once even in a broken tree.
+        // Removed, so that a node is listed once even in a broken tree.
         let Some(node) = nodes.remove(&id) else {
             continue;
         };
-        // Runs repeat the text of the label or field that holds them.
+        // Text runs repeat the text of their label or field.
         if node.role() == Role::TextRun {
             continue;
         }
@@ -65,8 +65,8 @@ fn entry(node: &Node, names: &HashMap<NodeId, String>) -> Option<Value> {
     }))
 }
 
-/// What a node is called. A plain label keeps its text where others keep their value; one that shows the value of
-/// something has that thing's name too.
+/// Name of a node. A plain label has its text where others have their value; one that shows the value of something also has its
+/// name.
 fn own_text(node: &Node) -> Option<&str> {
     let text = match node.role() {
         Role::Label => node.label().or(node.value()),
@@ -89,7 +89,7 @@ fn name(node: &Node, names: &HashMap<NodeId, String>) -> Option<String> {
 
 fn value(node: &Node) -> Value {
     match (node.numeric_value(), node.value()) {
-        // A number that JSON cannot hold (NaN) becomes null.
+        // A number that JSON cannot represent (NaN) becomes null.
         (Some(number), _) => Value::from(number),
         (None, Some(text)) if node.role() != Role::Label || node.label().is_some() => {
             Value::from(text)

@@ -1,4 +1,4 @@
-//! Pictures and lists of what is on screen, without a display, a GPU or a driver. No window and no command line here.
+//! Pictures and label lists of the screen, without a display, a GPU or a driver. No window and no command line here.
 
 pub mod canvas;
 pub mod cards;

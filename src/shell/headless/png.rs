@@ -6,44 +6,43 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-/// Why a picture could not be saved.
+/// Reason why a picture could not be saved.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ImageError {
-    /// The number of bytes does not fit the size.
+    /// The number of bytes does not match the size.
     #[error("a picture of {width}x{height} has {wanted} bytes, got {got}")]
     Size {
         /// Width in pixels.
         width: u32,
         /// Height in pixels.
         height: u32,
-        /// Bytes of such a picture in RGB8.
+        /// Expected number of RGB8 bytes.
         wanted: u64,
-        /// Bytes given.
+        /// Actual number of bytes.
         got: u64,
     },
-    /// The encoder refused, for instance a picture without pixels.
+    /// The encoder failed, for instance on a picture without pixels.
     #[error("cannot encode a picture of {width}x{height}: {words}")]
     Encode {
         /// Width in pixels.
         width: u32,
         /// Height in pixels.
         height: u32,
-        /// The encoder's words.
+        /// The encoder's error text.
         words: String,
     },
-    /// The file could not be written. The old file, if any, is untouched.
+    /// The file could not be written. The old file, if any, is unchanged.
     #[error("cannot write {}: {words}; choose a folder that exists and that you may write to", path.display())]
     Write {
-        /// The file that was to be made.
+        /// Path of the file.
         path: PathBuf,
-        /// What kind of failure it was.
         kind: io::ErrorKind,
-        /// The system's words.
+        /// The system's error text.
         words: String,
     },
 }
 
-/// RGB8 pixels, row by row from the top left, as the bytes of a PNG file.
+/// Encodes RGB8 pixels, row by row from the top left, as a PNG file.
 ///
 /// # Errors
 /// [`ImageError::Size`] and [`ImageError::Encode`].
@@ -74,7 +73,7 @@ pub fn encode(pixels: &[u8], (width, height): (u32, u32)) -> Result<Vec<u8>, Ima
     Ok(bytes)
 }
 
-/// Saves a picture at `path`, whole or not at all: written beside it first, then renamed.
+/// Saves a picture at `path` atomically: writes it beside the path, then renames it.
 ///
 /// # Errors
 /// Those of [`encode`] and [`ImageError::Write`].
@@ -88,13 +87,13 @@ pub fn save(path: &Path, pixels: &[u8], size: (u32, u32)) -> Result<(), ImageErr
     let part = part_of(path);
     let written = fs::write(&part, bytes).and_then(|()| fs::rename(&part, path));
     if written.is_err() {
-        // Nothing to save of a half-written part, and it may not even exist.
+        // A partial file is useless, and may not even exist.
         fs::remove_file(&part).ok();
     }
     written.map_err(refused)
 }
 
-/// The name under which a file is written until it is whole; the process id keeps two writers apart.
+/// Temporary name of an incomplete file; the process id separates concurrent writers.
 fn part_of(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(format!(".{}.part", std::process::id()));

@@ -1,11 +1,11 @@
-//! One picture of a part of the window, while the real window goes on. Chooses no place and writes no file.
+//! One picture of a part of the window, while the real window keeps running. Chooses no path and writes no file.
 
 use crate::app::settings::{Language, Theme};
 use crate::shell::headless::canvas::Canvas;
 use crate::shell::headless::png;
 use crate::ui;
 
-/// Pixels a point: twice as fine as most displays, for papers.
+/// Pixels per point: twice as fine as most displays, for papers.
 const SCALE: f32 = 2.0;
 
 /// A [`crate::shell::Snap`].

@@ -4,7 +4,7 @@ use crate::figure::shape::rings::{disc, dome, frame, ring_at, rounded};
 use crate::figure::solid::{LoftRing, Skin, Soup, point};
 use glam::{Affine3, Vec3};
 
-/// Points around a finger.
+/// Number of vertices around a finger.
 const AROUND: u8 = 12;
 /// Middle planes of the first and second segment.
 const FIRST_MIDDLE_MM: f32 = -6.65;
@@ -37,7 +37,7 @@ pub(crate) fn first(soup: &mut Soup) {
     fork(soup, &base, [28.4, 2.9], [[11.6, 7.4], [6.7, 9.3]]);
 }
 
-/// The second segment of a finger: its length from joint to tip, and how thick it is beside the index's.
+/// The second segment of a finger: its length from joint to tip, and its thickness relative to the index finger's.
 pub(crate) fn second(soup: &mut Soup, length: f32, thick: f32) {
     let stretch = |at: f32| 8.8 + (at - 8.8) * (length - 8.8) / (53.9 - 8.8);
     let rings = SECOND.map(|[along, rise, front, back, side, square]| {
@@ -55,7 +55,7 @@ pub(crate) fn second(soup: &mut Soup, length: f32, thick: f32) {
     pad(soup, &base, &rings, [stretch(32.0), stretch(54.6)]);
 }
 
-/// A segment that begins round about its joint: radius and half width of that end, then the rest.
+/// A segment with a rounded end at its joint: radius and half width of that end, then the remaining rings.
 pub(crate) fn bone(
     soup: &mut Soup,
     base: &Affine3,
@@ -74,8 +74,8 @@ pub(crate) fn bone(
     soup.loft(base, AROUND, &[(Skin::Hinge, &knuckle), rest]);
 }
 
-/// Two plates with pins that hold the next joint between them: where their middle is, how long and high they are from
-/// there, where they begin and end to the sides.
+/// Two plates with pins that hold the next joint between them: the position of their centre, their half length and half height,
+/// and the lateral distances of their inner and outer faces.
 pub(crate) fn fork(
     soup: &mut Soup,
     base: &Affine3,
@@ -119,7 +119,7 @@ pub(crate) fn pin(soup: &mut Soup, base: &Affine3, at: f32) {
     }
 }
 
-/// A sensor on the front of a fingertip, from one place along it to another.
+/// A sensor on the front of a fingertip, between two positions along it.
 pub(crate) fn pad(soup: &mut Soup, base: &Affine3, rings: &[LoftRing], [from, to]: [f32; 2]) {
     let place = |u: f32, v: f32| {
         let [row, column] = rounded(u, v, 2.6);

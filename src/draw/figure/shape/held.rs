@@ -1,4 +1,4 @@
-//! What is not the hand: what it holds, and the arrow of a force.
+//! Shapes apart from the hand: held objects, and the arrow of a force.
 
 use crate::figure::shape::rings::{disc, frame};
 use crate::figure::solid::{LoftRing, Skin, Solid, Soup};
@@ -6,7 +6,7 @@ use glam::{Affine3, Vec3};
 use std::f32::consts::PI;
 use std::sync::LazyLock;
 
-/// What waits before the simulated hand, drawn where its fingers meet it.
+/// Object in front of the simulated hand, drawn where the fingers touch it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Held {
     /// A soft ball.
@@ -16,7 +16,7 @@ pub enum Held {
     Cup,
 }
 
-/// The shape of what is held, in the frame of the palm of a right hand.
+/// Shape of a held object, in the palm's frame of a right hand.
 pub fn held(held: Held) -> &'static Solid {
     static SHAPES: LazyLock<[Solid; 3]> = LazyLock::new(|| {
         let ball = |step: u8| (f32::from(step) / 12.0 * PI).sin_cos();
@@ -51,7 +51,7 @@ pub fn held(held: Held) -> &'static Solid {
 
 const BALL_MM: f32 = 35.5;
 
-/// Along and radius, from the bottom over the brim to what is seen of the inside.
+/// Position along the axis and radius, from the bottom over the brim to the visible part of the inside.
 const CUP: [[f32; 2]; 9] = [
     [43.0, 24.0],
     [41.5, 25.5],
@@ -64,7 +64,7 @@ const CUP: [[f32; 2]; 9] = [
     [-26.0, 26.4],
 ];
 
-/// An arrow along y, 1 long.
+/// An arrow of length 1 along y.
 pub fn arrow() -> &'static Solid {
     static SHAPE: LazyLock<Solid> = LazyLock::new(|| {
         let mut soup = Soup::new(false);

@@ -1,4 +1,4 @@
-//! The shapes, modelled from the lengths of the hand: rings of lofts in millimetres, each in the frame of its segment.
+//! The shapes, modelled from the dimensions of the hand: lofts through rings in millimetres, each in the frame of its segment.
 
 use crate::figure::solid::{Solid, Soup};
 use glam::Vec3;
@@ -16,7 +16,7 @@ pub use held::{Held, arrow, held};
 
 use Segment::{Index1, Index2, Little2, Middle2, Palm, Thumb1, Thumb2, Thumb3, Thumb4};
 
-/// The shapes of the hand, each made once; the second set is for small pictures.
+/// The shapes of the hand, each built once; the second set is for small pictures.
 static SHAPES: [LazyLock<Vec<(Segment, Solid)>>; 2] = [
     LazyLock::new(|| models(false)),
     LazyLock::new(|| models(true)),
@@ -43,14 +43,13 @@ fn model(segment: Segment, is_small: bool) -> Solid {
     soup.solid()
 }
 
-/// The shape of a segment.
 pub fn solid(segment: Segment, is_small: bool) -> Option<&'static Solid> {
     let [large, small] = &SHAPES;
     let mut all = if is_small { small } else { large }.iter();
     all.find(|(own, _)| *own == segment).map(|(_, solid)| solid)
 }
 
-/// Out of a fingertip's pad, and along it to the tip: in the frame of [`Segment::tip`].
+/// Directions out of a fingertip's pad, and along it to the tip, in the frame of [`Segment::tip`].
 pub const fn pad_ways(finger: Finger) -> [Vec3; 2] {
     match finger {
         Finger::Thumb => [Vec3::new(-0.176, 0.984, 0.0), Vec3::new(0.984, 0.176, 0.0)],

@@ -48,13 +48,12 @@ const UPPER: [LoftRing; 8] = [
     [143.6, -1.0, 10.2, 10.4, 42.0, 3.7],
 ];
 
-/// Under the knuckles.
 const TOP: [LoftRing; 1] = [[145.2, -0.8, 7.8, 7.8, 40.2, 3.6]];
 
-/// Where the lower shell ends, and the thumb's foot stands.
+/// Height at which the lower shell ends and the thumb's foot sits.
 const DECK_MM: f32 = 57.2;
 
-/// How far the motor of the thumb stands out of the palm.
+/// Protrusion of the thumb's motor from the palm.
 fn ball(at: Vec3) -> f32 {
     let along = step(0.0, 44.0, at.z) * step(DECK_MM + 0.2, DECK_MM, at.z);
     let edge = 1.0 - 0.07 * step(DECK_MM - 1.6, DECK_MM, at.z);
@@ -63,7 +62,7 @@ fn ball(at: Vec3) -> f32 {
     20.5 * along * edge * across * step(-12.0, 12.0, at.y)
 }
 
-/// The surface of the palm at a place across and along it.
+/// Point of the palm's surface at a position across and along it.
 fn surface(x: f32, z: f32) -> Vec3 {
     let rings: &[LoftRing] = if z < DECK_MM { &LOWER } else { &UPPER };
     let [_, rise, front, _, side, square] = ring_at(rings, z);
@@ -96,7 +95,7 @@ pub(crate) fn palm(soup: &mut Soup) {
     for shard in soup.loft(&base, 32, &shells) {
         let is_above = shard.skin == Skin::Hinge || shard.at.iter().all(|at| at.z > DECK_MM);
         if is_above && shard.at.iter().all(|at| at.y > 8.0) {
-            // Under the plate, the lower shell's edge, and all that touches it.
+            // Under the plate, the lower shell's edge, and everything that touches it.
             shard.lift = -9.0;
         }
         shard.at = shard.at.map(|at| at + Vec3::new(0.0, ball(at), -low(at)));
@@ -113,7 +112,6 @@ pub(crate) fn palm(soup: &mut Soup) {
 const PLATE_STEPS: u8 = 8;
 const WITHIN_RIM: f32 = 0.955;
 
-/// The plate in the palm, with its rim.
 fn plate(soup: &mut Soup) {
     let outermost = 1.0 - 2.0 / f32::from(PLATE_STEPS);
     let narrow = |share: f32| {
@@ -140,7 +138,6 @@ fn plate(soup: &mut Soup) {
     }
 }
 
-/// The head of a screw in the upper shell.
 fn screw(soup: &mut Soup, x: f32, z: f32) {
     let place = |u: f32, v: f32| {
         let [row, column] = rounded(u, v, 2.0).map(|share| share * SCREW_MM);
@@ -149,5 +146,4 @@ fn screw(soup: &mut Soup, x: f32, z: f32) {
     soup.sheet(4, Skin::Hinge, place);
 }
 
-/// Radius of the head of a screw.
 const SCREW_MM: f32 = 2.1;

@@ -49,7 +49,6 @@ pub(crate) fn second(soup: &mut Soup) {
     fork(soup, &base, [32.6, 0.2], [[12.4, 7.4], [8.2, 10.5]]);
 }
 
-/// The third segment.
 pub(crate) fn third(soup: &mut Soup) {
     let base = base(21.903, 12.816);
     bone(soup, &base, [9.4, 8.0], (Skin::Metal, &THIRD));
@@ -63,7 +62,7 @@ pub(crate) fn fourth(soup: &mut Soup) {
     pad(soup, &base, &FOURTH, [13.0, 35.0]);
 }
 
-/// The foot, a drum on the deck of the palm, with the fork of the first bend.
+/// The foot: a drum on the deck of the palm, with the fork of the first bending joint.
 pub(crate) fn foot(soup: &mut Soup) {
     let drum = [disc(-11.4, 13.2), disc(-9.9, 13.2)];
     let collar = [disc(-9.6, 12.0), disc(-7.8, 12.0), disc(-7.2, 11.2)];

@@ -1,4 +1,4 @@
-//! Messages as entries.
+//! Converts messages to entries.
 
 use crate::hand::command::WRITE_LEN_MAX;
 use crate::hand::{Finger, Group, Groups, HandSample, Moment, Reply, Span};
@@ -16,17 +16,17 @@ use crate::record::{
 };
 use std::sync::Arc;
 
-/// Makes entries of messages: each reading is the newest of everything before it, as it was when it was heard.
+/// Converts messages to entries: each reading holds the newest of all groups before it, as at the time of receipt.
 #[derive(Debug, Clone)]
 pub struct EntryDecoder {
     base_nanos: u64,
     sample: HandSample,
-    /// Whether events that a reader finds out by itself are entries all the same.
+    /// True if derived events are returned as entries too.
     with_derived: bool,
 }
 
 impl EntryDecoder {
-    /// For a file whose moments count from here, nanoseconds since 1970.
+    /// For a file whose moments count from this time, nanoseconds since 1970.
     pub fn new(base_nanos: u64) -> Self {
         Self {
             base_nanos,
@@ -35,7 +35,7 @@ impl EntryDecoder {
         }
     }
 
-    /// For a file that begins so.
+    /// For a file with this opening.
     pub(crate) fn of(opening: &Opening) -> Self {
         Self {
             with_derived: opening.is_imported(),
@@ -43,9 +43,8 @@ impl EntryDecoder {
         }
     }
 
-    /// The entry of a message; `None` for one that is derived from others, is empty, or cannot be read. Its time is that of the
-    /// log: when it was received and when it was asked for, nanoseconds since 1970. What its stamps say counts only against each
-    /// other.
+    /// Returns the entry of a message; `None` if it is derived from others, empty, or unreadable. `times` are those of the log:
+    /// receipt and request, nanoseconds since 1970. Of its stamps only the difference counts.
     pub fn decode(&mut self, topic: Topic, times: (u64, u64), bytes: &[u8]) -> Option<Entry> {
         let at = moment_of(self.base_nanos, times.0);
         match topic {
@@ -68,7 +67,7 @@ impl EntryDecoder {
         }
     }
 
-    /// When it was asked for.
+    /// Time of the request.
     fn asked(&self, (log, publish): (u64, u64), (asked, received): (Time, Time)) -> Moment {
         let before = if asked.has_ended() || received.has_ended() {
             log.saturating_sub(publish)
@@ -162,7 +161,7 @@ impl EntryDecoder {
             }));
         }
         if !state.is_live() {
-            // Nothing of an earlier conversation is known in the next.
+            // No knowledge carries over from an earlier conversation.
             self.sample = HandSample::default();
         }
         Some(Entry::Heard(Record::State { at, state }))

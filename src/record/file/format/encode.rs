@@ -1,4 +1,4 @@
-//! Entries as messages.
+//! Converts entries to messages.
 
 use crate::hand::grip::{Grip, GripEstimate, GripState};
 use crate::hand::kinematics::{joint_names, joint_radians};
@@ -14,31 +14,29 @@ use crate::record::grip::{GripFollower, states};
 use crate::record::{Direction, Entry, LinkState, Piece, PieceKind, Record, WriteFate};
 use std::time::Duration;
 
-/// A grip that stays the same is told again after this.
+/// Interval at which an unchanged grip is repeated.
 const GRIP_INTERVAL: Duration = Duration::from_secs(1);
 
-/// The word of a refusal to arm among events; the words are the reason in JSON.
+/// Event kind of a refusal to arm; its text is the reason in JSON.
 pub(crate) const ARM_REFUSED: &str = "arm_refused";
 
 /// One message, ready to be written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
     pub topic: Topic,
-    /// When it was received, nanoseconds since 1970.
+    /// Time of receipt, nanoseconds since 1970.
     pub log_nanos: u64,
-    /// When it was asked for, nanoseconds since 1970; when it was received where nobody asked.
+    /// Time of the request, nanoseconds since 1970; that of receipt for data that was not requested.
     pub publish_nanos: u64,
-    /// The message in CDR.
     pub bytes: Vec<u8>,
 }
 
-/// Makes messages of entries.
 #[derive(Debug)]
 pub(crate) struct EntryEncoder {
     base_nanos: u64,
     joint_names: Vec<String>,
     grip: GripFollower,
-    /// The grip that was told last, and when.
+    /// Time and states of the last grip message.
     told: Option<(Moment, [GripState; 6])>,
 }
 
@@ -52,12 +50,12 @@ impl EntryEncoder {
         }
     }
 
-    /// For the file after this one. What was learnt of the grip is known in it.
+    /// For the recording's next file, with the current state of the grip.
     pub(crate) fn next(&self, opening: &Opening) -> Self {
         Self::following(opening, self.grip.clone())
     }
 
-    /// For a file before which the grip was followed so far.
+    /// For a file with this state of the grip before its first entry.
     pub(crate) fn following(opening: &Opening, grip: GripFollower) -> Self {
         Self {
             grip,
@@ -65,7 +63,7 @@ impl EntryEncoder {
         }
     }
 
-    /// Takes an entry of which no messages are wanted: those of later ones depend on it.
+    /// Applies an entry without output, because later messages depend on it.
     pub(crate) fn pass(&mut self, entry: &Entry) {
         self.grip.take(entry);
     }
@@ -88,17 +86,16 @@ impl EntryEncoder {
         }
     }
 
-    /// The messages of one entry.
     pub(crate) fn encode(&mut self, entry: &Entry) -> Vec<Message> {
         let mut messages = self.own(entry);
         let at = entry.at();
-        // Wherever a file begins or is cut, and where readings stop, the grip is known a second later at most.
+        // At the start of a file or a cut, and when readings stop, the grip is known at most a second later.
         let grip = self.grip.take(entry).unwrap_or_else(|| self.grip.known(at));
         messages.extend(self.tell(&grip, at));
         messages
     }
 
-    /// The grip, if it changed or was not told for a while.
+    /// A message with the grip, if it changed or was not written for a while.
     fn tell(&mut self, grip: &Grip, at: Moment) -> Option<Message> {
         let is_told = |(told, before): (Moment, [GripState; 6])| {
             before == states(grip) && at.since(told) < GRIP_INTERVAL
@@ -216,7 +213,7 @@ impl EntryEncoder {
         self.message(Topic::Wire, piece.at, &wire)
     }
 
-    /// One reply: the joints' groups in one message, each fingertip in one of its own.
+    /// Messages of one reply: one for the joints' groups, one for each fingertip.
     fn reading(&self, sample: &HandSample, fresh: Groups) -> Vec<Message> {
         let mut messages = Vec::new();
         let of_joints = Group::ALL
@@ -296,7 +293,7 @@ impl EntryEncoder {
     }
 }
 
-/// The stable word of a state.
+/// Stable name of a state.
 pub(crate) const fn link_state_key(state: LinkState) -> &'static str {
     match state {
         LinkState::Offline => "offline",

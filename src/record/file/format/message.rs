@@ -1,18 +1,18 @@
-//! What stands in the messages of a recording file, as ROS 2 defines them. The definitions stand in each file, too.
+//! Messages of a recording file, in ROS 2's types. Their definitions are stored in each file, too.
 
 use serde::{Deserialize, Serialize};
 
 /// `builtin_interfaces/msg/Time`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Time {
-    /// Seconds since 1970.
+    /// Whole seconds since 1970.
     pub sec: i32,
-    /// And nanoseconds.
+    /// Remaining nanoseconds.
     pub nanosec: u32,
 }
 
 impl Time {
-    /// From nanoseconds since 1970.
+    /// Converts nanoseconds since 1970.
     pub fn of_nanos(nanos: u64) -> Self {
         const SECOND: u64 = 1_000_000_000;
         Self {
@@ -21,7 +21,7 @@ impl Time {
         }
     }
 
-    /// True of all times after January 2038, which have no other number of seconds.
+    /// True of all times after January 2038, whose seconds saturate.
     pub(crate) const fn has_ended(self) -> bool {
         self.sec == i32::MAX
     }
@@ -36,36 +36,36 @@ impl Time {
 /// `std_msgs/msg/Header`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Header {
-    /// When it was measured.
+    /// Time of the measurement.
     pub stamp: Time,
-    /// The frame of coordinates.
+    /// Coordinate frame.
     pub frame_id: String,
 }
 
 /// `sensor_msgs/msg/JointState`: the twelve joints of the model.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct JointState {
-    /// When it was received.
+    /// Time of receipt.
     pub header: Header,
-    /// As the model's joints are named.
+    /// Names of the model's joints.
     pub name: Vec<String>,
-    /// In rad; NaN where the angle is not known.
+    /// In rad; NaN if the angle is unknown.
     pub position: Vec<f64>,
-    /// Empty.
+    /// Always empty.
     pub velocity: Vec<f64>,
-    /// Empty: the hand tells forces of six drives, not of twelve joints.
+    /// Always empty: the hand reports forces of six drives, not of twelve joints.
     pub effort: Vec<f64>,
 }
 
 /// One reply about the joints. Each list has six values in the order of the registers (little, ring, middle, index, thumb bend,
-/// thumb rotation), or is empty if the reply was not about it.
+/// thumb rotation), or is empty if the reply did not include the group.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct StateMessage {
-    /// When the request left.
+    /// Time at which the request was sent.
     pub asked: Time,
-    /// When the reply was there.
+    /// Time at which the reply was complete.
     pub received: Time,
-    /// ANGLE_SET; -1 leaves the joint alone.
+    /// ANGLE_SET; -1 means no new target.
     pub angle_set: Vec<i16>,
     /// FORCE_SET, g.
     pub force_set: Vec<i16>,
@@ -91,9 +91,9 @@ pub struct StateMessage {
 /// The block of one fingertip.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TouchMessage {
-    /// When the request left.
+    /// Time at which the request was sent.
     pub asked: Time,
-    /// When the reply was there.
+    /// Time at which the reply was complete.
     pub received: Time,
     /// Normal force, N.
     pub normal_n: f32,
@@ -103,26 +103,26 @@ pub struct TouchMessage {
     pub direction_deg: u16,
     /// Proximity, counts.
     pub proximity: i32,
-    /// Whether the check word is right.
+    /// True if the check word is correct.
     pub check_ok: bool,
     /// Counts of the eight channels.
     pub channels: Vec<u32>,
-    /// The 58 bytes as they were sent.
+    /// The 58 bytes as received.
     pub raw: Vec<u8>,
 }
 
-/// What is gripped, in words: unknown, open, moving, empty, holding, slipping, lost or too_hard.
+/// State of the grip: unknown, open, moving, empty, holding, slipping, lost or too_hard.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct GripMessage {
-    /// When that was told.
+    /// Time of this message.
     pub at: Time,
     /// State of the whole grasp.
     pub state: String,
-    /// When that state began.
+    /// Start of that state.
     pub since: Time,
-    /// When the oldest reading that it rests on was asked for; 0 if there is none.
+    /// Request time of the oldest reading that it is based on; 0 if there is none.
     pub asked: Time,
-    /// The same of little, ring, middle, index, thumb.
+    /// States of little, ring, middle, index, thumb.
     pub finger_states: Vec<String>,
     pub finger_since: Vec<Time>,
     pub finger_asked: Vec<Time>,
@@ -132,62 +132,61 @@ pub struct GripMessage {
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct CommandMessage {
     pub sent: Time,
-    /// Its number on this connection.
+    /// Number of the write on this connection.
     pub number: u64,
-    /// Why it was written: hold, arming, setpoint, request or setting.
+    /// Cause: hold, arming, setpoint, request or setting.
     pub cause: String,
-    /// The register's name; empty if it has none.
+    /// Name of the register; empty if it has none.
     pub register: String,
-    /// The first byte's address.
+    /// Address of the first byte.
     pub address: u16,
-    /// The bytes in memory order.
+    /// Bytes in memory order.
     pub bytes: Vec<u8>,
 }
 
-/// The end of a write.
+/// The outcome of a write.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct CommandFate {
-    /// When that was known.
+    /// Time at which it was known.
     pub at: Time,
-    /// The number of the write.
+    /// Number of the write.
     pub number: u64,
     /// acknowledged, refused or unanswered.
     pub fate: String,
-    /// The protocol's word for a refusal.
+    /// The protocol's reason for a refusal.
     pub reason: String,
 }
 
-/// Where the link stood.
+/// State of the link.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct LinkMessage {
     pub at: Time,
     /// offline, identifying, monitoring, armed, holding or fault.
     pub state: String,
-    /// True if the state began here; else it was told again.
+    /// True if the state began here; false if it is a repetition.
     pub entered: bool,
-    /// Why there was no live hand.
+    /// Reason why there was no live hand.
     pub trouble: String,
-    /// All of the status, in JSON; empty if it did not change.
+    /// The whole status, in JSON; empty if unchanged.
     pub status: String,
-    /// Figures of the link, in JSON; empty if not told here.
+    /// Statistics of the link, in JSON; empty if not included.
     pub figures: String,
 }
 
-/// What else happened.
+/// Any other event.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct EventMessage {
     pub at: Time,
-    /// What, in one word.
+    /// Kind of the event, in one word.
     pub kind: String,
     pub words: String,
 }
 
-/// Bytes that went over the wire.
+/// Bytes on the wire.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct WireMessage {
     pub at: Time,
     /// 0 the wire was opened, 1 bytes to the hand, 2 bytes from the hand, 3 the wire broke, 4 it was closed.
     pub kind: u8,
-    /// The bytes.
     pub bytes: Vec<u8>,
 }

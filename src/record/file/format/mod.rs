@@ -1,4 +1,4 @@
-//! What stands in a file: topics, messages and their encoding as ROS 2 has them, and what is told of the hand at its begin.
+//! Content of a file: topics, messages and their ROS 2 encoding, and the opening that describes the hand.
 
 pub mod cdr;
 pub mod decode;

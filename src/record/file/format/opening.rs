@@ -1,4 +1,4 @@
-//! What a recording file says of itself at its beginning.
+//! The opening of a recording file, which describes the recording.
 
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
@@ -6,44 +6,44 @@ use mcap::records::{Record, op};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// The name of what is said of a recording among a file's metadata.
+/// Name of the opening among a file's metadata records.
 pub(crate) const METADATA: &str = "handscope";
 
-/// Which file of a recording it is: a long one goes on in a new file each hour.
+/// Number of a file within its recording: a long one continues in a new file each hour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Part {
-    /// When the recording began. By this, the hand and [`Opening::base_nanos`] its files know each other.
+    /// Start of the recording. Together with the hand and [`Opening::base_nanos`] it identifies the recording's files.
     pub recording_began: Moment,
-    /// The first is 1.
+    /// Counted from 1.
     pub number: u32,
 }
 
-/// What a recording begins with.
+/// The opening of a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Opening {
-    /// The time of [`Moment::ZERO`], nanoseconds since 1970.
+    /// Time of [`Moment::ZERO`], nanoseconds since 1970.
     pub base_nanos: u64,
-    /// When the recording began.
+    /// Start of the file.
     pub began: Moment,
-    /// The hand's endpoint.
+    /// Endpoint of the hand.
     pub hand: String,
-    /// Whether it is the built-in hand.
+    /// True for the built-in hand.
     pub simulated: bool,
-    /// The hand's side, as the user said.
+    /// Side of the hand, as set by the user.
     pub side: Side,
-    /// The program's version.
+    /// Version of the program.
     pub version: String,
-    /// `None` if it is all there is: of a version without parts, or not recorded, but made of something else.
+    /// `None` if the file is the whole recording: from a version without parts, or not recorded, but converted.
     pub part: Option<Part>,
 }
 
 impl Opening {
-    /// The time of [`Moment::ZERO`] where the day is not known: a second after 1970, because 0 is no time of a message.
+    /// Time of [`Moment::ZERO`] if the date is unknown: a second after 1970, because 0 is not a valid message time.
     pub const NO_DATE: u64 = 1_000_000_000;
-    /// Ends the version of a recording that was read from values.
+    /// Suffix of the version of an imported recording.
     pub const IMPORTED: &'static str = "(imported)";
 
-    /// Of a file that says nothing of itself, whose first message is of this time: neither the hand nor its side is known.
+    /// Opening of a file that has none and whose first message is of this time: neither the hand nor its side is known.
     pub const fn unknown(first_nanos: u64) -> Self {
         Self {
             base_nanos: first_nanos,
@@ -56,7 +56,7 @@ impl Opening {
         }
     }
 
-    /// Whether it is the built-in hand; `None` if nobody knows which hand it is.
+    /// True for the built-in hand; `None` if the hand is unknown.
     pub const fn is_simulated(&self) -> Option<bool> {
         if self.hand.is_empty() {
             None
@@ -65,12 +65,12 @@ impl Opening {
         }
     }
 
-    /// True if the recording was read from values: its events stand in it as they were written, and the day is not known.
+    /// True if the recording was imported from values: its events are stored as imported, and its date is unknown.
     pub fn is_imported(&self) -> bool {
         self.version.ends_with(Self::IMPORTED)
     }
 
-    /// Of a recording that begins now, at this moment of the program and this time since 1970. The hand is its endpoint.
+    /// Opening of a recording that starts now, at this moment of the program and this time since 1970. `hand` is its endpoint.
     pub fn begin(hand: String, (now, since_1970): (Moment, Duration), side: Side) -> Self {
         let zero = since_1970.saturating_sub(now.since(Moment::ZERO));
         Self {
@@ -84,13 +84,13 @@ impl Opening {
         }
     }
 
-    /// When the recording began, by the computer's clock.
+    /// Start of the file, by the computer's clock.
     pub fn began_since_1970(&self) -> Duration {
         Duration::from_nanos(nanos_of(self.base_nanos, self.began))
     }
 
-    /// The name of its file: the time of day out of `2026-11-21T09:30:00Z`, and the hand's kind and place without anything that a
-    /// file system could object to.
+    /// Name of its file: the time of day from a stamp such as `2026-11-21T09:30:00Z`, and the hand's kind and address without
+    /// characters that a file system might reject.
     pub fn file_name(&self, stamp: &str) -> String {
         let time = stamp.chars().skip_while(|letter| *letter != 'T');
         let time: String = time.filter(char::is_ascii_digit).collect();
@@ -102,8 +102,8 @@ impl Opening {
         format!("{time}-{}.mcap", words.join("-"))
     }
 
-    /// The same by another clock, which is so many nanoseconds after the one that it tells of. It counts from the beginning, as the
-    /// program itself may have begun before that clock's first moment.
+    /// Converts to a clock that is ahead by this many nanoseconds. Moments then count from the start, because the program may
+    /// have started before the first moment of that clock.
     pub(crate) fn moved(self, nanos: i64) -> Self {
         let began = nanos_of(self.base_nanos, self.began);
         Self {
@@ -114,7 +114,7 @@ impl Opening {
         }
     }
 
-    /// What stands in a file.
+    /// Metadata record of the opening.
     pub(crate) fn metadata(&self) -> BTreeMap<String, String> {
         let side = match self.side {
             Side::Left => "left",
@@ -141,7 +141,7 @@ impl Opening {
         map
     }
 
-    /// From the content of a record of metadata; `None` if it is another.
+    /// Parses the content of a metadata record; `None` if it is another record.
     pub(crate) fn of_record(content: &[u8]) -> Option<Self> {
         match mcap::parse_record(op::METADATA, content) {
             Ok(Record::Metadata(read)) if read.name == METADATA => {
@@ -151,9 +151,9 @@ impl Opening {
         }
     }
 
-    /// From what stands in a file; `None` if it is not ours.
+    /// Parses a file's metadata; `None` if its checksum is wrong or a value is missing.
     pub(crate) fn of_metadata(map: &BTreeMap<String, String>) -> Option<Self> {
-        // A flipped digit here would put the whole recording at another time.
+        // A flipped digit here would shift the whole recording in time.
         if map.get(CHECK) != Some(&check(map)) {
             return None;
         }
@@ -183,7 +183,7 @@ pub(crate) const fn moment_of(base_nanos: u64, nanos: u64) -> Moment {
     Moment::from_micros(nanos.saturating_sub(base_nanos) / 1000)
 }
 
-/// The keys of which file of a recording it is.
+/// Keys of the recording's start and the part number.
 const RECORDING: &str = "recording_micros";
 const PART: &str = "part";
 
@@ -194,7 +194,7 @@ fn part(map: &BTreeMap<String, String>) -> Option<Part> {
     })
 }
 
-/// The key of the sum over all others: MCAP has none over metadata.
+/// Key of the checksum over all other entries, which MCAP lacks for metadata.
 const CHECK: &str = "crc32";
 
 fn check(map: &BTreeMap<String, String>) -> String {

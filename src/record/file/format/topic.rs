@@ -1,5 +1,5 @@
-//! The topics of a recording file and the definitions of their messages. Numbers are fixed: a file whose list of channels is damaged
-//! is read all the same.
+//! The topics of a recording file and the definitions of their messages. Channel numbers are fixed, so that a file with damaged
+//! channel records can still be read.
 
 use crate::hand::Finger;
 
@@ -11,32 +11,30 @@ pub enum Topic {
     State,
     /// Writes.
     Command,
-    /// Ends of writes.
+    /// Outcomes of writes.
     CommandFate,
-    /// Where the link stands.
+    /// State of the link.
     Link,
-    /// What else happened.
+    /// Other events.
     Event,
     /// Bytes on the wire.
     Wire,
     /// Blocks of one fingertip.
     Touch(Finger),
-    /// What is gripped.
+    /// State of the grip.
     Grip,
 }
 
 /// A definition that several topics may share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Schema {
-    /// Its number in a file.
+    /// Number in a file.
     pub id: u16,
-    /// Its name.
     pub name: &'static str,
-    /// Its text.
     pub text: &'static str,
 }
 
-/// A definition, followed by that of the times in it.
+/// Appends the definition of `Time` to a definition.
 macro_rules! with_time {
     ($text:literal) => {
         concat!(
@@ -194,7 +192,7 @@ builtin_interfaces/Time[] finger_asked
     ),
 };
 
-/// Topics without the fingertips' and what came after them in the order of their numbers.
+/// Topics before those of the fingertips, in the order of their channel numbers.
 const PLAIN: [Topic; 7] = [
     Topic::Joints,
     Topic::State,
@@ -204,19 +202,19 @@ const PLAIN: [Topic; 7] = [
     Topic::Event,
     Topic::Wire,
 ];
-/// Number of the first fingertip's channel.
+/// Channel number of the first fingertip.
 const FIRST_TIP: u16 = 8;
-/// Number of the channel behind the last fingertip's.
+/// Channel number of the grip, after the last fingertip's.
 const GRIP_CHANNEL: u16 = 13;
 
 impl Topic {
-    /// All, in the order of their numbers.
+    /// All topics, in the order of their channel numbers.
     pub fn all() -> impl Iterator<Item = Self> {
         let tips = Finger::ALL.map(Self::Touch);
         PLAIN.into_iter().chain(tips).chain([Self::Grip])
     }
 
-    /// The number of its channel.
+    /// Channel number.
     pub const fn channel(self) -> u16 {
         match self {
             Self::Joints => 1,
@@ -237,7 +235,6 @@ impl Topic {
         Self::all().find(|topic| topic.channel() == channel)
     }
 
-    /// Its name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Joints => "/joint_states",
@@ -256,7 +253,7 @@ impl Topic {
         }
     }
 
-    /// What its messages are.
+    /// Definition of its messages.
     pub const fn schema(self) -> Schema {
         match self {
             Self::Joints => JOINT_STATE,

@@ -1,57 +1,56 @@
-//! What is found of a recording file, and how its bytes are read: no further than the longest record of ours.
+//! The records found in a recording file, and reading of their bytes, limited to our longest record.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// No record of ours is longer; what says so is damaged.
+/// Maximum length of our records; a greater length is damage.
 pub const RECORD_MAX: u64 = 8 * 1024 * 1024;
-/// Other programs put pictures into a chunk, or all of a recording. One that is longer than a record of ours is read piece by piece,
-/// and holds no longer message than this.
+/// Maximum length of a message in a long chunk. Other programs put pictures, or a whole recording, into one chunk; one that is
+/// longer than our records is read piece by piece.
 pub const LONG_MESSAGE_MAX: u64 = 32 * 1024 * 1024;
-/// All chunks of a file may unpack to so many bytes, and to so many times its length; what claims more is not unpacked. A recording
-/// packs to a tenth, a black picture to a thousandth.
+/// All chunks of a file may unpack to this many bytes plus this multiple of the file's length; chunks beyond that are not
+/// unpacked. A recording packs to a tenth, a black picture to a thousandth.
 pub const UNPACKED_MAX: u64 = 64 * 1024 * 1024;
 pub const UNPACKED_TIMES: u64 = 100;
-/// Chunks of one file: more than a day of one hand, in 32 MiB. A file made of tiny ones is read without those after.
+/// Maximum number of chunks of one file: more than a day of one hand, in 32 MiB. Further ones are ignored.
 pub const CHUNKS_MAX: usize = 1024 * 1024;
-/// Attachments and metadata of one file; ours have one attachment a minute.
+/// Maximum number of attachments and of metadata records of one file; ours have one attachment a minute.
 pub const PLACES_MAX: usize = 64 * 1024;
-/// Begins and ends a file.
+/// Bytes at the start and the end of a file.
 pub(crate) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
-/// Operation code and length before each record.
+/// Length of the operation code and length before each record.
 pub(super) const HEAD: u64 = 9;
-/// The same as a number of bytes in memory.
+/// [`HEAD`] as a `usize`.
 pub(super) const HEAD_LEN: usize = 9;
 
-/// Where a record stands.
+/// Position of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
-    /// Of its operation code.
+    /// Offset of its operation code.
     pub offset: u64,
     /// Bytes after operation code and length.
     pub len: u64,
 }
 
-/// A chunk and the times of its messages, in nanoseconds since 1970. Messages that stand in a file outside of chunks are taken
-/// together by the hundred kilobytes, and read as if they were one.
+/// A chunk and the times of its messages, in nanoseconds since 1970. Messages outside of chunks are grouped, up to some hundred
+/// kilobytes, and read like a chunk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ChunkPlace {
-    /// Whether it is a chunk, or records outside of chunks.
     pub kind: ChunkKind,
     pub place: Place,
-    /// Of its first message.
+    /// Time of its first message.
     pub first_nanos: u64,
-    /// Of its last message.
+    /// Time of its last message.
     pub last_nanos: u64,
 }
 
-/// How messages stand in a file.
+/// Form in which messages are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChunkKind {
-    /// In a chunk of ours, whose sum protects them.
+    /// A chunk of ours, protected by a checksum.
     Chunk,
-    /// The same of another program, which may pack what it likes.
+    /// A chunk of another program, with any compression ratio.
     Foreign,
-    /// The same, too long to be held.
+    /// A chunk that is too long for memory.
     Long,
     /// Outside of chunks.
     Loose,
@@ -60,17 +59,17 @@ pub enum ChunkKind {
 /// The records of a file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Found {
-    /// In the order of the file.
+    /// In file order.
     pub chunks: Vec<ChunkPlace>,
     pub attachments: Vec<Place>,
     pub metadata: Vec<Place>,
-    /// True if the file was ended as it should be.
+    /// True if the file was closed properly.
     pub closed: bool,
-    /// True if the file has an index that does not fit it, or that is damaged; it was gone around.
+    /// True if the file has an index that is damaged or does not match; it was ignored.
     pub stale_index: bool,
-    /// How many messages were written, where the file says so.
+    /// Number of messages according to the file; `None` if it has no statistics.
     pub messages: Option<u64>,
-    /// Bytes in which no record was found, or no room for one.
+    /// Bytes without records, or beyond the limits.
     pub skipped: u64,
 }
 
@@ -115,20 +114,20 @@ pub(super) fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
     Some(u64::from_le_bytes(*eight))
 }
 
-/// The content of a record.
+/// Reads the content of a record.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub(crate) fn content<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<Vec<u8>> {
     let mut bytes = vec![0; usize::try_from(place.len.min(RECORD_MAX)).unwrap_or_default()];
     read_at(file, place.offset + HEAD, &mut bytes)?;
     Ok(bytes)
 }
 
-/// The whole of a record, operation code and length included.
+/// Reads a whole record, including operation code and length.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub(crate) fn whole<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<Vec<u8>> {
     let len = place.len.min(RECORD_MAX) + HEAD;
     let mut bytes = vec![0; usize::try_from(len).unwrap_or_default()];
@@ -136,10 +135,10 @@ pub(crate) fn whole<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<Ve
     Ok(bytes)
 }
 
-/// A record to be read piece by piece.
+/// A reader for a record, to be read piece by piece.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub(crate) fn reader<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<io::Take<&mut F>> {
     file.seek(SeekFrom::Start(place.offset))?;
     Ok(file.take(place.len + HEAD))

@@ -1,4 +1,4 @@
-//! The records of a file one after the other. After damage it goes on at the next place where a chunk can begin.
+//! Finds the records of a file one after the other. After damage it continues at the next possible start of a chunk.
 
 use super::found::{
     ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, Place, RECORD_MAX, read_at, u32_at, u64_at,
@@ -6,20 +6,20 @@ use super::found::{
 use mcap::records::op;
 use std::io::{self, Read, Seek};
 
-/// Bytes of a chunk before what was compressed, without the compression's name: two times, a length, a sum, two lengths.
+/// Bytes of a chunk before its compressed data, without the compression's name: two times, a length, a checksum, two lengths.
 const CHUNK_HEAD: usize = 8 + 8 + 8 + 4 + 4 + 8;
-/// The longest name of a compression, `zstd` among them.
+/// Maximum length of a compression's name, such as `zstd`.
 const NAME_MAX: usize = 8;
-/// Bytes of a record that are looked at: operation code, length, and all that a chunk says of itself.
+/// Inspected bytes of a record: operation code, length, and a chunk's whole header.
 pub(super) const LOOKED_AT: usize = HEAD_LEN + CHUNK_HEAD + NAME_MAX;
-/// Bytes read at once where records follow each other: the indexes of a chunk's messages, and the head of the next chunk.
+/// Bytes read at once where records follow each other: the message indexes of a chunk, and the header of the next chunk.
 const AHEAD: usize = 4096;
 /// Bytes searched at once for the next chunk.
 const SEARCH: usize = 64 * 1024;
-/// The last code of a record of MCAP.
+/// The last operation code of an MCAP record.
 const OP_LAST: u8 = op::DATA_END;
 
-/// Adds the records of a file that is so long.
+/// Adds the records of a file of length `len`.
 pub(super) fn one_by_one<F: Read + Seek>(
     file: &mut F,
     len: u64,
@@ -32,7 +32,7 @@ pub(super) fn one_by_one<F: Read + Seek>(
     while at + HEAD <= len {
         let left = usize::try_from(len - at).unwrap_or(usize::MAX);
         let wanted = left.min(LOOKED_AT);
-        // What was read ahead lies after this if a search has gone back.
+        // The buffer is ahead of this position if a search has gone back.
         let from = at.checked_sub(ahead_at).map(usize::try_from);
         let mut from = from.and_then(Result::ok).unwrap_or(usize::MAX);
         if from.saturating_add(wanted) > ahead.len() {
@@ -49,7 +49,7 @@ pub(super) fn one_by_one<F: Read + Seek>(
                 (before, at) = (Some(at), next);
             }
             None => {
-                // Perhaps the length of the record before is wrong, and chunks stand in what it claims.
+                // The previous record's length may be wrong, and hide chunks in its range.
                 let from = before.take().unwrap_or(at) + 1;
                 let next = next_chunk(file, from, len)?;
                 found.skipped += next.saturating_sub(at);
@@ -61,7 +61,7 @@ pub(super) fn one_by_one<F: Read + Seek>(
     Ok(())
 }
 
-/// Where the record ends, if one can stand here.
+/// End of the record, if a valid one can begin here.
 pub(super) fn plausible(head: &[u8], at: u64, len: u64) -> Option<u64> {
     let op = *head.first()?;
     let size = u64_at(head, 1)?;
@@ -73,13 +73,13 @@ pub(super) fn plausible(head: &[u8], at: u64, len: u64) -> Option<u64> {
     (end <= len && is_known).then_some(end)
 }
 
-/// True for what stands before the index of a file: another code there is a flipped one, and would hide what it stands before.
+/// True for records of the data section: another code there is a bit error, and would hide the records behind it.
 fn belongs_to_data(head: &[u8]) -> bool {
     let size = u64_at(head, 1).unwrap_or_default();
     match head.first() {
         _ if chunk_times(head).is_some() => true,
         Some(&op::MESSAGE_INDEX) => {
-            // Of a channel, so many bytes, in pairs of a time and a place.
+            // Channel, length in bytes, then pairs of time and offset.
             let bytes = u32_at(head, HEAD_LEN + 2).map(u64::from);
             bytes.is_some_and(|bytes| bytes.checked_add(6) == Some(size) && bytes % 16 == 0)
         }
@@ -89,25 +89,25 @@ fn belongs_to_data(head: &[u8]) -> bool {
     }
 }
 
-/// The times of a chunk; `None` if this is none. They themselves may be anything, and so may its operation code: what it says of its
-/// lengths agrees in no other record.
+/// The times of a chunk; `None` if this is not a chunk. The times and the operation code may be wrong: only in a chunk do its
+/// length fields agree.
 pub(super) fn chunk_times(head: &[u8]) -> Option<(u64, u64)> {
     let chunk = chunk_head(head).filter(|chunk| chunk.unpacked <= RECORD_MAX)?;
     Some((chunk.first, chunk.last))
 }
 
-/// What a chunk says of itself.
+/// Header fields of a chunk.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ChunkHead {
     first: u64,
     last: u64,
-    /// Bytes of its records.
+    /// Uncompressed size of its records in bytes.
     pub(super) unpacked: u64,
-    /// Bytes of the chunk's own record.
+    /// Size of the chunk's own record in bytes.
     pub(super) size: u64,
 }
 
-/// What a chunk of any length says of itself; `None` if this is none.
+/// Parses the header of a chunk of any length; `None` if this is not a chunk.
 pub(super) fn chunk_head(head: &[u8]) -> Option<ChunkHead> {
     let size = u64_at(head, 1)?;
     let body = head.get(HEAD_LEN..)?;
@@ -145,7 +145,7 @@ fn note(head: &[u8], at: u64, found: &mut Found) {
     }
 }
 
-/// The next place where a whole chunk can stand, else the end.
+/// The next position of a whole chunk, else the end.
 fn next_chunk<F: Read + Seek>(file: &mut F, from: u64, len: u64) -> io::Result<u64> {
     next_place(file, (from, len), |head, place| {
         head.first() == Some(&op::CHUNK)
@@ -154,14 +154,15 @@ fn next_chunk<F: Read + Seek>(file: &mut F, from: u64, len: u64) -> io::Result<u
     })
 }
 
-/// The next place whose bytes are as wanted, else the end: where a chunk or a message may begin. What is looked at ends with the part.
+/// The next position whose bytes satisfy the predicate, among possible starts of chunks or messages, else the end. The inspected
+/// bytes are limited to the buffer.
 pub(super) fn next_place<F: Read + Seek>(
     file: &mut F,
     (from, len): (u64, u64),
     is_wanted: impl Fn(&[u8], u64) -> bool,
 ) -> io::Result<u64> {
     let mut buffer = vec![0; SEARCH];
-    // Most often the next chunk is near.
+    // The next chunk is usually near.
     let (mut at, mut step) = (from, AHEAD);
     while at + HEAD < len {
         let there = usize::try_from(len - at).unwrap_or(usize::MAX).min(step);
@@ -171,7 +172,7 @@ pub(super) fn next_place<F: Read + Seek>(
         let is_end = at + there as u64 >= len;
         let places = if is_end { there } else { there - LOOKED_AT };
         let codes = bytes.iter().enumerate().take(places);
-        // Most bytes are seen to be no beginning by themselves: a file may have gigabytes of zeros.
+        // Most bytes are ruled out by the operation code alone: a file may contain gigabytes of zeros.
         for (nth, _) in codes.filter(|(_, code)| matches!(**code, op::CHUNK | op::MESSAGE)) {
             let head = bytes.get(nth..there.min(nth + LOOKED_AT));
             let place = at + nth as u64;

@@ -1,4 +1,4 @@
-//! The records of a file that was ended: its own index tells of them.
+//! The records of a closed file, from its own index.
 
 use super::found::{
     ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, Place, RECORD_MAX, read_at, u32_at, u64_at,
@@ -6,12 +6,12 @@ use super::found::{
 use mcap::records::op;
 use std::io::{self, Read, Seek};
 
-/// The index of a closed file is read piece by piece; none of its records is longer.
+/// Maximum length of an index record; the index is read piece by piece.
 const INDEX_RECORD_MAX: usize = 64 * 1024;
 /// Bytes of the index read at once.
 const INDEX_PIECE: usize = 1024 * 1024;
 
-/// What the index tells; `None` if there is none that is whole.
+/// Reads the index; `None` if it is missing or damaged.
 pub(super) fn by_index<F: Read + Seek>(file: &mut F, len: u64) -> io::Result<Option<Found>> {
     const TAIL: usize = 9 + 20 + 8;
     let tail_at = len.saturating_sub(TAIL as u64);
@@ -54,20 +54,21 @@ pub(super) fn by_index<F: Read + Seek>(file: &mut F, len: u64) -> io::Result<Opt
     let mut header = [0; HEAD_LEN];
     read_at(file, MAGIC.len() as u64, &mut header)?;
     let header = MAGIC.len() as u64 + HEAD + u64_at(&header, 1).unwrap_or_default();
-    // What it tells of fills the file from its header to the end of the data: it leaves nothing out, and is of this file.
+    // The indexed records fill the file from its header to the end of the data: nothing is missing, and the index belongs to this
+    // file.
     let data = start.saturating_sub(header + HEAD + 4);
     Ok((whole && index.told == data).then_some(index.found))
 }
 
-/// What the index of a closed file tells so far.
+/// Content of the index read so far.
 struct Index {
     found: Found,
     hash: crc32fast::Hasher,
-    /// Where the index begins: what it tells of stands before.
+    /// Offset of the index; indexed records precede it.
     start: u64,
-    /// Where the last chunk ends. The next comes after, else one could be told of any number of times.
+    /// End of the last chunk. The next one must come after it, so that none can be listed repeatedly.
     after: u64,
-    /// Bytes of all that it tells of.
+    /// Total bytes of the indexed records.
     told: u64,
 }
 
@@ -85,7 +86,7 @@ impl Index {
         }
     }
 
-    /// Takes the whole records of some bytes; how long they are. `None` if they do not tell of the file's own.
+    /// Parses the whole records of some bytes; returns their length. `None` if they are invalid for this file.
     fn take(&mut self, bytes: &[u8]) -> Option<usize> {
         let mut rest = bytes;
         while let Some((op, body, next)) = record(rest) {
@@ -139,7 +140,7 @@ impl Index {
     }
 }
 
-/// Operation code, content, and what follows it.
+/// Splits off a record: operation code, content, and the remaining bytes.
 pub(crate) fn record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     let (op, rest) = bytes.split_first()?;
     let len = usize::try_from(u64_at(rest, 0)?).ok()?;

@@ -6,37 +6,35 @@ use mcap::records::op;
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::io::{self, Read};
 
-/// No message of ours is longer. Small parts of a long one could take many times its room.
+/// Maximum length of our messages. Small parts of a longer one could occupy many times its size.
 const MESSAGE_MAX: usize = 1024 * 1024;
-/// Ours pack to a tenth. What claims to unpack to so many times its length, and more than this, is none of ours.
+/// Maximum unpacking ratio of our chunks beyond the free amount. Ours pack to a tenth.
 const PACKED_TIMES_MAX: u64 = 200;
 const PACKED_FREE: u64 = 64 * 1024;
-/// Bytes of a long chunk that are read at once.
+/// Bytes of a long chunk read at once.
 const READ_AT_ONCE: usize = 64 * 1024;
 
 /// One record of a chunk.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ChunkRecord<'a> {
-    /// The content of a schema's or a channel's record, behind its operation code.
+    /// Operation code and content of a schema or channel record.
     Definition(u8, &'a [u8]),
     Message(ChunkMessage<'a>),
 }
 
-/// One message as it stands in a chunk.
+/// One message as stored in a chunk.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ChunkMessage<'a> {
-    /// The number of its channel.
     pub(crate) channel: u16,
-    /// Its own number: in what Handscope writes, one more than that of the message before.
+    /// Sequence number: in Handscope's files, one more than that of the previous message.
     pub(crate) sequence: u32,
-    /// When it was received and asked for, nanoseconds since 1970.
+    /// Times of receipt and of the request, nanoseconds since 1970.
     pub(crate) times: (u64, u64),
-    /// What stands in it.
     pub(crate) data: &'a [u8],
 }
 
-/// Gives each record of a chunk; false if the chunk is damaged, and then it gives none of it. Outside of chunks, where no sum tells,
-/// it gives what stands before the damage.
+/// Passes on each record of a chunk; false if the chunk is damaged, in which case it passes on none. Outside of chunks, which
+/// have no checksum, it passes on the records before the damage.
 pub(crate) fn records(
     chunk: &mut [u8],
     kind: ChunkKind,
@@ -46,7 +44,7 @@ pub(crate) fn records(
         return false;
     }
     if let (ChunkKind::Chunk | ChunkKind::Foreign, Some(code)) = (kind, chunk.first_mut()) {
-        // Its length and its sum say whether it is one. A flipped bit here would hide it.
+        // Its lengths and checksum identify a chunk. A bit error in the operation code would hide it.
         *code = op::CHUNK;
     }
     let options = LinearReaderOptions::default()
@@ -54,15 +52,15 @@ pub(crate) fn records(
         .with_skip_end_magic(true)
         .with_prevalidate_chunk_crcs(true)
         .with_record_length_limit(usize::try_from(RECORD_MAX).unwrap_or(usize::MAX));
-    // Memory can always be read.
+    // Reading from memory cannot fail.
     let len = chunk.len().max(1);
     read(&mut &*chunk, len, options, &mut take).unwrap_or_default()
 }
 
-/// The same of a chunk that is too long to be held. It gives records before it can tell that the chunk is damaged.
+/// Passes on the records of a chunk that is too long for memory. Some may be passed on before damage is detected.
 ///
 /// # Errors
-/// What the system says.
+/// The system's error.
 pub(crate) fn long_records(
     from: &mut impl Read,
     mut take: impl FnMut(ChunkRecord<'_>),
@@ -111,7 +109,7 @@ fn is_inflated(chunk: &[u8]) -> bool {
     })
 }
 
-/// The same without what defines its channels.
+/// Passes on the messages of a chunk only, as [`records`] does.
 pub(crate) fn messages(
     chunk: &mut [u8],
     kind: ChunkKind,
@@ -124,8 +122,8 @@ pub(crate) fn messages(
     })
 }
 
-/// A message's record: number of the channel, number of the message, and two times stand before its content. The content of one
-/// that is too long to be ours is left out.
+/// Parses a message record: channel number, sequence number and two times precede its content. Content that is too long to be
+/// ours is omitted.
 fn message(record: &[u8]) -> Option<ChunkMessage<'_>> {
     let (channel, rest) = record.split_first_chunk()?;
     let (sequence, rest) = rest.split_first_chunk()?;

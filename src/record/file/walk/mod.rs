@@ -1,7 +1,7 @@
-//! Finds the records of a recording file that may be cut, damaged, or made to harm: every length is checked before it is used.
+//! Finds the records of a recording file that may be truncated, damaged or malicious: every length is checked before it is used.
 //!
-//! `index` asks the index of a file that was ended, and `hops` goes from record to record where there is none; `times` corrects what
-//! it found there. `survey` reads the whole of a file that another program has written or changed.
+//! `index` reads the index of a closed file, and `hops` goes from record to record if there is none; `times` corrects the times
+//! that `hops` found. `survey` reads the whole of a file that another program has written or changed.
 
 mod found;
 mod hops;
@@ -24,10 +24,10 @@ use index::by_index;
 use std::io::{self, Read, Seek, SeekFrom};
 use times::mend;
 
-/// Finds the records: by the file's own index where there is one that is whole, else one after the other.
+/// Finds the records: by the file's own index if it is intact, else one after the other.
 ///
 /// # Errors
-/// What the system says; nothing that stands in the file is an error.
+/// The system's error; invalid content is not an error.
 pub fn walk<F: Read + Seek>(file: &mut F) -> io::Result<Found> {
     let len = file.seek(SeekFrom::End(0))?;
     if let Some(found) = by_index(file, len)? {
@@ -40,12 +40,12 @@ pub fn walk<F: Read + Seek>(file: &mut F) -> io::Result<Found> {
     Ok(found)
 }
 
-/// True if these bytes begin with the record of a chunk, whatever its operation code says.
+/// True if these bytes begin with the record of a chunk, regardless of the operation code.
 pub(crate) fn is_chunk(bytes: &[u8]) -> bool {
     hops::chunk_times(bytes).is_some()
 }
 
-/// How long these bytes say that the record is with which they begin.
+/// Length field of the record that begins here; 0 if it is missing.
 pub(crate) fn record_len(bytes: &[u8]) -> u64 {
     found::u64_at(bytes, 1).unwrap_or_default()
 }

@@ -1,5 +1,5 @@
-//! All of a file that another program has written or changed: its messages may stand in chunks or outside of them, in any order,
-//! under any numbers. The whole file is read once; its own index is only held against what is found.
+//! Reads a file that another program has written or changed: its messages may be inside or outside of chunks, in any order, with
+//! any numbers. The whole file is read once; its own index is only compared with the result.
 
 use super::found::{
     ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, Place, RECORD_MAX, UNPACKED_MAX,
@@ -12,35 +12,35 @@ use crate::record::file::clock::LogClock;
 use mcap::records::op;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
-/// Messages outside of chunks are taken together up to so many bytes.
+/// Maximum bytes of a group of messages outside of chunks.
 const LOOSE_MAX: u64 = 256 * 1024;
 /// Bytes read at once.
 const READ_AT_ONCE: usize = 64 * 1024;
-/// Where a message is searched after damage, one of another time is none.
+/// Maximum time difference to the last message at which a candidate after damage is accepted.
 const NEAR_NANOS: u64 = 3_600_000_000_000;
 /// Channel, number, two times.
 const MESSAGE_HEAD: u64 = 2 + 4 + 8 + 8;
 
-/// What there is in a file.
+/// Content of a file.
 #[derive(Debug, Default)]
 pub(crate) struct Survey {
-    /// Chunks, and messages outside of them; those that are whole.
+    /// Intact chunks, and messages outside of chunks.
     pub(crate) found: Found,
     pub(crate) definitions: Definitions,
     pub(crate) clock: LogClock,
-    /// Chunks that cannot be read.
+    /// Number of unreadable chunks.
     pub(crate) damaged: u64,
-    /// Bytes that all chunks claim to unpack to, and those of the chunks that were left out as that is too much.
+    /// Claimed unpacked bytes of all chunks, and of those skipped because of the limit.
     pub(crate) unpacked: u64,
     pub(crate) left_out: u64,
-    /// True if the sum over all of the data is not that of the file, where messages stand outside of chunks: no other sum tells.
+    /// True if messages are outside of chunks, and the checksum over the data, their only one, is wrong.
     pub(crate) sum_differs: bool,
 }
 
 /// Reads all of a file.
 ///
 /// # Errors
-/// What the system says; nothing that stands in the file is an error.
+/// The system's error; invalid content is not an error.
 pub(crate) fn survey<F: Read + Seek>(file: &mut F) -> io::Result<Survey> {
     let len = file.seek(SeekFrom::End(0))?;
     let mut surveyor = Surveyor {
@@ -62,7 +62,7 @@ pub(crate) fn survey<F: Read + Seek>(file: &mut F) -> io::Result<Survey> {
     Ok(surveyor.survey)
 }
 
-/// True if the record consists of a text and of what else fills its length, as far as that can be seen from its first bytes.
+/// True if the record consists of a text and a second field that fill its length, as far as its first bytes show.
 fn is_pair(head: &[u8]) -> bool {
     let fits = || {
         let first = u64::from(u32_at(head, HEAD_LEN)?);
@@ -77,14 +77,14 @@ struct Surveyor<'a, F: Read + Seek> {
     file: BufReader<&'a mut F>,
     len: u64,
     survey: Survey,
-    /// Messages outside of chunks that are still to be looked at: from and to.
+    /// Range of pending messages outside of chunks: start and end.
     loose: Option<(u64, u64)>,
     /// Time of the newest message so far.
     newest: u64,
 }
 
 impl<F: Read + Seek> Surveyor<'_, F> {
-    /// The first bytes of what stands here.
+    /// The first bytes of the record at this offset.
     fn head(&mut self, at: u64) -> io::Result<Vec<u8>> {
         let left = usize::try_from(self.len - at).unwrap_or(usize::MAX);
         let mut head = vec![0; left.min(LOOKED_AT)];
@@ -95,7 +95,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         Ok(head)
     }
 
-    /// Goes through the data; where it ends and the sum over it, if it was ended.
+    /// Reads the data section; returns its end and its checksum, if it was closed.
     fn data(&mut self) -> io::Result<Option<(u64, u32)>> {
         let mut at = MAGIC.len() as u64;
         while at + HEAD <= self.len {
@@ -137,7 +137,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         Ok(None)
     }
 
-    /// Where the record ends, if one can stand here.
+    /// End of the record, if a valid one can begin here.
     fn end(&self, head: &[u8], at: u64) -> Option<u64> {
         let size = u64_at(head, 1)?;
         let as_told = || {
@@ -145,20 +145,20 @@ impl<F: Read + Seek> Surveyor<'_, F> {
             (end <= self.len).then_some(end)
         };
         match head.first() {
-            // Pictures and films may be as long as they like.
+            // Pictures and films may have any length.
             Some(&op::ATTACHMENT) if size > RECORD_MAX => as_told(),
             Some(&op::CHUNK) if chunk_head(head).is_some() => as_told(),
-            // One that claims to be longer would hide what defines the channels.
+            // A wrong, longer length would hide the channel definitions.
             Some(&(op::HEADER | op::METADATA)) if !is_pair(head) => None,
             Some(&op::MESSAGE) if size < MESSAGE_HEAD => None,
             Some(&op::DATA_END) if size != 4 => None,
-            // What stands behind the data has no place in it.
+            // Records of the summary do not belong to the data.
             Some(&(op::FOOTER | op::CHUNK_INDEX | op::STATISTICS | op::SUMMARY_OFFSET)) => None,
             _ => plausible(head, at, self.len),
         }
     }
 
-    /// The next place where a chunk or a message can stand.
+    /// The next position of a possible chunk or message.
     fn after_damage(&mut self, from: u64) -> io::Result<u64> {
         let (len, newest, definitions) = (self.len, self.newest, &self.survey.definitions);
         next_place(&mut self.file, (from, len), |head, at| {
@@ -205,7 +205,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         if !is_long {
             return self.look_at(ChunkKind::Foreign, place);
         }
-        // Its sum is right only at its end, and nothing counts of one that is damaged.
+        // Its checksum is verified only at its end, and a damaged one must not count.
         let is_whole = long_records(&mut reader(&mut self.file, place)?, |_| ())?;
         if is_whole {
             self.look_at(ChunkKind::Long, place)
@@ -215,7 +215,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         }
     }
 
-    /// Reads a chunk: what it defines, what it holds, and when that was.
+    /// Reads a chunk: its definitions, its messages, and their times.
     fn look_at(&mut self, kind: ChunkKind, place: Place) -> io::Result<()> {
         let mut times: Option<(u64, u64)> = None;
         let (definitions, clock) = (&mut self.survey.definitions, &mut self.survey.clock);
@@ -241,7 +241,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         if let Some((_, last)) = times {
             self.newest = last;
         }
-        // Nothing is known yet of when messages without a time were.
+        // The times of messages without a log time are still unknown.
         let unknown = has_unlogged.then_some((0, u64::MAX));
         if let Some((first_nanos, last_nanos)) = unknown.or(times) {
             self.survey.found.chunk(ChunkPlace {
@@ -254,7 +254,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         Ok(())
     }
 
-    /// Goes through the index, and holds it against what was found.
+    /// Reads the index, and compares it with the records found.
     fn index(&mut self, from: u64) -> io::Result<()> {
         let mut at = from;
         let (mut told, mut strangers) = (0_usize, 0_usize);
@@ -286,7 +286,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         let chunks = survey.found.chunks.iter();
         let chunks = chunks.filter(|chunk| chunk.kind != ChunkKind::Loose);
         let has_index = told + strangers > 0;
-        // Chunks that hold no message or are damaged are told of, too.
+        // The index also lists chunks that are empty or damaged.
         let misses = has_index && told < chunks.count();
         let points_aside = has_index && told == 0;
         let counts_others = survey.damaged == 0
@@ -299,7 +299,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         Ok(())
     }
 
-    /// The sum over the first bytes of the file.
+    /// Checksum over the first bytes of the file.
     fn sum(&mut self, to: u64) -> io::Result<u32> {
         self.file.seek(SeekFrom::Start(0))?;
         let mut hash = crc32fast::Hasher::new();

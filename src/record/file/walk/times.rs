@@ -1,16 +1,16 @@
-//! The times of chunks found without an index. No sum protects what a chunk's head says of them, so those that do not fit their
-//! neighbours are taken from the chunk's messages.
+//! Corrects the times of chunks found without an index. No checksum protects those in a chunk's header, so times that do not fit
+//! the neighbours are replaced by those of the chunk's messages.
 
 use super::found::{ChunkPlace, Found, whole};
 use super::messages::messages;
 use std::io::{self, Read, Seek};
 
-/// Entries of several sources come in almost the order of time.
+/// Maximum deviation from the order of time between several sources.
 const APART_NANOS: u64 = 1_000_000_000;
-/// No chunk of ours is longer.
+/// Maximum duration of our chunks.
 const LENGTH_NANOS: u64 = 10_000_000_000;
 
-/// Corrects the times that cannot be right.
+/// Corrects implausible times.
 pub(super) fn mend<F: Read + Seek>(file: &mut F, found: &mut Found) -> io::Result<()> {
     let mut before: Option<u64> = None;
     for at in 0..found.chunks.len() {
@@ -18,7 +18,7 @@ pub(super) fn mend<F: Read + Seek>(file: &mut F, found: &mut Found) -> io::Resul
         let Some(chunk) = found.chunks.get_mut(at) else {
             break;
         };
-        // The definitions stand in a chunk without messages, which has no times.
+        // The definitions are in a chunk without messages, which has no times.
         let is_empty = (chunk.first_nanos, chunk.last_nanos) == (0, 0);
         if !is_empty && !fits(chunk, before, after) {
             let mut bytes = whole(file, chunk.place)?;
@@ -42,7 +42,7 @@ pub(super) fn mend<F: Read + Seek>(file: &mut F, found: &mut Found) -> io::Resul
     Ok(())
 }
 
-/// True if the times can be right. Nothing follows the last chunk that its times could be compared with.
+/// True if the times are plausible. The last chunk has no successor to compare with, so it is never accepted.
 fn fits(chunk: &ChunkPlace, before: Option<u64>, after: Option<u64>) -> bool {
     let length = chunk.last_nanos.checked_sub(chunk.first_nanos);
     let follows = |first: u64, then: u64| then.saturating_add(APART_NANOS) >= first;
