@@ -1,4 +1,4 @@
-//! A figure beside what it should be, and what it was.
+//! A figure with its judgement and its history.
 
 use crate::checkup::kept::Kept;
 use crate::checkup::measure::Measured;
@@ -10,16 +10,16 @@ use crate::hand::Dof;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Check {
     pub measured: Measured,
-    /// What it was at the first check-up of this hand, and at the last before this one.
+    /// The value at the first check-up of this hand, and at the last one before this.
     pub first: Option<f64>,
     pub last: Option<f64>,
     pub light: Light,
-    /// Over the last check-ups; this one is the last.
+    /// Over the most recent check-ups; this one is the last point.
     pub trend: Trend,
 }
 
 impl Check {
-    /// Of a figure of now, and the earlier check-ups of this hand, the oldest first.
+    /// Judges a new figure against the earlier check-ups of this hand, oldest first.
     pub fn of(measured: Measured, at: &str, earlier: &[Kept]) -> Self {
         let same = |own: &&Measured| (own.what, own.of) == (measured.what, measured.of);
         let find = |kept: &Kept| kept.figures.iter().find(same).and_then(|own| own.value);
@@ -40,19 +40,19 @@ impl Check {
         }
     }
 
-    /// Whether it goes one way.
+    /// The drift of this figure; `None` while it shows no trend.
     pub fn drift(&self) -> Option<Drift> {
         self.trend.drift(self.measured.what.row().change)
     }
 }
 
-/// All figures of a check-up of now, judged.
+/// Judges all figures of a new check-up.
 pub fn checks(measured: Vec<Measured>, at: &str, earlier: &[Kept]) -> Vec<Check> {
     let measured = measured.into_iter();
     measured.map(|own| Check::of(own, at, earlier)).collect()
 }
 
-/// A joint that did not reach its ends, or was not measured: what is measured of such a hand is no birth record of it.
+/// The first joint that did not reach its ends, or was not measured. The check-up of such a hand is not stored as its birth record.
 pub fn stopped_early(checks: &[Check]) -> Option<Dof> {
     let is_end = |what: Subject| matches!(what, Subject::OpenEnd | Subject::BentEnd);
     let ends = checks.iter().filter(|own| is_end(own.measured.what));

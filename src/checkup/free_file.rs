@@ -1,5 +1,5 @@
-//! What the joints of one hand read when they touch nothing, kept in a file of that hand: measured by its check-up and by each close
-//! that touched nothing, and read by whatever tells a grip.
+//! Force readings of one hand's joints in free motion, in a file per hand: written by its check-up and by each close that touched
+//! nothing, and read wherever a grip is detected.
 
 use crate::hand::grip::FreeForce;
 use crate::store::{read_text, replace};
@@ -7,29 +7,29 @@ use crate::transport::Endpoint;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// No file of it is larger, bytes.
+/// Maximum size of the file, bytes.
 const FILE_MAX: u64 = 64 << 10;
 
-/// The file of the hand at an endpoint, beside the settings; `None` for the built-in one, which is another each time.
+/// The file of the hand at an endpoint, beside the settings; `None` for the built-in hand, which differs on each start.
 pub fn file_of(settings: &Path, hand: &Endpoint) -> Option<PathBuf> {
     let folder = settings.with_file_name("free-force");
     (!hand.is_sim()).then(|| folder.join(format!("{}.json", hand.file_stem())))
 }
 
-/// What a file keeps; nothing where there is none.
+/// Reads the stored values; the default if there is no file.
 ///
 /// # Errors
-/// The system's, or that it is none of ours.
+/// An I/O error, or the file does not parse.
 pub fn read(file: &Path) -> io::Result<FreeForce> {
     let text = read_text(file, FILE_MAX)?;
     let kept = text.map(|text| serde_json::from_str(&text)).transpose();
     Ok(kept?.unwrap_or_default())
 }
 
-/// Keeps this in place of what was kept.
+/// Replaces the stored values.
 ///
 /// # Errors
-/// The system's.
+/// The I/O error.
 pub fn keep(file: &Path, free: &FreeForce) -> io::Result<()> {
     replace(file, (serde_json::to_string(free)? + "\n").as_bytes())
 }

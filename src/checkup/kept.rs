@@ -1,4 +1,4 @@
-//! The check-ups of one hand, one line of JSON each, the first for ever: its birth record.
+//! The check-ups of one hand, one line of JSON each. The first is never removed: it is the hand's birth record.
 
 use crate::checkup::measure::Measured;
 use crate::store::{read_text, replace_keeping_last};
@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Check-ups kept of a hand: the first, and the last of them.
+/// Check-ups stored per hand: the first, and the most recent others.
 pub const KEPT_MAX: usize = 200;
-/// No file of them is larger, bytes.
+/// Maximum size of the file, bytes.
 const FILE_MAX: u64 = 16 << 20;
 
-/// One check-up that was done to its end.
+/// One completed check-up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Kept {
-    /// When, universal time.
+    /// Time of the check-up, UTC.
     pub at: String,
     /// The hand, as an endpoint.
     pub hand: String,
@@ -25,15 +25,15 @@ pub struct Kept {
     pub report: Option<PathBuf>,
 }
 
-/// The file of the hand at an endpoint, told by place and id.
+/// The file of the hand at an endpoint, named after its place and id.
 pub fn file_of(folder: &Path, hand: &Endpoint) -> PathBuf {
     folder.join(format!("{}.jsonl", hand.file_stem()))
 }
 
-/// The check-ups in a file, oldest first; none where there is no file.
+/// The check-ups in a file, oldest first; empty if there is no file.
 ///
 /// # Errors
-/// The system's, or that a line is none of ours.
+/// An I/O error, or a line that does not parse.
 pub fn read(file: &Path) -> io::Result<Vec<Kept>> {
     let text = read_text(file, FILE_MAX)?.unwrap_or_default();
     let lines = text.lines().filter(|line| !line.trim().is_empty());
@@ -41,10 +41,10 @@ pub fn read(file: &Path) -> io::Result<Vec<Kept>> {
     kept.map_err(io::Error::from)
 }
 
-/// Adds one to those of a file, whole or not at all.
+/// Appends a check-up to a file, atomically; drops the oldest but the first beyond [`KEPT_MAX`].
 ///
 /// # Errors
-/// As [`read`], and the system's.
+/// As [`read`], or a write error.
 pub fn add(file: &Path, kept: Kept) -> io::Result<()> {
     let mut all = read(file)?;
     all.push(kept);
@@ -95,7 +95,7 @@ mod tests {
         assert_eq!(all[KEPT_MAX - 1], kept(KEPT_MAX + 2));
         std::fs::write(&file, "no JSON\n").unwrap();
         read(&file).unwrap_err();
-        // A folder, a pipe or an endless file is none.
+        // A folder, a pipe and an endless file are rejected.
         read(folder.path()).unwrap_err();
     }
 }

@@ -1,4 +1,4 @@
-//! What the readings of a check-up come to, as figures with units. Judges nothing.
+//! Figures with units, computed from the readings of a check-up. Judges nothing.
 
 use crate::checkup::steps::{SPEEDS, Step, Way};
 use crate::checkup::subject::{Part, Subject};
@@ -15,30 +15,29 @@ use std::ops::RangeInclusive;
 
 /// Counts of POS_ACT for each unit of ANGLE_ACT (manual 2.6.10, 2.6.11).
 const COUNTS: f64 = 2.0;
-/// The angle at which the positions of both ways are compared.
+/// The angle at which the closing and the opening position are compared.
 const HALF_WAY: f64 = 500.0;
-/// The middle of a stroke, where a joint goes at its full speed.
+/// The middle of a stroke, where a joint moves at full speed.
 const MIDDLE: RangeInclusive<f64> = 0.25..=0.75;
-/// Pressed above its zero by this before it is nearly bent, a joint met something, g. What is nearly bent may meet the palm.
+/// A joint met something if its force is this far above its zero before it is nearly bent, g. A nearly bent joint may meet the palm.
 const MET_G: f64 = 80.0;
 const NEARLY_BENT: f64 = 100.0;
 
 /// One figure; `None` where it could not be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// What was measured.
     pub what: Subject,
-    /// Of what.
+    /// The joint, the fingertip or the hand.
     pub of: Part,
-    /// In the unit of the subject.
+    /// In the unit of its subject.
     pub value: Option<f64>,
-    /// The channels that a figure of a fingertip counts.
+    /// The channels counted by a figure of a fingertip.
     #[serde(default, skip_serializing_if = "ChannelSet::is_empty")]
     pub channels: ChannelSet,
 }
 
 impl Measured {
-    /// A figure.
+    /// A figure without channels.
     pub fn new(what: Subject, of: Part, value: Option<f64>) -> Self {
         let channels = ChannelSet::default();
         Self {
@@ -49,7 +48,7 @@ impl Measured {
         }
     }
 
-    /// A number of channels of a fingertip.
+    /// A figure that counts channels of a fingertip.
     fn counted(what: Subject, finger: Finger, channels: Option<ChannelSet>) -> Self {
         Self {
             channels: channels.unwrap_or_default(),
@@ -62,7 +61,7 @@ impl Measured {
     }
 }
 
-/// What was read of the joints at one time; `None` is what this reading had not.
+/// Joint values read at one time; `None` for a group that this reading lacks.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reading {
     at_s: f64,
@@ -72,13 +71,13 @@ pub(crate) struct Reading {
     current: Option<PerDof<f64>>,
 }
 
-/// When a value was true: between question and answer.
+/// Time of a value, s: midway between request and reply.
 fn at_s<T>(read: &Timed<T>) -> f64 {
     f64::midpoint(read.asked.secs(), read.received.secs())
 }
 
 impl Reading {
-    /// What is new; `None` if nothing of the joints is.
+    /// The fresh groups of a sample; `None` if no joint group is fresh.
     pub(crate) fn of(sample: &HandSample, fresh: Groups) -> Option<Self> {
         fn raw<T: Copy>(read: Timed<PerDof<T>>, raw: fn(T) -> i16) -> (f64, PerDof<f64>) {
             (at_s(&read), read.value.map(|own| raw(own).into()))
@@ -103,15 +102,15 @@ impl Reading {
     }
 }
 
-/// What was read in one step.
+/// Readings of one step.
 #[derive(Debug, Clone)]
 pub(crate) struct StepRecord {
     pub(crate) step: Step,
-    /// When its targets were sent.
+    /// Time at which its targets were sent.
     pub(crate) told: Moment,
     pub(crate) readings: Vec<Reading>,
     pub(crate) tips: Vec<TipReading>,
-    /// How warm the drives were when it was over, degrees; of a rest.
+    /// Drive temperatures at the end of a rest, °C; `None` for other steps.
     pub(crate) warmth: Option<PerDof<Option<u8>>>,
 }
 
@@ -126,7 +125,7 @@ impl StepRecord {
         }
     }
 
-    /// One quantity of a joint from the command on; times as of the program's clock.
+    /// One quantity of a joint from the command on; times by the program's clock.
     fn curve(&self, dof: Dof, of: fn(&Reading) -> Option<PerDof<f64>>) -> TimeSeries {
         let told = self.told.secs();
         let later = self.readings.iter().filter(|own| own.at_s >= told);
@@ -135,7 +134,7 @@ impl StepRecord {
             .collect()
     }
 
-    /// What the sensor of a joint read over its zero on the way, by angle.
+    /// The force of a joint above its zero on the way, by angle.
     pub(crate) fn free_close(&self, dof: Dof, zero_g: f64) -> FreeClose {
         // Angle and force may have been read one after the other.
         let angle = self.curve(dof, |own| own.angle);
@@ -149,7 +148,7 @@ impl StepRecord {
         close
     }
 
-    /// What a force sensor read on average from this time on, g.
+    /// Mean reading of a force sensor from `since` on, g.
     pub(crate) fn mean_force(&self, dof: Dof, since: Moment) -> Option<f64> {
         let force = self.curve(dof, |own| own.force);
         let later = force.points().iter();
@@ -157,12 +156,12 @@ impl StepRecord {
         mean(&later.map(|own| own.v).collect::<Vec<_>>())
     }
 
-    /// What each force sensor reads at rest, g.
+    /// Reading of each force sensor at rest, g.
     pub(crate) fn zeros(&self) -> PerDof<Option<f64>> {
         PerDof::from_fn(|dof| mean(&values(&self.curve(dof, |own| own.force))))
     }
 
-    /// Where a joint that closes pressed on something before it was nearly bent, and how hard above its zero, g.
+    /// The angle at which a closing joint pressed on something before it was nearly bent, and the force above its zero, g.
     pub(crate) fn met(&self, dof: Dof, zero_g: f64) -> Option<(f64, f64)> {
         let angle = self.curve(dof, |own| own.angle);
         let force = self.curve(dof, |own| own.force);
@@ -176,7 +175,7 @@ impl StepRecord {
 
     fn stroke(&self, dof: Dof) -> Stroke {
         let angle = self.curve(dof, |own| own.angle);
-        // Angles are read often, positions seldom.
+        // Angles are read often, positions rarely.
         let ends = angle.points().first().zip(angle.points().last());
         let part =
             |at: &CurvePoint| ends.map(|(first, last)| (at.v - first.v) / (last.v - first.v));
@@ -201,7 +200,7 @@ impl StepRecord {
         }
     }
 
-    /// How far the others went meanwhile, units of ANGLE_ACT.
+    /// The largest motion of the other joints meanwhile, units of ANGLE_ACT.
     fn others(&self, moved: Dof) -> Option<f64> {
         let others = Dof::ALL.into_iter().filter(|dof| *dof != moved);
         let spans = others.map(|dof| {
@@ -213,14 +212,14 @@ impl StepRecord {
     }
 }
 
-/// What one stroke gave.
+/// Measurements of one stroke.
 #[derive(Debug, Clone, Copy)]
 struct Stroke {
-    /// The angle where it ended.
+    /// The angle at its end.
     end: Option<f64>,
     /// Counts a second.
     speed: Option<f64>,
-    /// From the command to the motion of the joint.
+    /// From the command until the joint moves.
     dead_ms: Option<f64>,
     /// mA, at full speed.
     current: Option<f64>,
@@ -232,7 +231,7 @@ fn values(curve: &TimeSeries) -> Vec<f64> {
     curve.points().iter().map(|point| point.v).collect()
 }
 
-/// The straight line nearest to points.
+/// A straight line fitted to points by least squares.
 #[derive(Debug, Clone, Copy)]
 struct Fit {
     at_s: f64,
@@ -255,7 +254,7 @@ impl Fit {
     }
 }
 
-/// When a curve crosses a level first, either way, on the line between its readings.
+/// Time at which a curve first crosses a level, in either direction, interpolated between readings.
 fn crossing(curve: &TimeSeries, level: f64) -> Option<f64> {
     curve.points().windows(2).find_map(|pair| {
         let [from, to] = pair else { return None };
@@ -264,16 +263,16 @@ fn crossing(curve: &TimeSeries, level: f64) -> Option<f64> {
     })
 }
 
-/// What the steps that are over came to.
+/// Results of the finished steps.
 #[derive(Debug, Clone)]
 pub(crate) struct Figures {
-    /// Of each joint its strokes: at both speeds, closing and opening.
+    /// Strokes of each joint: at both speeds, closing and opening.
     strokes: PerDof<Vec<(i16, Way, Stroke)>>,
     others: PerDof<Option<f64>>,
     together: PerDof<Option<f64>>,
-    /// At the beginning, and at the end.
+    /// One at the beginning and one at the end.
     rests: Vec<Rest>,
-    /// Of each fingertip that was to be pressed, what was read meanwhile.
+    /// For each fingertip that had to be pressed, its readings meanwhile.
     presses: Vec<(Finger, Vec<TipReading>)>,
 }
 
@@ -315,7 +314,7 @@ impl Figures {
         }
     }
 
-    /// What the fingertips would say that nobody presses; `None` before the last rest.
+    /// Expected readings of untouched fingertips; `None` before the last rest.
     pub(crate) fn unpressed(&self) -> Option<Unpressed<'_>> {
         let [first, last] = self.rests.as_slice() else {
             return None;
@@ -324,7 +323,7 @@ impl Figures {
         Some(Unpressed { first, last })
     }
 
-    /// A figure of the strokes of a joint, at both speeds.
+    /// One figure of a joint's strokes, at both speeds.
     fn of(&self, dof: Dof, get: fn(&Stroke) -> Option<f64>) -> [BothWays; 2] {
         let find = |wanted_speed, wanted_way| {
             let mut own = self.strokes[dof].iter();
@@ -339,7 +338,7 @@ impl Figures {
     }
 }
 
-/// A figure of the strokes of a joint at one speed.
+/// One figure of a joint's strokes at one speed.
 #[derive(Debug, Clone, Copy)]
 struct BothWays {
     speed: i16,
@@ -363,7 +362,7 @@ impl Rest {
     }
 }
 
-/// All figures. Which channels answer a press is one of them where that is asked for.
+/// All figures; with `presses`, also the channels that do not answer a press.
 pub(crate) fn measured(figures: &Figures, presses: bool) -> Vec<Measured> {
     let joints = Dof::ALL.into_iter().flat_map(|dof| {
         let all = joint(figures, dof).into_iter().chain(heat(figures, dof));
@@ -410,7 +409,7 @@ fn joint(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 14] {
             .filter_map(|own| Some(way(own)? / f64::from(own.speed)));
         mean(&per_unit.collect::<Vec<_>>())
     };
-    // What the drive turns for nothing is no time of the hand's.
+    // The time in which the drive takes up slack is not dead time of the hand.
     let slack = backlash.map_or(0.0, |(closing, opening)| (closing - opening).max(0.0));
     let own = figures.strokes[dof].iter().map(|(_, _, stroke)| stroke);
     let dead = own.filter_map(|own| Some(own.dead_ms? - 1000.0 * slack / own.speed?));
@@ -473,7 +472,7 @@ fn pressed(figures: &Figures, finger: Finger) -> Measured {
     Measured::counted(Subject::SilentChannels, finger, silent)
 }
 
-/// Percent of their speed that the joints lose when all move.
+/// Median loss of speed when all joints move together, percent.
 fn slower_together(figures: &Figures) -> Option<f64> {
     let ratios = Dof::ALL.into_iter().filter_map(|dof| {
         let [alone, _] = figures.of(dof, |own| own.speed);

@@ -1,5 +1,5 @@
-//! A check-up of an empty hand: each joint goes through its stroke alone, gently, and what the registers say meanwhile is compared
-//! with what hands of the family were measured to do, and with this hand's own first check-up. Sends nothing itself.
+//! A check-up of an empty hand: each joint runs through its stroke alone, gently, and the readings are compared with those measured
+//! on other hands of the family and with this hand's own first check-up. Sends nothing itself.
 
 pub mod check;
 pub mod free_file;

@@ -1,5 +1,5 @@
-//! What a check-up does, in order. One joint moves while the others are open, so that thumb and fingers never meet. Fingertips are
-//! pressed last, when nothing moves any more.
+//! The steps of a check-up, in order. One joint moves while the others are open, so that thumb and fingers never meet. Fingertips are
+//! pressed last, once all motion has ended.
 
 use crate::hand::{Angle, Dof, Finger, PerDof, Speed};
 use std::collections::VecDeque;
@@ -7,25 +7,25 @@ use std::time::Duration;
 
 /// The two speeds at which each joint is moved.
 pub(crate) const SPEEDS: [i16; 2] = [200, 500];
-/// Where all six go to at once: far from where thumb and fingers meet.
+/// Common target angle when all six move: well before thumb and fingers meet.
 const TOGETHER: i16 = 700;
-/// How long nothing moves where it rests.
+/// Duration of a rest.
 pub(crate) const REST: Duration = Duration::from_secs(3);
-/// How long a fingertip may wait for its press.
+/// Time allowed for the press of a fingertip.
 pub(crate) const PRESS_TIMEOUT: Duration = Duration::from_secs(12);
-/// Units of ANGLE_ACT a second for each unit of SPEED_SET, of the slower of the hands that were measured.
+/// Units of ANGLE_ACT per second for each unit of SPEED_SET, on the slower of the measured hands.
 const UNITS_PER_SPEED: f64 = 1.52;
-/// What confirming limits before a motion and standing still after it take.
+/// Time to confirm limits before a motion and to settle after it.
 const AROUND_MOTION: Duration = Duration::from_millis(700);
 
-/// What is done besides the motion.
+/// Optional parts of a check-up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct CheckupPlan {
-    /// Ask for a press of each fingertip, once nothing moves any more and the hand is not armed.
+    /// Request a press of each fingertip, once all motion has ended and the hand is not armed.
     pub press: bool,
 }
 
-/// Which way a joint goes.
+/// Direction of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
     Closing,
@@ -39,16 +39,16 @@ pub(crate) enum Step {
     Open,
     /// Nothing moves.
     Rest,
-    /// One joint goes through its whole stroke.
+    /// One joint moves through its whole stroke.
     Stroke(Dof, Speed, Way),
-    /// All six move a part of theirs at once.
+    /// All six joints move part of their strokes at once.
     Together(Way),
-    /// A fingertip is to be pressed; the hand is not armed.
+    /// The user presses a fingertip; the hand is not armed.
     Press(Finger),
 }
 
 impl Step {
-    /// Where the joints go that move in it.
+    /// Targets of the joints that move.
     pub(crate) fn targets(self) -> PerDof<Option<Angle>> {
         let end = |way| match way {
             Way::Closing => Angle::MIN,
@@ -62,7 +62,7 @@ impl Step {
         }
     }
 
-    /// How fast they go.
+    /// Speed of the joints that move.
     pub(crate) fn speed(self) -> Speed {
         match self {
             Self::Stroke(_, speed, _) => speed,
@@ -70,7 +70,7 @@ impl Step {
         }
     }
 
-    /// Whether joints close in it, which may meet something.
+    /// True if joints close, and may meet something.
     pub(crate) const fn closes(self) -> bool {
         matches!(
             self,
@@ -78,12 +78,12 @@ impl Step {
         )
     }
 
-    /// About how long it takes, if nothing ends it.
+    /// Expected duration, unless the check-up ends early.
     pub(crate) fn expected(self) -> Duration {
         let way = match self {
             Self::Rest => return REST,
             Self::Press(_) => return PRESS_TIMEOUT,
-            // Mostly they are open.
+            // The joints are usually open already.
             Self::Open => 0,
             Self::Stroke(..) => Angle::MAX.get(),
             Self::Together(_) => Angle::MAX.get() - TOGETHER,
@@ -99,7 +99,7 @@ pub(crate) fn slow() -> Speed {
     Speed::nearest(slow)
 }
 
-/// All steps.
+/// All steps of a check-up.
 pub(crate) fn steps(plan: CheckupPlan) -> VecDeque<Step> {
     let ways = [Way::Closing, Way::Opening];
     let strokes = Dof::ALL.into_iter().flat_map(|dof| {
@@ -117,7 +117,7 @@ pub(crate) fn steps(plan: CheckupPlan) -> VecDeque<Step> {
         .collect()
 }
 
-/// About how long all of it takes.
+/// Expected duration of a check-up.
 pub fn expected(plan: CheckupPlan) -> Duration {
     steps(plan).into_iter().map(Step::expected).sum()
 }

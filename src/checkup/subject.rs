@@ -1,10 +1,9 @@
-//! What is measured, what it should be, and what to do where it is not. The ranges hold both hands of the family that were measured in
-//! public, and the manual's figures.
+//! The subjects of a check-up: good ranges, and advice for a value outside them. The ranges cover both hands of the family that were
+//! measured in public, and the figures of the manual.
 
 use crate::hand::{Dof, Finger};
 use serde::{Deserialize, Serialize};
 
-/// What is measured.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, strum::EnumIter,
 )]
@@ -33,7 +32,7 @@ pub enum Subject {
     SlowerTogether,
 }
 
-/// What it is measured of.
+/// The part of the hand that a figure describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
@@ -42,39 +41,37 @@ pub enum Part {
     Hand,
 }
 
-/// How a figure compares with what it should be.
+/// Grade of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Light {
-    /// As it should be.
+    /// Within the good range.
     Fine,
-    /// It could not be measured.
+    /// Not measured.
     Unknown,
-    /// Beyond what was seen of good hands, or changed since the first check-up: look at it again soon.
+    /// Outside the range of good hands, or changed since the first check-up: check again soon.
     Watch,
-    /// So far beyond that something is to be done before the hand works on.
+    /// Far outside the range: needs action before further use.
     Act,
 }
 
-/// One subject: what it is, its ranges, and what to do.
+/// One subject: name, unit, ranges and advice.
 #[derive(Debug, Clone, Copy)]
 pub struct SubjectRow {
-    /// In a few words.
     pub name: &'static str,
     pub unit: &'static str,
     pub decimals: usize,
-    /// What good hands do, from least to most.
+    /// Range of good hands.
     pub good: [f64; 2],
-    /// Beyond this something is to be done.
+    /// Values outside this range need action.
     pub bearable: [f64; 2],
-    /// The most that it may change from the first check-up of a hand.
+    /// Largest change since the first check-up of a hand.
     pub change: f64,
-    /// What to do.
     pub advice: &'static str,
 }
 
 impl Subject {
-    /// How a value compares with what is good, and with the first of this hand.
+    /// Grades a value by the ranges, and by its change since the first check-up of this hand.
     pub fn light(self, value: Option<f64>, first: Option<f64>) -> Light {
         let row = self.row();
         let Some(value) = value else {
@@ -90,7 +87,7 @@ impl Subject {
         }
     }
 
-    /// What it is.
+    /// The name, unit, ranges and advice of this subject.
     pub const fn row(self) -> SubjectRow {
         const CLEAN: &str = "look for something in the joint's way, clean it, and check again; if it stays, have the drive looked at";
         const DRIVE: &str = "have the drive looked at";
@@ -182,7 +179,7 @@ impl Subject {
     }
 }
 
-/// A row without ranges yet.
+/// A row without unit and ranges.
 const fn row(name: &'static str, advice: &'static str) -> SubjectRow {
     SubjectRow {
         name,
@@ -203,7 +200,7 @@ const fn current(name: &'static str, advice: &'static str) -> SubjectRow {
         .unit("mA", 0)
 }
 
-/// Both published hands and the manual: 3.04 to 3.33.
+/// Measured on both published hands and printed in the manual: 3.04 to 3.33.
 const fn speed(name: &'static str, advice: &'static str) -> SubjectRow {
     row(name, advice)
         .good(2.7, 3.7)
@@ -243,12 +240,12 @@ impl SubjectRow {
             .to_owned()
     }
 
-    /// The same; a dash for what is not known.
+    /// As [`Self::text`]; a dash for an unknown value.
     pub fn known(&self, value: &Option<f64>) -> String {
         value.map_or_else(|| "-".to_owned(), |value| self.text(value))
     }
 
-    /// What is good.
+    /// The good range, without the unit.
     pub fn range(&self) -> String {
         let ([least, most], decimals) = (self.good, self.decimals);
         format!("{least:.decimals$} to {most:.decimals$}")
@@ -256,7 +253,7 @@ impl SubjectRow {
 }
 
 impl Part {
-    /// The joint that it is, if it is one.
+    /// The joint; `None` for a fingertip and the hand.
     pub const fn joint(self) -> Option<Dof> {
         match self {
             Self::Joint(dof) => Some(dof),
@@ -264,7 +261,6 @@ impl Part {
         }
     }
 
-    /// The joint's or the finger's name.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Joint(dof) => dof.name(),
@@ -275,7 +271,6 @@ impl Part {
 }
 
 impl Light {
-    /// Its word.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Fine => "fine",

@@ -1,45 +1,43 @@
-//! The channels of the fingertips: what they say at rest, and which answer a press.
+//! The channels of the fingertips: their readings at rest, and their answers to a press.
 
 use crate::hand::statistics::mean;
 use crate::hand::{Finger, HandSample, PerFinger};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A channel of a fingertip is dead that never differs in so many readings.
+/// A channel is dead if it never changes in this many readings.
 const READINGS: usize = 20;
-/// Standard deviation from one reading to the next beyond which a channel is noisy, counts: ten times what was measured.
+/// Standard deviation between successive readings beyond which a channel is noisy, counts: ten times the measured one.
 const NOISY: f64 = 2000.0;
-/// A fingertip is pressed where a channel leaves its rest by this, counts: about half a newton right above it.
+/// A fingertip is pressed if a channel is this far from its rest, counts: about half a newton right above it.
 const PRESSED: f64 = 20_000.0;
-/// A channel answers a press that leaves its rest by this, counts, and by so many times its noise.
+/// A channel answers a press if it moves this far from its rest, counts, and this many times its noise.
 const ANSWERS: f64 = 1000.0;
 const ANSWERS_NOISE: f64 = 6.0;
-/// The channels that stand under the pad; the eighth is the reference of the others and feels no press.
+/// The channels under the pad; the eighth is the reference of the others and feels no press.
 const UNDER_PAD: usize = 7;
 
-/// Some of the channels of a fingertip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(from = "Vec<u8>", into = "Vec<u8>")]
 pub struct ChannelSet(u8);
 
 impl ChannelSet {
-    /// Those of which it is so, by their places.
+    /// The channels whose index (0 to 7) satisfies the predicate.
     pub(crate) fn of(is_so: impl Fn(usize) -> bool) -> Self {
         let chosen = (0..8_usize).filter(|nth| is_so(*nth));
         Self(chosen.fold(0, |set, nth| set | 1 << nth))
     }
 
-    /// True if there are none.
     pub const fn is_empty(&self) -> bool {
         self.0 == 0
     }
 
-    /// How many there are.
+    /// The number of channels.
     pub fn count(self) -> f64 {
         self.0.count_ones().into()
     }
 
-    /// Their numbers, 1 to 8.
+    /// The channel numbers, 1 to 8.
     pub fn numbers(self) -> impl Iterator<Item = u8> {
         (1..=8).filter(move |number| self.0 >> (number - 1) & 1 == 1)
     }
@@ -76,7 +74,7 @@ impl TipReading {
     pub(crate) fn of(sample: &HandSample, finger: Finger) -> Option<Self> {
         let block = sample.tactile[finger]?;
         Some(Self {
-            // When it was true: between question and answer.
+            // Time of the values: midway between request and reply.
             at_s: f64::midpoint(block.asked.secs(), block.received.secs()),
             finger,
             raw: block.value.raw,
@@ -84,7 +82,7 @@ impl TipReading {
     }
 }
 
-/// What the channels said while nothing moved.
+/// Readings of the channels while nothing moves.
 #[derive(Debug, Clone)]
 pub(crate) struct TipsAtRest {
     pub(crate) at_s: f64,
@@ -94,13 +92,13 @@ pub(crate) struct TipsAtRest {
 #[derive(Debug, Clone, Copy)]
 struct ChannelRest {
     mean: f64,
-    /// From one reading to the next, so that drift is none.
+    /// Between successive readings, so that drift does not count.
     noise: f64,
     is_dead: bool,
 }
 
 impl TipsAtRest {
-    /// `told_s` is when the rest began.
+    /// `told_s`: start of the rest.
     pub(crate) fn of(readings: &[TipReading], told_s: f64) -> Self {
         let times: Vec<f64> = readings.iter().map(|tip| tip.at_s).collect();
         let channel = |finger: Finger, nth: usize| {
@@ -130,17 +128,17 @@ impl TipsAtRest {
         Some(ChannelSet::of(|nth| all.get(nth).is_some_and(is_so)))
     }
 
-    /// Those that never change; `None` where nothing was read.
+    /// Channels that never change; `None` without readings.
     pub(crate) fn dead(&self, finger: Finger) -> Option<ChannelSet> {
         self.channels(finger, |channel| channel.is_dead)
     }
 
-    /// Those that scatter.
+    /// Channels that scatter; `None` without readings.
     pub(crate) fn noisy(&self, finger: Finger) -> Option<ChannelSet> {
         self.channels(finger, |channel| channel.noise > NOISY)
     }
 
-    /// The most that a channel drifted until a later rest, counts a second.
+    /// The fastest drift of a channel until a later rest, counts per second.
     pub(crate) fn drift(&self, later: &Self, finger: Finger) -> Option<f64> {
         let each = (0..8).filter_map(|nth| self.slope(later, finger, nth));
         each.map(f64::abs).reduce(f64::max)
@@ -152,7 +150,7 @@ impl TipsAtRest {
     }
 }
 
-/// What is expected of a fingertip that nobody presses, from two rests.
+/// Expected readings of untouched fingertips, from two rests.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Unpressed<'a> {
     pub(crate) first: &'a TipsAtRest,
@@ -160,7 +158,7 @@ pub(crate) struct Unpressed<'a> {
 }
 
 impl Unpressed<'_> {
-    /// How far each channel is from what it would say, counts; `None` where that is not known.
+    /// Distance of each channel from its expected reading, counts; `None` if that is unknown.
     fn away(&self, tip: &TipReading) -> [Option<f64>; 8] {
         std::array::from_fn(|nth| {
             let rest = self.last.tips[tip.finger].get(nth).copied().flatten()?;
@@ -170,13 +168,13 @@ impl Unpressed<'_> {
         })
     }
 
-    /// Whether a reading is one of a pressed fingertip.
+    /// True if the fingertip is pressed in this reading.
     pub(crate) fn is_pressed(&self, tip: &TipReading) -> bool {
         let under_pad = self.away(tip).into_iter().take(UNDER_PAD);
         under_pad.flatten().any(|away| away >= PRESSED)
     }
 
-    /// The channels that did not answer; `None` where the fingertip was not pressed.
+    /// Channels under the pad that did not answer; `None` if the fingertip was not pressed.
     pub(crate) fn silent(&self, readings: &[TipReading], finger: Finger) -> Option<ChannelSet> {
         let own = readings.iter().filter(|tip| tip.finger == finger);
         let pressed: Vec<[Option<f64>; 8]> = own
@@ -206,7 +204,7 @@ mod tests {
 
     const FINGER: Finger = Finger::Index;
 
-    /// So many readings, 20 ms apart, of a channel at `counts(nth reading)`, and all others at rest with a little noise.
+    /// Readings 20 ms apart, of one channel at `counts(nth reading)`, and all others at rest with a little noise.
     fn readings(from_s: f64, channel: usize, counts: impl Fn(u32) -> u32) -> Vec<TipReading> {
         let reading = |nth: u32| {
             let mut raw = [2_900_000 + nth % 2 * 100; 8];

@@ -1,49 +1,48 @@
-//! How a figure went over the last check-ups.
+//! The history of a figure over the most recent check-ups.
 
-/// Check-ups that a trend looks back on, this one included.
+/// Check-ups in a trend, including the current one.
 pub const TREND_MAX: usize = 12;
-/// Fewer make no trend.
+/// Fewer points form no trend.
 const POINTS_MIN: usize = 5;
-/// A line explains at least so much of what the figures differ by; else they scatter.
+/// Share of the variance that a straight line must explain; otherwise the figures scatter.
 const EXPLAINED: f64 = 0.8;
-/// A figure drifts that went by this part of the change that is watched for.
+/// A figure drifts if it moved by this share of the watched change.
 const PART_OF_CHANGE: f64 = 0.5;
 
-/// A figure at one check-up.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrendPoint {
-    /// When, universal time.
+    /// Time of the check-up, UTC.
     pub at: String,
     pub value: f64,
 }
 
-/// A figure over the last check-ups, the oldest first.
+/// The values of a figure, oldest first.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Trend {
     pub points: Vec<TrendPoint>,
 }
 
-/// A figure that goes one way.
+/// A steady change of a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drift {
-    /// By the line through all.
+    /// Ends of the fitted line.
     pub from: f64,
     pub to: f64,
-    /// Check-ups that it is seen in.
+    /// Check-ups in which it shows.
     pub checks: usize,
-    /// The day of the first of them.
+    /// Date of the first of them.
     pub since: String,
 }
 
 impl Trend {
-    /// Of the figures of all check-ups, the newest last; only the last of them count.
+    /// From the figures of all check-ups, oldest first; only the last [`TREND_MAX`] count.
     pub fn of(points: impl IntoIterator<Item = TrendPoint>) -> Self {
         let mut points: Vec<TrendPoint> = points.into_iter().collect();
         points.drain(..points.len().saturating_sub(TREND_MAX));
         Self { points }
     }
 
-    /// Least and greatest; `None` without a point.
+    /// Smallest and largest value; `None` without points.
     pub fn range(&self) -> Option<(f64, f64)> {
         let mut values = self.points.iter().map(|point| point.value);
         let first = values.next()?;
@@ -52,7 +51,7 @@ impl Trend {
         }))
     }
 
-    /// Whether it goes one way, by an amount that matters where `change` is watched for from the first check-up on.
+    /// The drift, if the figures follow a line and moved by enough of `change`, the watched change since the first check-up.
     pub fn drift(&self, change: f64) -> Option<Drift> {
         let count = self.points.len();
         if count < POINTS_MIN || !change.is_finite() {
@@ -82,7 +81,7 @@ impl Trend {
     }
 }
 
-/// The day of a time as it stands in files.
+/// The date part of a stored time.
 pub fn day(at: &str) -> &str {
     at.split_once('T').map_or(at, |(day, _)| day)
 }

@@ -1,4 +1,4 @@
-//! How much a hand was used, counted from its recordings.
+//! Use of a hand, counted from its recordings.
 
 use crate::hand::{Dof, Fault, PerDof, Quantity, Status};
 use crate::record::EventKind;
@@ -7,33 +7,31 @@ use crate::record::file::{Overview, RecordingFile, parts};
 use crate::transport::Endpoint;
 use std::path::Path;
 
-/// Recordings that are counted: some for each working day of two years. Beyond, the oldest are not.
+/// Recordings that are counted: several for each working day of two years. The oldest beyond them are ignored.
 const RECORDINGS_MAX: usize = 2000;
-/// A joint that was open beyond the one and is bent below the other has closed once, units of ANGLE_ACT.
+/// A joint has closed once when it was open beyond the first and is bent below the second, units of ANGLE_ACT.
 const OPEN: f32 = 700.0;
 const BENT: f32 = 400.0;
-/// A joint moves whose angle spans this within a second.
+/// A joint moves if its angle spans this within a second.
 const MOVES: f32 = 10.0;
 
-/// How much a hand was used.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Usage {
     /// Its recordings.
     pub recordings: usize,
-    /// When the oldest began, seconds since 1970.
+    /// Start of the oldest, seconds since 1970.
     pub since_1970_s: u64,
-    /// Seconds in which it was read, and those of them in which it moved.
+    /// Seconds with readings, and those of them with motion.
     pub read_s: u64,
     pub moved_s: u64,
-    /// How often each joint closed; within one second once at most.
+    /// Closes of each joint; at most one per second.
     pub closes: PerDof<u64>,
-    /// How often a drive said that it stalled.
+    /// Stalls reported by the drives.
     pub stalls: u64,
 }
 
 impl Usage {
-    /// Of the recordings in a folder, and in the folders in it, that are of this hand; `None` where there are none. Files that
-    /// cannot be read are none.
+    /// Sums up the recordings of this hand in a folder and its subfolders; `None` if there are none. Unreadable files are skipped.
     pub fn of(folder: &Path, hand: &Endpoint) -> Option<Self> {
         let mut all = parts::recordings(parts::files(folder));
         all.sort_by(|one, two| two.cmp(one));
@@ -97,14 +95,14 @@ impl Usage {
         self.moved_s += u64::from(moves);
     }
 
-    /// The joint that closed most, and how often.
+    /// The joint that closed most often, and its number of closes.
     pub fn most_closed(&self) -> (Dof, u64) {
         let all = self.closes.iter().map(|(dof, closes)| (dof, *closes));
         let most = all.reduce(|most, own| if own.1 > most.1 { own } else { most });
         most.unwrap_or((Dof::Index, 0))
     }
 
-    /// Hours in which it was read, and in which it moved.
+    /// Hours with readings and with motion, one decimal each.
     pub fn hours(&self) -> [String; 2] {
         [self.read_s, self.moved_s].map(|seconds| {
             let tenths = seconds / 360;
@@ -120,7 +118,7 @@ mod tests {
     use crate::record::file::FileMark;
     use crate::record::file::overview::LINES;
 
-    /// The least and the greatest angle of the index in each second.
+    /// Smallest and largest angle of the index in each second.
     fn overview(seconds: &[(f32, f32)]) -> Overview {
         let mut overview = Overview::default();
         for (second, (least, greatest)) in (0..).zip(seconds) {

@@ -1,4 +1,4 @@
-//! The file of an exhibition as TOML, version 1 (assets/manual/exhibit.md). It is taken whole or not at all.
+//! The file of an exhibition as TOML, version 1 (assets/manual/exhibit.md). It is accepted as a whole or rejected.
 
 use crate::exhibit::pin::{BadPin, DIGITS, Pin};
 use crate::exhibit::plan::{
@@ -14,17 +14,17 @@ use std::path::{Component, Path, PathBuf};
 use std::time::Duration;
 use toml::Spanned;
 
-/// The format that such a file names.
+/// The `format` value of such a file.
 pub const FORMAT: &str = "handscope-exhibit";
-/// Characters of the line above the hand.
+/// Maximum length of the line above the hand, characters.
 const TITLE_CHARS_MAX: usize = 60;
-/// Times of a visitor and of the attract loop.
+/// Range of visit and attract loop times, seconds.
 const SECONDS: RangeInclusive<u64> = 5..=3600;
-/// Characters of a wrong value that are repeated.
+/// Maximum length of a wrong value in an error, characters.
 const QUOTED_CHARS: usize = 40;
-/// Pieces of the attract loop.
+/// Maximum number of pieces in the attract loop.
 const ATTRACT_MAX: usize = 40;
-/// What is shown without a file.
+/// The exhibition used without a file.
 const BUILT_IN: &str = include_str!("../../assets/exhibit.toml");
 
 #[derive(Deserialize)]
@@ -42,7 +42,7 @@ struct ExhibitRow {
     logo: Option<Spanned<PathBuf>>,
     #[serde(default)]
     poses: Option<Spanned<PathBuf>>,
-    /// Any value: what the reader of the format says of a wrong one would repeat it.
+    /// Any value: an error of the TOML parser would repeat a wrong PIN.
     #[serde(default)]
     pin: Option<Spanned<toml::Value>>,
     tiles: Spanned<Vec<Spanned<String>>>,
@@ -70,7 +70,7 @@ struct AttractRow {
     rest_s: Option<Spanned<i64>>,
 }
 
-/// What is shown without a file.
+/// The exhibition used without a file.
 pub fn built_in() -> Option<ExhibitPlan> {
     let file = ExhibitFile::parse(BUILT_IN, Path::new(""));
     let plan = file.and_then(|file| file.plan(&PoseLibrary::default()));
@@ -78,17 +78,16 @@ pub fn built_in() -> Option<ExhibitPlan> {
     plan.ok()
 }
 
-/// The text of such a file, and the folder in which it lies.
+/// The text of such a file, and the folder that it is in.
 pub struct ExhibitFile<'a> {
     source: FileText<'a>,
     row: ExhibitRow,
     folder: &'a Path,
 }
 
-/// A file that the one of an exhibition names.
+/// A file referenced by an exhibition file.
 #[derive(Debug, Clone)]
 pub struct NamedFile<'a> {
-    /// Where it lies.
     pub path: PathBuf,
     source: FileText<'a>,
     at: Range<usize>,
@@ -96,13 +95,13 @@ pub struct NamedFile<'a> {
 }
 
 impl NamedFile<'_> {
-    /// The error of the file that names it, because of this one.
+    /// The error of the referring file, caused by an error of this one.
     pub fn refused(&self, why: FileError) -> FileError {
         let cause = why.of_named(self.path.display().to_string()).cause;
         self.source.blame(self.at.clone(), self.field, cause)
     }
 
-    /// The error of the file that names it, because it does not lie below that one's folder.
+    /// The error of the referring file if this one is outside its folder.
     pub fn outside(&self) -> FileError {
         let got = quoted(&self.path.display().to_string());
         let cause = FileCause::Outside { got };
@@ -111,7 +110,7 @@ impl NamedFile<'_> {
 }
 
 impl<'a> ExhibitFile<'a> {
-    /// A text with known fields only.
+    /// Parses a text; unknown fields are errors.
     ///
     /// # Errors
     /// [`FileError`] with line and field.
@@ -125,19 +124,19 @@ impl<'a> ExhibitFile<'a> {
         })
     }
 
-    /// The file of poses that it names.
+    /// The referenced pose file.
     ///
     /// # Errors
-    /// [`FileError`] with line and field, where that leads out of the folder.
+    /// [`FileError`] with line and field if the path leaves the folder.
     pub fn poses(&self) -> Result<Option<NamedFile<'a>>, FileError> {
         let poses = self.row.poses.as_ref();
         poses.map(|named| self.named("poses", named)).transpose()
     }
 
-    /// The picture that it names.
+    /// The referenced logo.
     ///
     /// # Errors
-    /// [`FileError`] with line and field, where that is no PNG by its name.
+    /// [`FileError`] with line and field if the name does not end in .png or the path leaves the folder.
     pub fn logo(&self) -> Result<Option<NamedFile<'a>>, FileError> {
         let Some(logo) = &self.row.logo else {
             return Ok(None);
@@ -174,17 +173,17 @@ impl<'a> ExhibitFile<'a> {
         }
     }
 
-    /// The exhibition that it holds. Its tiles are named after entries of `own`, or after what is shipped.
+    /// Builds the exhibition. Tile names refer to entries of `own`, then to shipped ones.
     ///
     /// # Errors
-    /// [`FileError`] with line and field; nothing is taken of such a text.
+    /// [`FileError`] with line and field; a bad text is rejected as a whole.
     pub fn plan(&self, own: &PoseLibrary) -> Result<ExhibitPlan, FileError> {
         let source = self.source;
         ExhibitReader { source, own }.plan(&self.row)
     }
 }
 
-/// Makes an exhibition of what a text holds.
+/// Builds an exhibition from a parsed text.
 #[derive(Clone, Copy)]
 struct ExhibitReader<'a> {
     source: FileText<'a>,
@@ -215,7 +214,7 @@ impl ExhibitReader<'_> {
         })
     }
 
-    /// Looks whether a list of names has as many as there may be.
+    /// Checks the length of a list of names.
     fn count(
         self,
         field: &str,
@@ -270,7 +269,7 @@ impl ExhibitReader<'_> {
         Ok(pieces)
     }
 
-    /// The pose, else the sequence, else the reaction of this name, the file's own first.
+    /// The pose, else the sequence, else the reaction with this name, first from the file's own library.
     fn piece(self, name: &str, limits: MotionLimits) -> Option<ExhibitPiece> {
         [self.own, starter()].into_iter().find_map(|library| {
             let mut entries = library.entries();
@@ -294,7 +293,7 @@ impl ExhibitReader<'_> {
         })
     }
 
-    /// A limit that lets something move.
+    /// A limit above zero, so that the hand can move.
     fn moving<T: Copy + PartialEq>(
         self,
         field: &str,
@@ -349,7 +348,7 @@ impl ExhibitReader<'_> {
         Ok(text.clone())
     }
 
-    /// Never repeats what stands there.
+    /// Reads the PIN; an error never repeats the value.
     fn pin(self, got: Option<&Spanned<toml::Value>>) -> Result<Option<Pin>, FileError> {
         let Some(got) = got else { return Ok(None) };
         let pin = match got.get_ref() {
@@ -370,7 +369,7 @@ impl ExhibitReader<'_> {
     }
 }
 
-/// The start of a text, on one line.
+/// The start of a text, escaped to one line.
 fn quoted(text: &str) -> String {
     let start: String = text.chars().take(QUOTED_CHARS).collect();
     let more = if start.len() < text.len() { "…" } else { "" };

@@ -1,54 +1,54 @@
-//! Keeps drives cool: from measured temperature, its slope and the current, how much the hand may do.
+//! Keeps drives cool: derives the allowed load from measured temperature, its slope and the current.
 
 use crate::hand::heat::{MAX_AGE, WARM};
 use crate::hand::{Dof, HandSample, Moment, PerDof};
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// No drive is to pass this, °C.
+/// Maximum temperature of a drive, °C.
 pub const HOT: f32 = WARM as f32;
-/// Expected to come as near as this, the hand rests …
+/// The hand rests if a drive is expected to reach this, °C, …
 const REST_AT: f32 = 56.0;
-/// … and so near, it goes slowly.
+/// … and moves slowly from this on, °C.
 const SLOW_AT: f32 = 50.0;
-/// Warmth that a rest has to bring it down to.
+/// A rest lasts until all drives are at or below this, °C.
 const RESTED_AT: f32 = 46.0;
-/// How far ahead is looked.
+/// Horizon of the forecast, s.
 const AHEAD_S: f32 = 20.0;
-/// The slope is that of so long.
+/// Time span of the slope.
 const SLOPE_OVER: Duration = Duration::from_secs(20);
-/// So often a temperature is kept: twenty values of each drive at most.
+/// Interval of stored temperatures: about twenty values per drive.
 const SAMPLE_INTERVAL: Duration = Duration::from_secs(1);
-/// Heating of a drive, °C/s for each A²: half more than was reckoned of a sister hand, which says nothing of it.
+/// Heating of a drive, °C/s per A²: half as much again as estimated for a sister hand, which publishes no figure.
 const HEATING: f32 = 0.66;
-/// Over so long the current is averaged.
+/// Averaging time of the squared current, s.
 const CURRENT_OVER_S: f32 = 10.0;
 
-/// What the drives' heat allows.
+/// The load that the drive temperatures allow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum HeatLevel {
-    /// Everything within the limits.
+    /// Motion within the configured limits.
     Cool,
-    /// Half as fast.
+    /// Half speed.
     Warm,
-    /// Only to open and to rest.
+    /// Opening and resting only.
     Hot,
-    /// A temperature is unknown or old: as hot.
+    /// A temperature is unknown or outdated: treated as hot.
     Unknown,
 }
 
-/// Looks at the heat of six drives.
+/// Watches the temperatures of six drives.
 #[derive(Debug, Clone, Default)]
 pub struct HeatGovernor {
     temperatures: VecDeque<(Moment, PerDof<f32>)>,
-    /// A²; averaged.
+    /// Squared current, A², averaged.
     squares: PerDof<f32>,
     current_at: Option<Moment>,
     newest: Option<(Moment, PerDof<f32>)>,
 }
 
 impl HeatGovernor {
-    /// Takes in what was read. Old readings change nothing.
+    /// Applies a sample. Readings that are not newer are ignored.
     pub fn take(&mut self, sample: &HandSample) {
         if let Some(current) = sample.current
             && self.current_at.is_none_or(|at| current.received > at)
@@ -56,7 +56,7 @@ impl HeatGovernor {
             let passed = self.current_at.map(|at| current.received.since(at));
             let share = passed.map_or(1.0, |passed| passed.as_secs_f32() / CURRENT_OVER_S);
             for (dof, square) in self.squares.iter_mut() {
-                // A current that makes no sense is taken for none; the temperature tells.
+                // An implausible current counts as zero; the temperature shows the heating anyway.
                 let amps = current.value[dof].documented().map_or(0.0, f32::from) / 1000.0;
                 *square += (amps * amps - *square) * share.min(1.0);
             }
@@ -88,7 +88,7 @@ impl HeatGovernor {
         }
     }
 
-    /// What the heat allows now.
+    /// The heat level at this moment.
     pub fn level(&self, now: Moment) -> HeatLevel {
         let Some(celsius) = self.fresh(now) else {
             return HeatLevel::Unknown;
@@ -101,7 +101,7 @@ impl HeatGovernor {
         }
     }
 
-    /// True once a rest has done its work.
+    /// True once a rest has cooled every drive enough.
     pub fn is_rested(&self, now: Moment) -> bool {
         let cool = |celsius: PerDof<f32>| celsius.iter().all(|(_, at)| *at <= RESTED_AT);
         self.fresh(now).is_some_and(cool)
@@ -112,7 +112,7 @@ impl HeatGovernor {
         newest.map(|(_, celsius)| celsius)
     }
 
-    /// °C a second that are to be expected: what was measured, or what the current brings, whichever is more.
+    /// Expected heating, °C/s: the larger of the measured slope and the heating by the current.
     fn rise(&self, dof: Dof) -> f32 {
         let measured = match (self.temperatures.front(), self.newest) {
             (Some((first, then)), Some((last, now))) if last > *first => {

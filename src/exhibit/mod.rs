@@ -1,5 +1,5 @@
-//! A hand that strangers may touch: what stands in the file of an exhibition, the PIN, heat, and what happens when. Pure; sends
-//! nothing and reads no clock.
+//! A hand in a public exhibition: the file, the PIN, heat limits, and the course of events. Pure; sends nothing and reads no
+//! clock.
 
 pub mod file;
 pub mod heat;

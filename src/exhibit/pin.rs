@@ -1,22 +1,22 @@
-//! The PIN of staff: five tries, then a minute of waiting, then five more and twice the wait, also after a restart.
+//! The staff PIN: five tries, then a lockout of one minute, then five more and twice the lockout, also across restarts.
 
 use crate::hand::Moment;
 use std::time::Duration;
 
-/// Wrong PINs before nothing is taken for a while.
+/// Wrong PINs before a lockout.
 pub const TRIES: u8 = 5;
-/// How long that is the first time; each time twice as long.
+/// Duration of the first lockout; each further one is twice as long.
 pub const LOCK_DURATION: Duration = Duration::from_secs(60);
-/// It grows no longer than this: staff who mistyped get in on the same day.
+/// Longest lockout: staff who mistype get in on the same day.
 pub const LOCKED_MAX: Duration = Duration::from_secs(3600);
-/// Digits of a PIN.
+/// Number of digits in a PIN.
 pub const DIGITS: std::ops::RangeInclusive<usize> = 4..=8;
 
 /// Four to eight digits.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Pin(String);
 
-/// A text that is no PIN. It does not repeat what was given.
+/// A text that is not a PIN. The error does not repeat it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("a PIN has {} to {} digits, and nothing else", DIGITS.start(), DIGITS.end())]
 pub struct BadPin;
@@ -36,33 +36,32 @@ impl std::fmt::Debug for Pin {
     }
 }
 
-/// What became of a PIN that was typed.
+/// Result of entering a PIN.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PinAnswer {
     Right,
-    /// It was wrong; so many tries are left.
+    /// Wrong, with tries left.
     Wrong {
         /// At least one.
         left: u8,
     },
-    /// Nothing is taken before this moment, right or wrong.
+    /// Locked out: any PIN is rejected until then.
     Locked {
         /// When the next try counts.
         until: Moment,
     },
 }
 
-/// Wrong PINs since the last right one: what of a gate outlasts the program.
+/// Wrong PINs since the last right one; stored across restarts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WrongPins {
-    /// How many.
     pub count: u32,
-    /// The wait after the last of them is over, if there was one.
+    /// True if there are wrong PINs and no lockout is pending.
     pub waited: bool,
 }
 
 impl WrongPins {
-    /// How long nothing is taken after these: nothing but after each [`TRIES`], then a minute and twice as long each time.
+    /// Duration of the lockout after this count: `None` except at multiples of [`TRIES`]; a minute, doubled each time.
     pub fn wait(self) -> Option<Duration> {
         let rounds = self.count / u32::from(TRIES);
         let is_due = rounds > 0 && self.count.is_multiple_of(u32::from(TRIES));
@@ -71,7 +70,7 @@ impl WrongPins {
     }
 }
 
-/// Takes PINs and counts wrong ones.
+/// Checks PINs and counts wrong ones.
 #[derive(Debug, Clone)]
 pub struct PinGate {
     pin: Pin,
@@ -80,7 +79,7 @@ pub struct PinGate {
 }
 
 impl PinGate {
-    /// Opens to this PIN only.
+    /// A gate that accepts this PIN only.
     pub const fn new(pin: Pin) -> Self {
         Self {
             pin,
@@ -89,8 +88,8 @@ impl PinGate {
         }
     }
 
-    /// The same after wrong PINs in an earlier run of the program. A wait that was not over then begins anew: no clock tells how
-    /// much of it passed that the user could not have set.
+    /// A gate with the wrong PINs of an earlier run of the program. An unfinished lockout starts again: the elapsed part is unknown,
+    /// since the user could have set the clock.
     pub fn resumed(pin: Pin, earlier: WrongPins, now: Moment) -> Self {
         let wait = earlier.wait().filter(|_| !earlier.waited);
         Self {
@@ -100,7 +99,7 @@ impl PinGate {
         }
     }
 
-    /// What an exhibition that begins later has to know.
+    /// The wrong PINs, to be stored for a later run.
     pub fn wrong_pins(&self, now: Moment) -> WrongPins {
         let count = self.wrong;
         WrongPins {
@@ -109,12 +108,12 @@ impl PinGate {
         }
     }
 
-    /// When the next try counts, if that is not now.
+    /// End of the current lockout; `None` if the next try counts now.
     pub fn locked_until(&self, now: Moment) -> Option<Moment> {
         self.locked.filter(|until| now < *until)
     }
 
-    /// Takes what was typed.
+    /// Checks a typed PIN.
     pub fn enter(&mut self, typed: &str, now: Moment) -> PinAnswer {
         if let Some(until) = self.locked_until(now) {
             return PinAnswer::Locked { until };
@@ -182,13 +181,13 @@ mod tests {
         for minutes in [1, 2, 4, 8, 16, 32, 60, 60] {
             for _ in 0..4 {
                 assert!(matches!(gate.enter("0000", now), PinAnswer::Wrong { .. }));
-                // A restart between two tries gives no more of them.
+                // A restart between two tries grants no extra ones.
                 gate = PinGate::resumed(pin("4711").unwrap(), gate.wrong_pins(now), now);
             }
             let wait = Duration::from_secs(60 * minutes);
             let until = now.plus(wait);
             assert_eq!(gate.enter("0000", now), PinAnswer::Locked { until });
-            // Half of it passes, and the program begins again: it is waited for in full.
+            // The program restarts halfway through a lockout, which then starts again in full.
             now = now.plus(wait / 2);
             gate = PinGate::resumed(pin("4711").unwrap(), gate.wrong_pins(now), now);
             let until = now.plus(wait);

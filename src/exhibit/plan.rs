@@ -1,4 +1,4 @@
-//! What an exhibition may do: its tiles, limits and times. What is not in it cannot be played.
+//! The plan of an exhibition: tiles, limits and times. Nothing outside it can be played.
 
 use crate::exhibit::pin::Pin;
 use crate::hand::{Angle, Force, PerDof, Speed};
@@ -8,40 +8,37 @@ use crate::poses::player::{Cue, PlayPlan};
 use crate::poses::way::Targets;
 use std::time::Duration;
 
-/// Tiles of a page: fewer leave it empty, more would be too small to hit.
+/// Number of tiles on a page: fewer leave it empty, more would be too small to hit.
 pub const TILES: std::ops::RangeInclusive<usize> = 6..=12;
 
-/// Speed and force that nothing passes.
+/// Maximum speed and force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MotionLimits {
-    /// Of every joint.
+    /// Maximum speed of every joint.
     pub speed: Speed,
-    /// Force threshold of every joint.
+    /// Maximum force threshold of every joint.
     pub force: Force,
 }
 
-/// A line of words in both languages.
+/// A line of text in both languages.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct BothWords {
-    /// English.
     pub en: String,
-    /// Chinese.
     pub zh: String,
 }
 
-/// One thing that can be played.
+/// One playable piece.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExhibitPiece {
-    /// What it is called.
     pub name: BothWords,
-    /// How it is played, once, within the limits.
+    /// The motion, played once, within the limits.
     pub plan: PlayPlan,
-    /// Whether it begins again at its end.
+    /// True if it repeats.
     pub again: bool,
 }
 
 impl ExhibitPiece {
-    /// What its tile shows: a pose of it that says most, the one that is furthest from open.
+    /// Targets shown on the tile: the pose furthest from open.
     pub fn shown(&self) -> Targets {
         let cues = self.plan.cues.iter().map(|cue| &cue.targets);
         let touched = self.plan.reaction.iter().map(|cue| &cue.touched.targets);
@@ -56,42 +53,42 @@ impl ExhibitPiece {
     }
 }
 
-/// What the hand does while nobody is there.
+/// The pieces played while no visitor is present.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AttractLoop {
-    /// One after the other.
+    /// Played in turn.
     pub pieces: Vec<ExhibitPiece>,
-    /// Nobody touched the page for this long before it begins.
+    /// Idle time before it begins.
     pub after: Duration,
-    /// It plays for this long, …
+    /// Playing time, …
     pub play: Duration,
-    /// … then the hand rests for this long.
+    /// … followed by a rest of this length.
     pub rest: Duration,
 }
 
 /// A whole exhibition, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExhibitPlan {
-    /// What stands above the hand.
+    /// The line above the hand.
     pub title: BothWords,
-    /// What staff type; without one they choose it at the start.
+    /// The staff PIN; if `None`, staff choose one at the start.
     pub pin: Option<Pin>,
-    /// Speed and force that nothing passes.
+    /// Maximum speed and force.
     pub limits: MotionLimits,
-    /// What visitors may press.
+    /// The pieces that visitors can start.
     pub tiles: Vec<ExhibitPiece>,
-    /// Open, in which the hand rests.
+    /// Opens the hand; it rests open.
     pub open: PlayPlan,
     /// Play time of one visitor.
     pub visit: Duration,
-    /// What the hand does while nobody is there, if anything.
+    /// The attract loop; `None` for none.
     pub attract: Option<AttractLoop>,
-    /// Whether a tile that is held arms again after what only staff could end otherwise.
+    /// True if a visitor may arm the hand again by holding a tile after an end that otherwise only staff can clear.
     pub visitor_restart: bool,
 }
 
 impl MotionLimits {
-    /// What the link sets before anything moves.
+    /// The limits that the link sets when it arms.
     pub const fn arm_request(self) -> ArmRequest {
         ArmRequest {
             speed: PerDof::splat(self.speed),
@@ -99,7 +96,7 @@ impl MotionLimits {
         }
     }
 
-    /// Half as fast.
+    /// The same with half the speed.
     #[must_use]
     pub fn slower(self) -> Self {
         Self {
@@ -108,7 +105,7 @@ impl MotionLimits {
         }
     }
 
-    /// A plan that keeps within them. What is slower then has so much longer to arrive.
+    /// The plan limited to these. The time limit of a slowed step grows in proportion.
     pub fn limited(self, plan: &PlayPlan) -> PlayPlan {
         let mut plan = plan.clone();
         let touched = plan.reaction.iter_mut().map(|cue| &mut cue.touched);
@@ -128,7 +125,7 @@ impl MotionLimits {
     }
 }
 
-/// All joints open, gently.
+/// A gentle opening of all joints.
 pub(crate) fn open_plan(limits: MotionLimits) -> PlayPlan {
     let pose = LibraryPose::at(PerDof::splat(Angle::MAX));
     limits.limited(&PlayPlan {

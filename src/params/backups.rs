@@ -1,5 +1,5 @@
-//! What this program knows of each hand's flash: what it saved last and what came of it, and dated backups. One folder a hand,
-//! all in the form of [`crate::params::file`]. Writes to no hand.
+//! Records of each hand's flash: the last save with its result, and dated backups. One folder per hand, all files in the form of
+//! [`crate::params::file`]. Writes to no hand.
 
 use crate::params::file;
 use crate::params::file::{ParamsFile, SaveVerdict};
@@ -12,10 +12,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Backups kept per hand; the oldest goes first. Enough for a save a week for a year.
+/// Backups stored per hand; the oldest is removed first. Enough for one save a week for a year.
 pub const BACKUPS_MAX: usize = 50;
 
-/// What was saved last, and the SAVE that was sent last.
+/// The last confirmed save, and the last SAVE that was sent.
 const SAVED: &str = "saved.toml";
 const ATTEMPT: &str = "attempt.toml";
 
@@ -23,7 +23,7 @@ const ATTEMPT: &str = "attempt.toml";
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Backups {
     folder: PathBuf,
-    /// Its folder by an earlier version of this program, whose name other hands could share.
+    /// The folder used by an earlier version of this program; other hands could share its name.
     shared: PathBuf,
     hand: String,
 }
@@ -31,26 +31,26 @@ pub struct Backups {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Backup {
     pub path: PathBuf,
-    /// What is in it, with when, where and why it was made; or why it cannot be read.
+    /// The parameters, with date, origin and reason; or the error that prevents reading them.
     pub file: Result<ParamsFile, FileError>,
 }
 
-/// What is known of the flash.
+/// Knowledge of the flash.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Known {
-    /// What this program saved last, as far as the hand confirmed it.
+    /// The last values saved by this program and confirmed by the hand.
     pub saved: Option<ParamsFile>,
-    /// A later SAVE whose result is not known.
+    /// A later SAVE whose result is unknown.
     pub doubtful: Option<ParamsFile>,
 }
 
-/// The folder of all hands, beside the settings.
+/// The folder of all hands, beside the settings file.
 pub fn folder_beside(settings: &Path) -> PathBuf {
     settings.with_file_name("params")
 }
 
 impl Backups {
-    /// The folder of the hand at an endpoint, told by place and id as quirk sheets are.
+    /// The folder of the hand at an endpoint, named after place and id like quirk sheets.
     pub fn new(folder: &Path, hand: &Endpoint) -> Self {
         let (place, id) = hand.place_and_id();
         let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '.';
@@ -68,11 +68,11 @@ impl Backups {
         Self::new(folder, hand)
     }
 
-    /// Takes over the record of the same hand from its former place: its backups, and the last save. The last save known at
-    /// this place belonged to a hand that is gone, and is forgotten; its backups stay.
+    /// Takes over the backups and the last save of the same hand from its former place. The last save recorded at this place belonged
+    /// to another hand and is dropped; that hand's backups stay.
     ///
     /// # Errors
-    /// The system's error. A part may then be taken over already.
+    /// The I/O error. Some files may have been taken over by then.
     pub fn adopt(&self, former: &Self) -> io::Result<()> {
         if self.folder == former.folder {
             return Ok(());
@@ -104,7 +104,7 @@ impl Backups {
         Ok(())
     }
 
-    /// Its path.
+    /// The folder of this hand.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -123,7 +123,7 @@ impl Backups {
     /// Writes a dated backup, and removes the oldest one if there are more than [`BACKUPS_MAX`].
     ///
     /// # Errors
-    /// The system's error. Nothing should then be written to the hand.
+    /// The I/O error. The caller should then write nothing to the hand.
     pub fn back_up(&self, params: &Params, why: &str, since_1970: Duration) -> io::Result<PathBuf> {
         let file = self.file(params, why, since_1970);
         let day_and_time = file.at.replace(':', "-");
@@ -134,7 +134,7 @@ impl Backups {
             let name = path.file_name().and_then(|name| name.to_str());
             name.is_some_and(|name| name.starts_with(&day_and_time))
         };
-        // Names sort as they were made: a dot stands behind a hyphen.
+        // Names sort by date, because a dot sorts after a hyphen.
         let name = match earlier.iter().filter(is_same_second).count() {
             0 => format!("{day_and_time}-{why}.toml"),
             n => format!("{day_and_time}.{n:03}-{why}.toml"),
@@ -148,7 +148,7 @@ impl Backups {
     /// The backups, oldest first.
     ///
     /// # Errors
-    /// The system's error; a missing folder holds no backups.
+    /// The I/O error; a missing folder holds no backups.
     pub fn backups(&self) -> io::Result<Vec<Backup>> {
         let paths = self.backup_paths()?.into_iter();
         let backups = paths.map(|path| Backup {
@@ -168,7 +168,7 @@ impl Backups {
         Ok(paths)
     }
 
-    /// The file by this name, in the folder of an earlier version if it is only there.
+    /// Path of the file with this name; in the older folder if it exists only there.
     fn newest(&self, name: &str) -> PathBuf {
         let own = self.folder.join(name);
         let earlier = self.shared.join(name);
@@ -185,10 +185,10 @@ impl Backups {
         stem.is_some_and(|stem| self.folder.file_name() == Some(stem.as_ref()))
     }
 
-    /// Records a SAVE before it is sent: if this program ends before the result, the file says that it is not known.
+    /// Records a SAVE before it is sent: if the program ends before the result, the file marks it as unknown.
     ///
     /// # Errors
-    /// What the system says. Then no SAVE should be sent.
+    /// The I/O error. The caller should then not send the SAVE.
     pub fn note_attempt(&self, params: &Params, since_1970: Duration) -> io::Result<()> {
         let file = ParamsFile {
             verdict: Some(SaveVerdict::UnderWay),
@@ -197,10 +197,10 @@ impl Backups {
         replace_keeping_last(&self.attempt_path(), &file.to_toml())
     }
 
-    /// Notes the result of the SAVE that was noted last.
+    /// Records the result of the last SAVE that was noted.
     ///
     /// # Errors
-    /// What the system says, or what is wrong with the note. The SAVE is then noted as of unknown result.
+    /// An I/O error, or an invalid note. The SAVE then stays recorded with an unknown result.
     pub fn note_result(&self, saved: &Saved) -> io::Result<()> {
         let text = self.attempt_with(saved.into())?;
         if matches!(saved, Saved::Confirmed | Saved::ReadBack) {
@@ -209,7 +209,7 @@ impl Backups {
         replace_keeping_last(&self.attempt_path(), &text)
     }
 
-    /// Notes that the SAVE that was noted last was not carried out.
+    /// Records that the last SAVE that was noted was not carried out.
     ///
     /// # Errors
     /// As [`Self::note_result`].
@@ -224,13 +224,13 @@ impl Backups {
         Ok(file.to_toml())
     }
 
-    /// The hand was returned to its factory parameters: earlier saves are no longer in flash.
+    /// Drops the recorded saves, after the hand was reset to factory parameters.
     ///
     /// # Errors
-    /// The system's error.
+    /// The I/O error.
     pub fn forget_saved(&self) -> io::Result<()> {
         for name in [SAVED, ATTEMPT] {
-            // The second is that of an earlier version.
+            // The second path is that of an earlier version.
             for path in [self.folder.join(name), self.newest(name)] {
                 match std::fs::remove_file(path) {
                     Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
@@ -241,10 +241,10 @@ impl Backups {
         Ok(())
     }
 
-    /// What is known of the flash.
+    /// Knowledge of the flash, from the files.
     ///
     /// # Errors
-    /// What is wrong with the files; a missing one is no error.
+    /// An invalid file; a missing one is no error.
     pub fn known(&self) -> Result<Known, FileError> {
         let optional = |path: PathBuf| {
             if path.exists() {
@@ -261,7 +261,7 @@ impl Backups {
         })
     }
 
-    /// How long ago the last SAVE was sent, by a clock that both processes share.
+    /// Time since the last SAVE was sent, by the file's modification time, which all processes share. `None` if none was sent.
     pub fn since_attempt(&self, now: std::time::SystemTime) -> Option<Duration> {
         let written = std::fs::metadata(self.newest(ATTEMPT))
             .ok()?
@@ -355,7 +355,7 @@ mod tests {
             old.back_up(&params(nth), "before save", at(nth.unsigned_abs().into()))
                 .unwrap();
         }
-        // The last to save was the second.
+        // The second of them was saved last.
         let second = Backups {
             folder: shared,
             ..own(hands[1])
@@ -403,7 +403,7 @@ mod tests {
         let old = record(&folder);
         let new = old.beside(&"rtu:/dev/../x?id=9".parse().unwrap());
         assert_eq!(new.folder.parent(), old.folder.parent());
-        // A hand that was at the new place once.
+        // A hand that was formerly at the new place.
         new.back_up(&params(9), "before save", at(0)).unwrap();
         new.note_attempt(&params(9), at(0)).unwrap();
         new.note_result(&Saved::Confirmed).unwrap();

@@ -1,17 +1,16 @@
-//! From wanted values to writes, and from the results of writes to a verdict on each row. Sends nothing.
+//! Turns new values into writes, and the results of writes into a verdict on each row. Sends nothing.
 
 use crate::hand::{Dof, Force, HandId, PerDof, Refusal, SerialSpeed, Setting, Speed};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, decoded};
 use crate::record::{Doubt, NotSent, Verdict, Written};
 
-/// What has to be written for some wanted values, in the order of the writes. Rows that the hand holds
-/// already are not written.
+/// The writes for a set of values, in order. Rows that the hand already holds are not written.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct WritePlan {
     /// Rows and their new values.
     pub rows: Params,
-    /// One write per group; the defaults first, the rows that decide where the hand answers last.
+    /// One write per group: defaults first, rows that change the hand's address last.
     pub settings: Vec<Setting>,
 }
 
@@ -22,20 +21,20 @@ pub enum RowVerdict {
     Applied,
     /// Refused by the hand, or by the rule against unsafe writes.
     Refused { reason: Refusal },
-    /// Not refused, but the hand kept its old value.
+    /// Not refused, but the hand still holds its old value.
     Dropped,
     /// The hand holds a third value, neither the written nor the old one.
     Altered,
-    /// It was applied, and then put back because others could not be: the hand holds its old value.
+    /// Applied, then reverted because other rows failed: the hand holds its old value.
     PutBack,
-    /// The hand's value is not known.
+    /// The hand's value is unknown.
     Unverified(Doubt),
-    /// It was not written.
+    /// Not written.
     NotSent(NotSent),
 }
 
 impl RowVerdict {
-    /// The stable name for files and JSON.
+    /// Stable name in files and JSON.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Applied => "applied",
@@ -52,18 +51,17 @@ impl RowVerdict {
 /// Outcome of writing one row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RowOutcome {
-    /// The row.
     pub id: ParamId,
     pub wanted: Value,
-    /// The value before, if it was known.
+    /// The value before; `None` if it was unknown.
     pub before: Option<Value>,
-    /// The value now, if it could be read back.
+    /// The value now; `None` if it could not be read back.
     pub holds: Option<Value>,
     pub verdict: RowVerdict,
 }
 
-/// What to write so that a hand that holds `live` holds `wanted`, in the rows that `wanted` has. Values that may not be
-/// written are left out; files with such values are rejected earlier.
+/// The writes that change a hand from `live` to `wanted`, for the rows in `wanted`. Values out of range are left out; files with
+/// such values are rejected earlier.
 pub fn plan_writes(wanted: &Params, live: &Params) -> WritePlan {
     let rows = wanted.only(|id| {
         let value = wanted.get(id);
@@ -94,7 +92,7 @@ pub fn plan_writes(wanted: &Params, live: &Params) -> WritePlan {
     WritePlan { rows, settings }
 }
 
-/// Outcomes of wanted rows that the hand holds already: they are not written.
+/// Outcomes of the rows that the hand already holds and that are not written.
 pub fn held_already(wanted: &Params, plan: &WritePlan, before: &Params) -> Vec<RowOutcome> {
     let held = wanted.only(|id| plan.rows.get(id).is_none());
     let outcomes = held.iter().map(|(id, wanted)| RowOutcome {
@@ -158,7 +156,7 @@ const fn belongs(id: ParamId, setting: &Setting) -> bool {
     )
 }
 
-/// The values to write so that the hand holds again what it held: those of rows that changed, or may have.
+/// The values to write back to restore the hand: those of rows that changed, or may have.
 pub fn undo_of(outcomes: &[RowOutcome]) -> Params {
     let mut wanted = Params::default();
     for end in outcomes {
@@ -170,7 +168,7 @@ pub fn undo_of(outcomes: &[RowOutcome]) -> Params {
     wanted
 }
 
-/// The outcome of a row once its old value was to be put back, and the hand then holds this.
+/// Updates the outcome of a row after its old value was written back; `holds` is the value read then.
 pub fn after_undo(row: &mut RowOutcome, holds: Option<Value>) {
     row.holds = holds;
     if row.verdict != RowVerdict::Applied {

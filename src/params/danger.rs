@@ -1,4 +1,4 @@
-//! What could hurt once a hand wakes up with it: fast and strong defaults, by the measured overshoot. Forbids nothing.
+//! Dangers of power-up defaults: fast and strong joints, judged by the measured overshoot. Forbids nothing.
 
 use crate::hand::impact::{HIGHEST_G, NOTABLE_G};
 use crate::hand::overshoot::{Expected, MeasuredOn, OvershootMap, Stages};
@@ -6,38 +6,37 @@ use crate::hand::{Dof, Force};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 
-/// A joint whose defaults the user should know of before they are written or saved.
+/// A joint whose defaults need a warning before they are written or saved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Danger {
-    /// The joint.
     pub dof: Dof,
     /// Its speed after power-up.
     pub speed: i32,
     /// Its force threshold after power-up, grams.
     pub force_g: i32,
-    /// The peak above the threshold on something rigid, and on which hand that was measured.
+    /// Expected peak above the threshold on a rigid object, and the hand on which it was measured.
     pub expected: Expected,
 }
 
 impl Danger {
-    /// What the finger presses at the peak, grams.
+    /// Expected peak force of the finger, grams.
     pub fn peak_g(&self) -> f64 {
         f64::from(self.force_g) + self.expected.over_g
     }
 
-    /// True if no threshold as high was measured: the figure is that of the highest.
+    /// True if the threshold is above the highest measured one, whose overshoot is used then.
     pub fn is_beyond_measured(&self) -> bool {
         f64::from(self.force_g) > HIGHEST_G && self.expected.on == MeasuredOn::AnotherHand
     }
 
-    /// True if already the threshold is above the rated grip.
+    /// True if the threshold alone exceeds the rated grip.
     pub fn is_above_rated(&self) -> bool {
         self.force_g > i32::from(Force::RATED.get())
     }
 }
 
-/// The dangerous joints that would hit harder with `after` than with `before`, by what was measured of the hand: these need a
-/// confirmation.
+/// The dangerous joints that would hit harder with `after` than with `before`, by the overshoot measured on this hand: these
+/// need a confirmation.
 pub fn worse(before: &Params, after: &Params, map: &OvershootMap) -> Vec<Danger> {
     let peak = |params: &Params, dof| joint(params, dof, map).map(|joint| joint.peak_g());
     let rises =
@@ -45,7 +44,7 @@ pub fn worse(before: &Params, after: &Params, map: &OvershootMap) -> Vec<Danger>
     dangers(after, map).into_iter().filter(rises).collect()
 }
 
-/// The dangerous joints among these parameters. A joint of which one of the two values is not known is not judged.
+/// The dangerous joints in a set of parameters. Joints without a known speed or threshold are skipped.
 pub fn dangers(params: &Params, map: &OvershootMap) -> Vec<Danger> {
     let joints = Dof::ALL.into_iter();
     joints

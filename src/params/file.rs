@@ -1,5 +1,5 @@
-//! Parameters as TOML, version 1 (assets/manual/files.md). A file is taken whole or not at all; keys that are not known are kept
-//! and named.
+//! Parameters as TOML, version 1 (assets/manual/files.md). A file is accepted as a whole or rejected; unknown keys are preserved
+//! and listed.
 
 use crate::params::rows::{DEFAULT_FORCE, DEFAULT_SPEED, ParamId};
 use crate::params::values::Params;
@@ -9,34 +9,33 @@ use crate::store::{FileCause, FileError, FileText};
 use std::path::Path;
 use toml::Table;
 
-/// The name that is suggested for a parameter file.
+/// The suggested name of a parameter file.
 pub const FILE_NAME: &str = "handscope-params.toml";
 
-/// The format that a parameter file names.
+/// The `format` value of a parameter file.
 pub const FORMAT: &str = "handscope-params";
-/// A parameter file is a page of text; anything longer is not one.
+/// Maximum size; a parameter file is about a page of text.
 pub const FILE_LEN_MAX: u64 = 64 * 1024;
 
-/// The tables with a line for each joint.
+/// The tables with one line per joint.
 const GROUPS: [&str; 2] = [DEFAULT_SPEED, DEFAULT_FORCE];
 
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ParamsFile {
-    /// Where the values were read, as an endpoint; empty if nowhere.
+    /// Endpoint from which the values were read; empty if there is none.
     pub hand: String,
-    /// When, in UTC; empty if it is not known.
+    /// Date and time in UTC; empty if unknown.
     pub at: String,
-    /// Why it was written: `dump`, `before save`, …
+    /// Reason for the file: `dump`, `before save`, …
     pub why: String,
-    /// For what was saved: what is known of the SAVE.
+    /// Result of the SAVE, in a record of saved values.
     pub verdict: Option<SaveVerdict>,
-    /// The values.
     pub params: Params,
-    /// Keys of a later version, kept as they are.
+    /// Keys of a later version, preserved.
     pub others: Table,
 }
 
-/// What is known of a SAVE. Files and JSON hold its `Display`, which `FromStr` reads again.
+/// Result of a SAVE. Files and JSON hold its `Display` text, which `FromStr` parses.
 #[derive(Debug, Clone, PartialEq, Eq, strum::Display, strum::EnumString)]
 #[strum(serialize_all = "snake_case")]
 pub enum SaveVerdict {
@@ -45,7 +44,7 @@ pub enum SaveVerdict {
     Failed,
     Refused,
     NotSent,
-    /// It was about to be sent, and the program ended before the result.
+    /// About to be sent; the program ended before the result.
     #[strum(serialize = "unknown: under way")]
     UnderWay,
     #[strum(serialize = "unknown: no result")]
@@ -56,13 +55,13 @@ pub enum SaveVerdict {
     NotReadBack,
     #[strum(serialize = "unknown: link lost")]
     LinkLost,
-    /// Of another version of this program.
+    /// A text of another version of this program.
     #[strum(default)]
     Other(String),
 }
 
 impl SaveVerdict {
-    /// Whether flash may hold what was to be saved, and may not.
+    /// True if flash may or may not hold the values.
     pub const fn is_in_doubt(&self) -> bool {
         !matches!(
             self,
@@ -90,13 +89,13 @@ impl From<&Saved> for SaveVerdict {
 }
 
 impl ParamsFile {
-    /// What is known of the SAVE, as the file has it; empty if it says nothing.
+    /// Result of the SAVE as text; empty if there is none.
     pub fn verdict_text(&self) -> String {
         let verdict = self.verdict.as_ref();
         verdict.map(SaveVerdict::to_string).unwrap_or_default()
     }
 
-    /// The text of the file.
+    /// The file as TOML text.
     pub fn to_toml(&self) -> String {
         let mut table = Table::new();
         put(&mut table, "format", FORMAT);
@@ -124,11 +123,11 @@ impl ParamsFile {
                 }
             }
         }
-        // A table of text, numbers and tables can always be written.
+        // A table of texts, numbers and tables always serializes.
         toml::to_string(&table).unwrap_or_default()
     }
 
-    /// The names of keys that are not known, groups spelt out.
+    /// Names of unknown keys, with their group as a prefix.
     pub fn unknown_keys(&self) -> Vec<String> {
         let keys = self.others.iter().flat_map(|(key, value)| match value {
             toml::Value::Table(inner) if GROUPS.contains(&key.as_str()) => {
@@ -140,10 +139,10 @@ impl ParamsFile {
     }
 }
 
-/// Takes a file from its text.
+/// Parses the text of a file.
 ///
 /// # Errors
-/// The first thing that is wrong, with the field's name.
+/// The first error, with the name of the field.
 pub fn read(text: &str) -> Result<ParamsFile, FileError> {
     let mut table: Table = FileText::of(text, FORMAT)?.parse()?;
     for head in ["format", "version"] {
@@ -153,7 +152,7 @@ pub fn read(text: &str) -> Result<ParamsFile, FileError> {
         hand: word(&mut table, "hand")?,
         at: word(&mut table, "at")?,
         why: word(&mut table, "why")?,
-        // No word fails to be read: one that is not known is `Other`.
+        // Parsing never fails: an unknown text is `Other`.
         verdict: Some(word(&mut table, "verdict")?)
             .filter(|text| !text.is_empty())
             .and_then(|text| text.parse().ok()),
@@ -186,10 +185,10 @@ pub fn read(text: &str) -> Result<ParamsFile, FileError> {
     Ok(file)
 }
 
-/// Reads a file that the user chose.
+/// Reads a file chosen by the user.
 ///
 /// # Errors
-/// The first thing that is wrong.
+/// The first error.
 pub fn load(path: &Path) -> Result<ParamsFile, FileError> {
     toml_file::load(path, FILE_LEN_MAX, read)
 }
@@ -213,7 +212,7 @@ fn bad_value(field: &str, got: &toml::Value, allowed: String) -> FileError {
     }
 }
 
-/// Takes out what stands under a name; one with a dot lies in a group.
+/// Removes and returns the value of a name; a dot separates group and key.
 fn take(table: &mut Table, name: &str) -> Option<toml::Value> {
     match name.split_once('.') {
         Some((group, key)) => table.get_mut(group)?.as_table_mut()?.remove(key),
@@ -221,7 +220,7 @@ fn take(table: &mut Table, name: &str) -> Option<toml::Value> {
     }
 }
 
-/// Puts a value under a name; one with a dot goes into its group.
+/// Inserts a value under a name; a dot separates group and key.
 fn put(table: &mut Table, name: &str, value: impl Into<toml::Value>) {
     let Some((group, key)) = name.split_once('.') else {
         table.insert(name.into(), value.into());
@@ -323,7 +322,7 @@ thumb_bend = 800
                     let told = error.to_string();
                     assert!(told.contains(words) && !told.contains('\n'), "{told}");
                 }
-                // What is not a joint is a key that is not known.
+                // A name that is not a joint is an unknown key.
                 Ok(file) => assert!(
                     words == "it holds" && !file.unknown_keys().is_empty(),
                     "{to}"

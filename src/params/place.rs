@@ -1,19 +1,18 @@
-//! What a hand is found by: its id, serial speed and address, and where it is found after a change of one.
+//! Addresses of a hand: its id, serial speed and IP address, and its endpoint after one of them changes.
 
 use crate::hand::{HandId, Refusal, SerialSpeed, Setting};
 use crate::params::rows::{ParamId, Value};
 use crate::transport::Endpoint;
 
-/// Where the hand is looked for.
+/// The place to search for the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum WhichPlace {
     Old,
-    /// Where it will be, if the change acts at once.
+    /// Its place if the change takes effect immediately.
     New,
 }
 
 impl WhichPlace {
-    /// The other one.
     #[must_use]
     pub const fn other(self) -> Self {
         match self {
@@ -23,25 +22,25 @@ impl WhichPlace {
     }
 }
 
-/// Where the hand is after a change was written.
+/// Result of a written address change.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Moved {
     /// Another hand answers at the new place. Nothing was written.
     Occupied,
-    /// The hand said no, and is where it was.
+    /// The hand refused the change and stays at its old place.
     Refused { reason: Refusal },
     /// The hand answers at the new place.
     There,
-    /// The hand answers at the old place and holds the new value: it acts at a SAVE or at the next power-up.
+    /// The hand answers at the old place and holds the new value, which takes effect with a SAVE or at the next power-up.
     Waits,
-    /// The hand answers at the old place and holds what it held.
+    /// The hand answers at the old place with its old value.
     Stayed,
     /// No hand answers at either place.
     Nowhere,
 }
 
 impl Moved {
-    /// The stable word for JSON.
+    /// Stable name in JSON.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Occupied => "occupied",
@@ -54,16 +53,14 @@ impl Moved {
     }
 }
 
-/// Both places of a hand.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlacePair {
     pub old: Endpoint,
-    /// Where it will be; as old where this wire finds it by something else.
+    /// The new place; equal to the old one if the changed row does not affect this wire.
     pub new: Endpoint,
 }
 
 impl PlacePair {
-    /// The endpoint of a place.
     pub const fn endpoint(&self, place: WhichPlace) -> &Endpoint {
         match place {
             WhichPlace::Old => &self.old,
@@ -72,7 +69,7 @@ impl PlacePair {
     }
 }
 
-/// The setting that is a row by which a hand is found; none for other rows and for values outside the manual's ranges.
+/// The setting that writes an address row; `None` for other rows and for values outside the manual's ranges.
 pub fn setting(id: ParamId, value: Value) -> Option<Setting> {
     match (id, value) {
         (ParamId::HandId, Value::Number(number)) => {
@@ -86,7 +83,7 @@ pub fn setting(id: ParamId, value: Value) -> Option<Setting> {
     }
 }
 
-/// Where the hand will be found over the same wire; none if this row does not say it there, or this wire cannot follow.
+/// The hand's endpoint on the same wire after the change; `None` if the row does not affect this wire, or the wire cannot follow.
 pub fn new_place(hand: &Endpoint, id: ParamId, wanted: Value) -> Option<Endpoint> {
     let Value::Number(number) = wanted else {
         return None;
@@ -113,7 +110,7 @@ pub fn new_place(hand: &Endpoint, id: ParamId, wanted: Value) -> Option<Endpoint
     Some(place)
 }
 
-/// The same wire with the factory's id and serial speed. An address on the network acts from the next power-up.
+/// The same wire with the factory id and serial speed. A factory IP address takes effect only at the next power-up.
 pub fn factory_place(hand: &Endpoint) -> Endpoint {
     let mut place = hand.clone();
     let id = match ParamId::HandId.factory() {
@@ -125,7 +122,7 @@ pub fn factory_place(hand: &Endpoint) -> Endpoint {
             line.id = id;
             line.baud = SerialSpeed::Baud115200.baud();
         }
-        // The speed behind a device server is set there.
+        // The serial speed behind a device server is configured there.
         Endpoint::RtuTcp(line) => line.id = id,
         Endpoint::Can { id: at, .. }
         | Endpoint::Slcan { id: at, .. }

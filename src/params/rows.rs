@@ -1,4 +1,4 @@
-//! The rows: every register element that a hand keeps and that its manual lists, by the one register table. Holds no value.
+//! The rows: every persistent register element in the manual, from the register table. Holds no values.
 
 use crate::hand::register::{
     DEFAULT_FORCE_SET, DEFAULT_SPEED_SET, HAND_ID, REDU_RATIO, Register, by_address,
@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::net::Ipv4Addr;
 
-/// One parameter. In JSON it stands by its name.
+/// One parameter. Serialized as its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(into = "String")]
 pub enum ParamId {
-    /// The id on the bus (manual 2.6.1).
+    /// The bus id (manual 2.6.1).
     HandId,
     /// The code of the serial speed (manual 2.6.2).
     ReduRatio,
@@ -25,7 +25,7 @@ pub enum ParamId {
     DefaultForce(Dof),
 }
 
-/// What a parameter holds, as the hand gives it: it may lie outside the documented range.
+/// The value of a parameter, as read from the hand: it may be outside the documented range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -51,13 +51,13 @@ impl From<Value> for toml::Value {
     }
 }
 
-/// The file's group of speeds after power-up.
+/// The table of power-up speeds in files.
 pub const DEFAULT_SPEED: &str = "default_speed";
-/// The file's group of force thresholds after power-up.
+/// The table of power-up force thresholds in files.
 pub const DEFAULT_FORCE: &str = "default_force";
 
 impl ParamId {
-    /// All rows in the order of their addresses, the IP address first among those that say where the hand is.
+    /// All rows: id, serial speed and IP address, then the defaults in register order.
     pub fn all() -> Vec<Self> {
         let mut all = vec![Self::HandId, Self::ReduRatio, Self::IpAddress];
         all.extend(Dof::ALL.map(Self::DefaultSpeed));
@@ -65,7 +65,7 @@ impl ParamId {
         all
     }
 
-    /// The stable name in files, on the command line and in JSON.
+    /// Stable name in files, on the command line and in JSON.
     pub fn name(self) -> String {
         match self {
             Self::HandId => "hand_id".into(),
@@ -76,7 +76,7 @@ impl ParamId {
         }
     }
 
-    /// The rows that a name means: one, or a group's six.
+    /// The rows with this name: a single one, or the six of a group.
     pub fn named(name: &str) -> Vec<Self> {
         let all = Self::all().into_iter();
         let is_meant = |id: &Self| {
@@ -86,7 +86,7 @@ impl ParamId {
         all.filter(is_meant).collect()
     }
 
-    /// The register that holds it; of an IP address the first part.
+    /// Its register; the first of four for an IP address.
     pub fn register(self) -> &'static Register {
         let address = match self {
             Self::HandId => HAND_ID.address,
@@ -98,7 +98,7 @@ impl ParamId {
         by_address(address).unwrap_or(&HAND_ID)
     }
 
-    /// Smallest and largest value that may be written; none for an address.
+    /// Smallest and largest value that may be written; `None` for an IP address.
     pub fn range(self) -> Option<(i32, i32)> {
         match self {
             Self::IpAddress => None,
@@ -106,12 +106,12 @@ impl ParamId {
         }
     }
 
-    /// The unit, empty if there is none.
+    /// The unit; empty if there is none.
     pub fn unit(self) -> &'static str {
         self.register().unit
     }
 
-    /// What the hand is delivered with, where the manual says so.
+    /// The factory value; `None` if the manual gives none.
     pub fn factory(self) -> Option<Value> {
         if self != Self::IpAddress {
             return self.register().default.map(Value::Number);
@@ -123,13 +123,13 @@ impl ParamId {
         Some(Value::Address(parts.into()))
     }
 
-    /// True if it says where the hand is found: id, serial speed, IP address. Such a row belongs to one hand and is never
-    /// copied to another by the way.
+    /// True for the rows that define how the hand is reached: id, serial speed, IP address. They belong to one hand and are not copied
+    /// to another along with the rest.
     pub const fn is_place(self) -> bool {
         matches!(self, Self::HandId | Self::ReduRatio | Self::IpAddress)
     }
 
-    /// Whether a value may be written there.
+    /// True if this value may be written.
     pub fn allows(self, value: Value) -> bool {
         match (self, value) {
             (Self::IpAddress, Value::Address(address)) => is_host(address),
@@ -141,7 +141,7 @@ impl ParamId {
         }
     }
 
-    /// What may be written there, in words.
+    /// The allowed values, as text.
     pub fn allowed(self) -> String {
         match (self, self.range()) {
             (Self::IpAddress, _) | (_, None) => {
@@ -158,7 +158,7 @@ impl From<ParamId> for String {
     }
 }
 
-/// True for an address that one computer can have.
+/// True for an IP address that a host can have.
 fn is_host(address: Ipv4Addr) -> bool {
     let [first, .., last] = address.octets();
     !matches!(first, 0 | 127 | 224..) && !matches!(last, 0 | 255)

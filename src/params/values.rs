@@ -1,4 +1,4 @@
-//! One set of parameter values, as read from a hand, from a file, or at delivery; and how two sets differ. Reads nothing itself.
+//! One set of parameter values, from a hand, a file or the factory, and the differences of two sets. Reads nothing itself.
 
 use crate::hand::register::{DEFAULT_FORCE_SET, DEFAULT_SPEED_SET, HAND_ID, REDU_RATIO};
 use crate::hand::setting::IP_PARTS;
@@ -7,7 +7,7 @@ use crate::params::rows::{ParamId, Value};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 
-/// What has to be read for all rows; each fits a frame of every protocol.
+/// The spans to read for all rows; each fits a frame of every protocol.
 pub const SPANS: [Span; 4] = [
     HAND_ID.span(),
     REDU_RATIO.span(),
@@ -18,65 +18,62 @@ pub const SPANS: [Span; 4] = [
     IP_PARTS,
 ];
 
-/// Values of some rows. A row that is not there is not known.
+/// Values of some rows. Missing rows are unknown.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Params(BTreeMap<ParamId, Value>);
 
 /// One row in which two sets differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ParamDifference {
-    /// The row.
     pub id: ParamId,
-    /// Here.
+    /// The value in this set; `None` if unknown.
     pub ours: Option<Value>,
     pub theirs: Value,
 }
 
 impl Params {
-    /// What a hand is delivered with, as far as the manual says.
+    /// The factory values, as far as the manual gives them.
     pub fn factory() -> Self {
         let all = ParamId::all().into_iter();
         Self(all.filter_map(|id| Some((id, id.factory()?))).collect())
     }
 
-    /// The value of a row, if it is known.
+    /// The value of a row; `None` if unknown.
     pub fn get(&self, id: ParamId) -> Option<Value> {
         self.0.get(&id).copied()
     }
 
-    /// Sets a row.
     pub fn put(&mut self, id: ParamId, value: Value) {
         self.0.insert(id, value);
     }
 
-    /// Takes a row away.
+    /// Removes a row.
     pub fn forget(&mut self, id: ParamId) {
         self.0.remove(&id);
     }
 
-    /// The rows that are known, in their order.
+    /// The known rows, in order.
     pub fn iter(&self) -> impl Iterator<Item = (ParamId, Value)> + '_ {
         self.0.iter().map(|(id, value)| (*id, *value))
     }
 
-    /// True if no row is known.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Only some of the rows.
+    /// The rows that satisfy the predicate.
     pub fn only(&self, is_meant: impl Fn(ParamId) -> bool) -> Self {
         Self(self.iter().filter(|(id, _)| is_meant(*id)).collect())
     }
 
-    /// These rows with others over them.
+    /// These rows, overridden by `others`.
     pub fn with(&self, others: &Self) -> Self {
         let mut all = self.clone();
         others.iter().for_each(|(id, value)| all.put(id, value));
         all
     }
 
-    /// Takes what a run of the hand's memory holds. Rows that lie only partly in it stay as they were.
+    /// Decodes the rows that a span of the hand's memory covers. Rows only partly in it are unchanged.
     pub fn take(&mut self, span: Span, bytes: &[u8]) {
         for id in ParamId::all() {
             if let Some(value) = decoded(id, span, bytes) {
@@ -85,7 +82,7 @@ impl Params {
         }
     }
 
-    /// Rows that `wanted` knows and this set holds otherwise or does not know.
+    /// Rows known in `wanted` that are different or unknown in this set.
     pub fn differences(&self, wanted: &Self) -> Vec<ParamDifference> {
         let rows = wanted.iter().map(|(id, theirs)| ParamDifference {
             id,
@@ -96,7 +93,7 @@ impl Params {
     }
 }
 
-/// All rows by name; null for those that are not known.
+/// All rows by name; unknown ones are null.
 impl Serialize for Params {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let all = ParamId::all().into_iter();
@@ -104,7 +101,7 @@ impl Serialize for Params {
     }
 }
 
-/// The bytes in which a row lies.
+/// The bytes of a row.
 pub fn span_of(id: ParamId) -> Span {
     let row = id.register();
     match id {
@@ -118,7 +115,7 @@ fn element(address: u16, dof: Dof) -> Span {
     Span::new(address + 2 * dof as u16, 2)
 }
 
-/// What a run of memory holds for a row.
+/// The value of a row in a span of memory; `None` if the span does not cover it.
 pub fn decoded(id: ParamId, span: Span, bytes: &[u8]) -> Option<Value> {
     match (id, span.slice(bytes, span_of(id))?) {
         (ParamId::IpAddress, parts) => {

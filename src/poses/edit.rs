@@ -1,4 +1,4 @@
-//! How the user changes the library. Every change leaves it whole: names differ, steps name poses that exist.
+//! User edits of the library. Every edit keeps it consistent: names are unique, and steps name existing poses.
 
 use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
@@ -7,69 +7,69 @@ use crate::poses::library::{
     STEPS_MAX, Sequence, SequenceId, SequenceStep, StepGoal, TAGS_MAX, clean, free_name,
 };
 
-/// One change of a pose.
+/// An edit of a pose.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PoseEdit {
-    /// Another name; an empty one changes nothing, a taken one gets a number.
+    /// A new name; an empty one is ignored, a taken one gets a number.
     Rename(String),
     /// Tags, separated by commas.
     Tags(String),
-    /// Where one joint goes. Not of a pose by size, whose angles are those of its gap.
+    /// The target of one joint; ignored for a pose by size, whose angles follow from its gap.
     Angle(Dof, Angle),
-    /// The gap of a pose by size, or one of angles again.
+    /// The gap of a pose by size; `None` turns it back into a pose of angles.
     Gap(Option<Gap>),
-    /// Leave a joint alone, or not.
+    /// True leaves a joint where it is when the pose is recalled.
     Leave(Dof, bool),
-    /// Speed of recalling.
+    /// Speed of recall.
     Speed(Speed),
-    /// Force threshold of recalling.
+    /// Force threshold of recall.
     Force(Force),
-    /// To this place in the order, 0 for the first; those between make room.
+    /// Moves it to this position, from 0; the poses between shift.
     Move(usize),
-    /// A copy behind it.
+    /// Inserts a copy after it.
     Duplicate,
-    /// Away, with the steps that name it.
+    /// Deletes it, with the steps and reactions that name it.
     Delete,
 }
 
-/// One change of a sequence.
+/// An edit of a sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SequenceEdit {
-    /// Another name; an empty one changes nothing, a taken one gets a number.
+    /// A new name; an empty one is ignored, a taken one gets a number.
     Rename(String),
-    /// Whether the first step follows the last.
+    /// True to repeat the sequence from its first step.
     Loop(bool),
-    /// One more step at the end.
+    /// Appends a step to a pose.
     Add(PoseId),
-    /// One more step at the end: a grip by size.
+    /// Appends a step with a grip by size.
     AddGap(Gap),
-    /// A step away.
+    /// Removes a step.
     Remove(usize),
-    /// A step from one place to another; those between make room.
+    /// Moves a step from one position to another; the steps between shift.
     Move(usize, usize),
-    /// Another speed and other times for a step.
+    /// Replaces a step.
     Change(usize, SequenceStep),
-    /// The whole sequence away.
+    /// Deletes the sequence.
     Delete,
 }
 
-/// One change of the library.
+/// An edit of the library.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LibraryEdit {
     Pose(PoseId, PoseEdit),
-    /// A new sequence without steps, by this name or the next free one.
+    /// A new sequence without steps, under this name or the next free one.
     NewSequence(String),
     Sequence(SequenceId, SequenceEdit),
-    /// New poses, and from two on a sequence of them by the name of the last.
+    /// New poses; two or more also form a sequence with the name of the last.
     Add(Vec<LibraryPose>),
-    /// A copy of a shipped pose, or of a shipped sequence with the poses that it needs.
+    /// A copy of a shipped pose, or of a shipped sequence with the poses it needs.
     Copy(EntryId),
-    /// Take the last deletion or import back.
+    /// Reverts the last deletion or import.
     Undo,
 }
 
 impl PoseLibrary {
-    /// Adds a pose behind the others; `None` if the library is full.
+    /// Appends a pose; `None` if the library is full.
     pub fn add_pose(&mut self, name: &str, mut pose: LibraryPose) -> Option<PoseId> {
         if self.poses.len() >= ENTRIES_MAX {
             return None;
@@ -81,7 +81,7 @@ impl PoseLibrary {
         Some(id)
     }
 
-    /// Adds a sequence behind the others; `None` if the library is full.
+    /// Appends a sequence; `None` if the library is full.
     pub fn add_sequence(&mut self, name: &str) -> Option<SequenceId> {
         if self.sequences.len() >= ENTRIES_MAX {
             return None;
@@ -100,13 +100,13 @@ impl PoseLibrary {
         Some(id)
     }
 
-    /// Whether poses of a grasp and their sequence find room.
+    /// True if there is room for the poses of a grasp and their sequence.
     pub const fn has_room(&self) -> bool {
         self.poses.len() + 2 <= ENTRIES_MAX && self.sequences.len() < ENTRIES_MAX
     }
 
-    /// Adds poses, and from two on a sequence of them by the name of the last, whose steps take the poses' own speeds. Where the
-    /// library is full, nothing is added.
+    /// Appends poses; two or more also form a sequence with the name of the last and steps at the poses' own speeds. `None`, and nothing
+    /// added, if the library is full.
     pub fn add_all(&mut self, poses: Vec<LibraryPose>) -> Option<EntryId> {
         if self.poses.len() + poses.len() > ENTRIES_MAX || self.sequences.len() >= ENTRIES_MAX {
             return None;
@@ -139,7 +139,7 @@ impl PoseLibrary {
         })
     }
 
-    /// Adds a copy of another library's pose or sequence. Poses that it needs are this library's own of their name, if there are such.
+    /// Appends a copy of another library's pose or sequence. Poses it needs are matched by name with this library's own, else copied.
     pub fn copy_from(&mut self, other: &Self, entry: EntryId) -> Option<EntryId> {
         Some(match entry {
             EntryId::Pose(id) => {
@@ -159,7 +159,7 @@ impl PoseLibrary {
                 *own = copy;
                 EntryId::Sequence(own.id)
             }
-            // One that was copied could not be edited or deleted here.
+            // A copied reaction could not be edited or deleted here.
             EntryId::Reaction(_) => return None,
         })
     }
@@ -172,7 +172,7 @@ impl PoseLibrary {
         }
     }
 
-    /// Adds a reaction behind the others; `None` if the library is full.
+    /// Appends a reaction; `None` if the library is full.
     fn add_reaction(&mut self, mut reaction: Reaction) -> Option<ReactionId> {
         if self.reactions.len() >= ENTRIES_MAX {
             return None;
@@ -185,7 +185,7 @@ impl PoseLibrary {
         Some(id)
     }
 
-    /// Puts all of another library behind this one's own. Names that are taken get a number.
+    /// Appends all entries of another library. Taken names get a number.
     pub fn merge(&mut self, other: Self) {
         let mut ids = Vec::new();
         for pose in other.poses {
@@ -221,7 +221,6 @@ impl PoseLibrary {
         }
     }
 
-    /// Changes one pose.
     pub fn edit_pose(&mut self, id: PoseId, edit: PoseEdit) {
         let Some(at) = self.place(id) else {
             return;
@@ -273,7 +272,6 @@ impl PoseLibrary {
         put(&mut self.poses, last, at + 1);
     }
 
-    /// Changes one sequence.
     pub fn edit_sequence(&mut self, id: SequenceId, edit: SequenceEdit) {
         if edit == SequenceEdit::Delete {
             self.sequences.retain(|sequence| sequence.id != id);
@@ -316,7 +314,7 @@ impl PoseLibrary {
 }
 
 impl Sequence {
-    /// One more step at this speed, if there is one and room for it.
+    /// Appends a step, if `speed` is known and there is room.
     fn push(&mut self, goal: StepGoal, speed: Option<Speed>) {
         if let Some(speed) = speed.filter(|_| self.steps.len() < STEPS_MAX) {
             self.steps.push(SequenceStep::new(goal, speed));
@@ -325,7 +323,7 @@ impl Sequence {
 }
 
 impl SequenceStep {
-    /// A step with the waiting times that the user starts from.
+    /// A step with default waiting times.
     pub const fn new(goal: StepGoal, speed: Speed) -> Self {
         Self {
             goal,
@@ -338,7 +336,7 @@ impl SequenceStep {
 }
 
 impl LibraryPose {
-    /// A pose with gentle limits, moving every joint. Its name and id are given when it is added.
+    /// A pose with gentle limits that moves every joint. Its name and id are assigned when it is added.
     pub fn at(angles: PerDof<Angle>) -> Self {
         Self {
             id: PoseId(0),
@@ -357,7 +355,7 @@ impl LibraryPose {
     }
 }
 
-/// Tags of a list with commas, each once.
+/// Tags of a comma-separated list, without duplicates.
 pub(crate) fn tags(text: &str) -> Vec<String> {
     let mut tags: Vec<String> = Vec::new();
     for tag in text.split([',', '，']).map(clean) {
@@ -368,7 +366,7 @@ pub(crate) fn tags(text: &str) -> Vec<String> {
     tags
 }
 
-/// Takes one out and puts it in elsewhere. A place that does not exist changes nothing.
+/// Moves an element to another position. Positions out of range are ignored.
 fn put<T>(row: &mut [T], from: usize, to: usize) {
     let between = from.min(to)..=from.max(to);
     if let Some(between) = row.get_mut(between) {

@@ -1,4 +1,4 @@
-//! The library as TOML, version 1 (assets/manual/files.md). A file is taken whole or not at all; keys that are not known are kept.
+//! The library as TOML, version 1 (assets/manual/files.md). A file is accepted as a whole or rejected; unknown keys are preserved.
 
 use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
@@ -14,7 +14,7 @@ use crate::store::{FileCause, FileError, FileText};
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-/// The format that a pose file names.
+/// The `format` value of a pose file.
 pub const FORMAT: &str = "handscope-poses";
 #[derive(Serialize, Deserialize)]
 struct FileRow {
@@ -53,7 +53,7 @@ struct PoseRow {
     others: toml::Table,
 }
 
-/// All six joints, and no other: a pose of another hand is refused.
+/// Exactly six joints; a pose of another hand is rejected.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AnglesRow {
@@ -80,7 +80,7 @@ struct SequenceRow {
     others: toml::Table,
 }
 
-/// A step goes to a pose or has a grip by size, with its force. One with a key that is not known is another step than was meant.
+/// A step goes to a pose, or to a grip by size with its force. Unknown keys are rejected, since ignoring one would change the step.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StepRow {
@@ -97,7 +97,7 @@ struct StepRow {
     until: Option<UntilRow>,
 }
 
-/// What a step waits for. A grip that this version does not know is refused: a step that does not wait is another.
+/// Condition that ends a step. Unknown grips are rejected, since a step that does not wait is a different one.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct UntilRow {
@@ -127,10 +127,10 @@ struct ReactionRow {
     others: toml::Table,
 }
 
-/// The library as text.
+/// The library as TOML text.
 ///
 /// # Errors
-/// What the TOML writer says; a library that was built by this program has no such value.
+/// An error of the TOML writer; a library built by this program never causes one.
 pub fn write(library: &PoseLibrary) -> Result<String, toml::ser::Error> {
     let poses = library.poses.iter().map(pose_row).collect();
     let sequences = library.sequences.iter();
@@ -219,21 +219,21 @@ fn chinese(name: &str) -> Option<Spanned<String>> {
     (!name.is_empty()).then(|| unplaced(name.to_owned()))
 }
 
-/// The library that a text holds.
+/// Parses a library.
 ///
 /// # Errors
-/// [`FileError`] with line and field; nothing is taken of such a text.
+/// [`FileError`] with line and field; a bad text is rejected as a whole.
 pub fn read(text: &str) -> Result<PoseLibrary, FileError> {
     read_into(PoseLibrary::default(), text)
 }
 
-/// As [`read`], into an empty library that numbers its entries in its own way.
+/// As [`read`], into an empty library with its own numbering of entries.
 pub(crate) fn read_into(empty: PoseLibrary, text: &str) -> Result<PoseLibrary, FileError> {
     let source = FileText::of(text, FORMAT)?;
     PoseReader(source).library(empty, source.parse()?)
 }
 
-/// Makes a library of what a text holds.
+/// Builds a library from a parsed text.
 #[derive(Clone, Copy)]
 struct PoseReader<'a>(FileText<'a>);
 
@@ -326,7 +326,7 @@ impl PoseReader<'_> {
         Ok(())
     }
 
-    /// The joints that are left alone; in a grip by size thumb and index cannot be.
+    /// The joints that stay where they are; a grip by size cannot leave out thumb or index.
     fn left(self, row: Option<Spanned<Vec<Dof>>>, gap: Option<Gap>) -> Result<Vec<Dof>, FileError> {
         let Some(row) = row else {
             return Ok(Vec::new());
@@ -380,7 +380,7 @@ impl PoseReader<'_> {
         Ok(())
     }
 
-    /// The pose of this name, which a field of the file has.
+    /// The pose with this name, which a field of the file refers to.
     fn named(
         self,
         library: &PoseLibrary,

@@ -1,4 +1,4 @@
-//! A grip by size, and what it is told by, as they stand in a pose file.
+//! Grips by size and their detection thresholds in a pose file.
 
 use crate::hand::gap::{Gap, GripKind};
 use crate::hand::grip::{GripThreshold, GripThresholds};
@@ -24,7 +24,7 @@ impl GripRow {
         }
     }
 
-    /// The gap; a kind that has none is refused with the reason.
+    /// The gap; kinds without one are rejected with the reason.
     pub(super) fn read(&self, source: FileText<'_>) -> Result<Gap, FileError> {
         let kind = self.kind.get_ref().offered();
         kind.map_err(|why| source.blame(self.kind.span(), "kind", FileCause::NotOffered(why)))?;
@@ -43,7 +43,7 @@ impl GripRow {
     }
 }
 
-/// Thresholds by name; the usual ones are left out.
+/// Thresholds by name; defaults are left out.
 pub(super) type ThresholdsRow = BTreeMap<Spanned<String>, Spanned<Value>>;
 
 pub(super) fn thresholds_row(thresholds: &GripThresholds) -> ThresholdsRow {
@@ -88,7 +88,7 @@ const fn number(value: &Value) -> Option<f64> {
     }
 }
 
-/// A whole number without a point.
+/// A number; whole ones are written without a decimal point.
 fn value(number: f64) -> Value {
     #[expect(
         clippy::cast_possible_truncation,
@@ -102,7 +102,7 @@ fn value(number: f64) -> Value {
     }
 }
 
-/// A value that was read from no place of a file.
+/// A value without a position in a file.
 pub(super) fn unplaced<T>(value: T) -> Spanned<T> {
     Spanned::new(0..0, value)
 }

@@ -1,4 +1,4 @@
-//! Poses and sequences as plain values. How they are changed is in `edit`, how they are written in `file`.
+//! Poses and sequences as plain values. Edits are in `edit`, the file format in `file`.
 
 use crate::hand::gap::Gap;
 use crate::hand::grip::GripThresholds;
@@ -7,30 +7,30 @@ use crate::poses::reaction::TouchForce;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Poses and sequences that a library holds, each: more than the user finds again.
+/// Maximum number of poses, of sequences and of reactions: more than the user can find again.
 pub const ENTRIES_MAX: usize = 500;
-/// Steps of a sequence.
+/// Maximum number of steps in a sequence.
 pub const STEPS_MAX: usize = 200;
-/// Characters of a name or tag: what fits a tile.
+/// Maximum length of a name or tag, characters: the width of a tile.
 pub const NAME_CHARS_MAX: usize = 32;
-/// The tag of poses that only demos need.
+/// Tag of poses needed only by demos.
 pub const DEMO: &str = "demo";
-/// Tags of one pose.
+/// Maximum number of tags per pose.
 pub const TAGS_MAX: usize = 8;
 
-/// A pose for as long as the program runs; files know it by its name.
+/// Id of a pose while the program runs; files use its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PoseId(pub u64);
 
-/// A sequence for as long as the program runs.
+/// Id of a sequence while the program runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SequenceId(pub u64);
 
-/// A reaction for as long as the program runs.
+/// Id of a reaction while the program runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ReactionId(pub u64);
 
-/// An entry of the library.
+/// Id of an entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum EntryId {
     Pose(PoseId),
@@ -45,16 +45,15 @@ impl EntryId {
     }
 }
 
-/// The key that, with Shift, starts an entry of the library: a letter that means nothing else with Shift, or a digit from 1 on.
+/// Key that, with Shift, starts an entry: a letter that has no other meaning with Shift, or a digit from 1 on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct EntryKey(char);
 
-/// A text that is no such key.
+/// A text that is not a valid key.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("\"{got}\" is not a letter from A to Z but A, C, H, O and T, or a digit from 1 to 9")]
 pub struct BadKey {
-    /// What was given.
     pub got: String,
 }
 
@@ -83,14 +82,14 @@ impl From<EntryKey> for String {
     }
 }
 
-/// What an entry of the library is called.
+/// Names of an entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EntryNames<'a> {
-    /// In English, or in the user's own words.
+    /// English, or the user's own text.
     pub text: &'a str,
-    /// In Chinese; empty if there is no other name.
+    /// Chinese; empty if there is none.
     pub zh: &'a str,
-    /// The key that, with Shift, starts it.
+    /// Key that, with Shift, starts it.
     pub key: Option<EntryKey>,
 }
 
@@ -99,28 +98,25 @@ pub struct EntryNames<'a> {
 #[serde(try_from = "i64", into = "i64")]
 pub struct Millis(u32);
 
-/// A time that no step may have.
+/// A time outside the range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{got} ms is outside 0 to {}", Millis::MAX)]
 pub struct BadTime {
-    /// What was given.
     pub got: i64,
 }
 
 impl Millis {
     /// Longest time: ten minutes.
     pub const MAX: u32 = 600_000;
-    /// How long a step waits at a pose at first.
+    /// Default dwell of a step.
     pub const DWELL: Self = Self(500);
-    /// How long a step waits for arrival at first: the full way at a gentle speed takes 3 s.
+    /// Default time limit of a step: the full stroke at a gentle speed takes 3 s.
     pub const LIMIT: Self = Self(5000);
 
-    /// Milliseconds.
     pub const fn get(self) -> u32 {
         self.0
     }
 
-    /// As a duration.
     pub const fn duration(self) -> Duration {
         Duration::from_millis(self.0 as u64)
     }
@@ -142,24 +138,22 @@ impl From<Millis> for i64 {
     }
 }
 
-/// How often a step that closed on nothing opens and closes again, 0 to 20.
+/// Retries of a step that closed on nothing, 0 to 20: the hand opens and closes again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(try_from = "i64", into = "i64")]
 pub struct Retries(u8);
 
-/// A number of retries that no step may have.
+/// A number of retries outside the range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{got} retries is outside 0 to {}", Retries::MAX)]
 pub struct BadRetries {
-    /// What was given.
     pub got: i64,
 }
 
 impl Retries {
-    /// More than that, and the object is not where the hand closes.
+    /// After this many retries, the object is not where the hand closes.
     pub const MAX: u8 = 20;
 
-    /// The number.
     pub const fn get(self) -> u8 {
         self.0
     }
@@ -181,59 +175,58 @@ impl From<Retries> for i64 {
     }
 }
 
-/// A step that is over once the hand holds something.
+/// Condition of a step that ends once the hand holds something.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct UntilHolding {
-    /// The sequence ends if nothing is held so long after the pose counts as reached.
+    /// The sequence ends if nothing is held this long after the pose counts as reached.
     pub within: Millis,
-    /// How often the hand opens and closes again where it closed on nothing.
+    /// Number of times the hand opens and closes again if it closed on nothing.
     pub retries: Retries,
 }
 
 impl UntilHolding {
-    /// What the user starts from.
+    /// The default condition.
     pub const FIRST: Self = Self {
         within: Millis(3000),
         retries: Retries(0),
     };
 }
 
-/// Six angles under a name, and how to go there.
+/// Six named angles, and the limits for reaching them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LibraryPose {
-    /// To find it.
     pub id: PoseId,
-    /// No two poses of a library have the same.
+    /// Unique among the poses of a library.
     pub name: String,
-    /// The same in Chinese; empty if there is none.
+    /// Chinese name; empty if there is none.
     pub name_zh: String,
-    /// The key that, with Shift, takes it.
+    /// Key that, with Shift, recalls it.
     pub key: Option<EntryKey>,
-    /// Words to find it by.
+    /// Search terms.
     pub tags: Vec<String>,
-    /// Where the joints go, 0 bent to 1000 open.
+    /// Targets of the joints, 0 bent to 1000 open.
     pub angles: PerDof<Angle>,
-    /// The gap of a pose by size. Its angles are those of the gap, and thumb and index go there along the path on which they meet.
+    /// Gap of a pose by size. Its angles are those of the gap, and thumb and index move along the path on which they meet.
     pub gap: Option<Gap>,
-    /// What its grip is told by while it is what was asked for last; `None` for the usual.
+    /// Grip detection thresholds while this pose is the last one commanded; `None` for the defaults.
     pub thresholds: Option<GripThresholds>,
-    /// Joints that are left alone although an angle is known.
+    /// Joints that stay where they are although they have an angle.
     pub leave: PerDof<bool>,
     /// Speed of the joints that move.
     pub speed: Speed,
     /// Force threshold of the joints that move.
     pub force: Force,
-    /// Keys of a newer version, kept as they are.
+    /// Keys of a newer version, preserved.
     pub others: toml::Table,
 }
 
 impl LibraryPose {
-    /// True if only demos need it: it is not offered by itself.
+    /// True if only demos need it; it is then not listed by itself.
     pub fn is_for_demos(&self) -> bool {
         self.tags.iter().any(|tag| tag == DEMO)
     }
 
-    /// True if these words, in lower case, stand in its name or in one of its tags. No words stand everywhere.
+    /// True if its names or tags contain this text, which is in lower case. An empty text always matches.
     pub fn has(&self, words: &str) -> bool {
         let names = [&self.name, &self.name_zh];
         let names = names.into_iter().chain(&self.tags);
@@ -241,7 +234,7 @@ impl LibraryPose {
         names.any(|name| name.contains(words))
     }
 
-    /// Makes it a pose by size, or one of its angles again. Thumb and index of a pose by size take part.
+    /// Turns it into a pose by size, or with `None` back into a pose of angles. Thumb and index of a pose by size always move.
     pub fn set_gap(&mut self, gap: Option<Gap>) {
         self.gap = gap;
         if let Some(gap) = gap {
@@ -252,20 +245,19 @@ impl LibraryPose {
         }
     }
 
-    /// Where each joint goes; `None` for those that are left alone.
+    /// Targets of the joints; `None` for those that stay where they are.
     pub fn targets(&self) -> PerDof<Option<Angle>> {
         PerDof::from_fn(|dof| (!self.leave[dof]).then_some(self.angles[dof]))
     }
 }
 
-/// Where a step goes.
+/// Goal of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StepGoal {
-    /// To a pose of the library.
+    /// A pose of the library.
     Pose(PoseId),
-    /// To a gap between the pads of thumb and index; what is between them is gripped.
+    /// A gap between the pads of thumb and index; an object between them is gripped.
     Gap {
-        /// The gap.
         gap: Gap,
         /// Force threshold of the joints.
         force: Force,
@@ -273,106 +265,99 @@ pub enum StepGoal {
 }
 
 impl StepGoal {
-    /// True if it is this pose.
+    /// True for this pose.
     pub fn is_pose(self, id: PoseId) -> bool {
         self == Self::Pose(id)
     }
 }
 
-/// One pose, or grip by size, on a timeline.
+/// One step: a pose, or a grip by size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SequenceStep {
     pub goal: StepGoal,
-    /// Speed on the way there; the pose's own is for recalling it alone.
+    /// Speed of the motion; the pose's own speed applies when it is recalled alone.
     pub speed: Speed,
     /// Time at the pose before the next step.
     pub dwell: Millis,
-    /// Time after which a pose that is not reached counts as reached.
+    /// A pose not reached after this time counts as reached.
     pub limit: Millis,
-    /// The grip that it waits for before its dwell, if any.
+    /// The grip to wait for before the dwell; `None` for none.
     pub until: Option<UntilHolding>,
 }
 
-/// Poses one after the other.
+/// Poses played in order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sequence {
-    /// To find it.
     pub id: SequenceId,
-    /// No two sequences of a library have the same.
+    /// Unique among the sequences of a library.
     pub name: String,
-    /// The same in Chinese; empty if there is none.
+    /// Chinese name; empty if there is none.
     pub name_zh: String,
-    /// The key that, with Shift, starts it.
+    /// Key that, with Shift, starts it.
     pub key: Option<EntryKey>,
-    /// Whether the first step follows the last.
+    /// True if it repeats.
     pub looped: bool,
-    /// In order.
     pub steps: Vec<SequenceStep>,
-    /// Keys of a newer version, kept as they are.
+    /// Keys of a newer version, preserved.
     pub others: toml::Table,
 }
 
-/// The hand rests in one pose; a finger whose tip is touched goes to where another pose has it, and back once it is let go.
+/// The hand rests in one pose; a finger whose tip is touched moves to its angle in another pose, and back once released.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reaction {
-    /// To find it.
     pub id: ReactionId,
-    /// No two reactions of a library have the same.
+    /// Unique among the reactions of a library.
     pub name: String,
-    /// The same in Chinese; empty if there is none.
+    /// Chinese name; empty if there is none.
     pub name_zh: String,
-    /// The key that, with Shift, starts it.
+    /// Key that, with Shift, starts it.
     pub key: Option<EntryKey>,
-    /// Where a finger is that nobody touches.
+    /// Pose of untouched fingers.
     pub rest: PoseId,
-    /// Where a touched finger goes.
+    /// Pose of touched fingers.
     pub touched: PoseId,
-    /// Normal force from which a fingertip counts as touched, beyond what it felt at the start.
+    /// Normal force from which a fingertip counts as touched, above its reading at the start.
     pub threshold: TouchForce,
-    /// Keys of a newer version, kept as they are.
+    /// Keys of a newer version, preserved.
     pub others: toml::Table,
 }
 
-/// All poses and sequences, in the user's order.
+/// All poses, sequences and reactions, in the user's order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PoseLibrary {
     pub poses: Vec<LibraryPose>,
-    /// The sequences. Their steps name poses of this library only.
+    /// Their steps name poses of this library only.
     pub sequences: Vec<Sequence>,
-    /// The reactions. They name poses of this library only.
+    /// They name poses of this library only.
     pub reactions: Vec<Reaction>,
-    /// Keys of a newer version, kept as they are.
+    /// Keys of a newer version, preserved.
     pub others: toml::Table,
     next: u64,
 }
 
 impl PoseLibrary {
-    /// The pose with this id.
     pub fn pose(&self, id: PoseId) -> Option<&LibraryPose> {
         self.poses.iter().find(|pose| pose.id == id)
     }
 
-    /// The place of a pose among all, 0 the first.
+    /// The position of a pose, from 0.
     pub fn place(&self, id: PoseId) -> Option<usize> {
         self.poses.iter().position(|pose| pose.id == id)
     }
 
-    /// The pose with this name.
     pub fn pose_named(&self, name: &str) -> Option<&LibraryPose> {
         self.poses.iter().find(|pose| pose.name == name)
     }
 
-    /// The sequence with this id.
     pub fn sequence(&self, id: SequenceId) -> Option<&Sequence> {
         self.sequences.iter().find(|sequence| sequence.id == id)
     }
 
-    /// The reaction with this id.
     pub fn reaction(&self, id: ReactionId) -> Option<&Reaction> {
         self.reactions.iter().find(|reaction| reaction.id == id)
     }
 
-    /// All of it: poses, sequences, reactions.
+    /// All entries: poses, sequences, reactions.
     pub fn entries(&self) -> impl Iterator<Item = EntryId> {
         let poses = self.poses.iter().map(|own| EntryId::Pose(own.id));
         let sequences = self.sequences.iter();
@@ -382,7 +367,7 @@ impl PoseLibrary {
         poses.chain(sequences).chain(reactions)
     }
 
-    /// What an entry is called; `None` if it is not in this library.
+    /// The names of an entry; `None` if it is not in this library.
     pub fn named(&self, entry: EntryId) -> Option<EntryNames<'_>> {
         let (text, zh, key) = match entry {
             EntryId::Pose(id) => {
@@ -401,12 +386,11 @@ impl PoseLibrary {
         Some(EntryNames { text, zh, key })
     }
 
-    /// True if there is nothing in it.
     pub const fn is_empty(&self) -> bool {
         self.poses.is_empty() && self.sequences.is_empty() && self.reactions.is_empty()
     }
 
-    /// An empty library whose ids begin after this number, so that no other library has them.
+    /// An empty library whose ids begin after this number, so that they differ from those of any other library.
     pub(crate) fn numbered_after(number: u64) -> Self {
         Self {
             next: number,
@@ -414,14 +398,14 @@ impl PoseLibrary {
         }
     }
 
-    /// A number that nothing in this library has.
+    /// A new id.
     pub(crate) const fn fresh(&mut self) -> u64 {
         self.next += 1;
         self.next
     }
 }
 
-/// A name as it is kept: one line, cut at [`NAME_CHARS_MAX`] characters. Empty if nothing is left.
+/// Normalizes a name: one line, trimmed and cut at [`NAME_CHARS_MAX`] characters. May be empty.
 pub fn clean(name: &str) -> String {
     let line = name.chars().map(|c| if c.is_control() { ' ' } else { c });
     let line: String = line.collect();
@@ -429,7 +413,7 @@ pub fn clean(name: &str) -> String {
     cut.trim_end().to_owned()
 }
 
-/// `wanted`, or the first of "wanted 2", "wanted 3", … that is not taken.
+/// `wanted`, or the first free one of "wanted 2", "wanted 3", …
 pub fn free_name(wanted: &str, is_taken: impl Fn(&str) -> bool) -> String {
     if !is_taken(wanted) {
         return wanted.to_owned();

@@ -1,4 +1,4 @@
-//! Poses, sequences and reactions: library, edits, files, what is shipped, and how they play. Sends nothing.
+//! Poses, sequences and reactions: library, edits, files, shipped entries and playing. Sends nothing.
 
 pub mod edit;
 pub mod file;

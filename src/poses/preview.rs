@@ -1,4 +1,4 @@
-//! A sequence played on the drawn hand only: where the joints would be. Nothing here can reach a hand.
+//! A dry run of a sequence on the drawn hand only. Nothing here can reach a hand.
 
 use crate::hand::{Dof, Moment, PerDof};
 use crate::poses::library::{PoseLibrary, SequenceId};
@@ -6,31 +6,29 @@ use crate::poses::player::{Cue, cues};
 use crate::poses::way::WayPart;
 use std::time::Duration;
 
-/// A dry run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preview {
     pub sequence: SequenceId,
-    /// When it began.
     pub since: Moment,
     cues: Vec<Cue>,
     looped: bool,
     from: PerDof<f64>,
 }
 
-/// What a dry run shows at one moment.
+/// The drawn hand at one moment of a dry run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PreviewFrame {
-    /// Shares of the way from bent to open.
+    /// Openness of each joint, 0 bent to 1 open.
     pub shares: PerDof<Option<f32>>,
-    /// Which step, 0 the first.
+    /// Index of the step, from 0.
     pub step: usize,
-    /// True once the last pose was held for its time.
+    /// True once the dwell of the last pose is over.
     pub over: bool,
 }
 
 impl Preview {
-    /// A sequence of the library from where the joints are; `None` if it has no steps. A joint of which it is not known where
-    /// it is begins where the first pose has it.
+    /// Starts at the current angles `from`; a joint of unknown angle starts at its angle in the first pose. `None` if the sequence has
+    /// no steps.
     pub fn of(
         library: &PoseLibrary,
         sequence: SequenceId,
@@ -51,13 +49,13 @@ impl Preview {
         })
     }
 
-    /// What is shown at this moment.
+    /// The drawn hand at this moment.
     pub fn at(&self, now: Moment) -> PreviewFrame {
         let mut left = now.since(self.since).as_secs_f64();
         let mut angles = self.from;
         let (round, after) = self.round(angles);
         if self.looped && left >= round {
-            // From the second round on, each begins where the last one ended and takes the same time.
+            // From the second round on, each starts where the previous one ended and takes the same time.
             left -= round;
             angles = after;
             let (round, _) = self.round(angles);
@@ -86,7 +84,7 @@ impl Preview {
         )
     }
 
-    /// Seconds of one round from these angles, and the angles after it.
+    /// Duration of one round from these angles, s, and the angles at its end.
     fn round(&self, mut angles: PerDof<f64>) -> (f64, PerDof<f64>) {
         let mut seconds = 0.0;
         for cue in &self.cues {
@@ -106,7 +104,7 @@ fn parts(cue: &Cue, from: &PerDof<f64>) -> Vec<WayPart> {
     cue.parts(&from.map(|angle| Some(angle.round() as i16)))
 }
 
-/// Seconds until every joint is there, at most the step's own limit.
+/// Seconds until every joint arrives, at most the limit of the step.
 fn way_s(part: &WayPart, from: &PerDof<f64>, limit: Duration) -> f64 {
     let limit = limit.as_secs_f64();
     let takes = |dof: Dof| {

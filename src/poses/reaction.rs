@@ -1,29 +1,27 @@
-//! Which fingertips are touched, as a reaction takes it. Reads no clock and sends nothing.
+//! Detection of touched fingertips for a reaction. Reads no clock and sends nothing.
 
 use crate::hand::{Finger, Moment, PerFinger};
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// A fingertip counts as let go once it was for this long: a hand that trembles does not make the finger tremble.
+/// A fingertip counts as released after this time at low force, so that a trembling touch does not make the finger tremble.
 const RELEASE_DURATION: Duration = Duration::from_millis(300);
-/// A fingertip counts as let go below this share of the threshold.
+/// Force is low below this share of the threshold.
 const LET_GO_SHARE: f32 = 0.5;
 
-/// A normal force of a fingertip in newtons, 0.1 to 20.
+/// Normal force of a fingertip, 0.1 to 20 N.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(try_from = "f32", into = "f32")]
 pub struct TouchForce(f32);
 
-/// A force that no reaction may have.
+/// A force outside the range.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{got} N is outside 0.1 to 20")]
 pub struct BadTouchForce {
-    /// What was given.
     pub got: f32,
 }
 
 impl TouchForce {
-    /// Newtons.
     pub const fn newtons(self) -> f32 {
         self.0
     }
@@ -46,7 +44,7 @@ impl From<TouchForce> for f32 {
     }
 }
 
-/// Which fingertips are touched.
+/// Detects touches of the fingertips.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TouchWatch {
     threshold: TouchForce,
@@ -55,14 +53,14 @@ pub struct TouchWatch {
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct TipWatch {
-    /// What it feels while nobody touches it: the least since the start, newtons.
+    /// Smallest reading since the start, newtons: the reading of the untouched fingertip.
     zero: Option<f32>,
     is_touched: bool,
     below_since: Option<Moment>,
 }
 
 impl TouchWatch {
-    /// Nothing is touched yet; the first reading of a fingertip is its zero.
+    /// Starts without touches; the first reading of a fingertip is its zero.
     pub fn new(threshold: TouchForce) -> Self {
         Self {
             threshold,
@@ -70,7 +68,7 @@ impl TouchWatch {
         }
     }
 
-    /// Takes in the normal force of a fingertip in newtons. Says so if it is touched or let go with that: `Some(true)` for touched.
+    /// Applies the normal force of a fingertip, N. Returns `Some(true)` when it becomes touched, `Some(false)` when it is released.
     pub fn take(&mut self, finger: Finger, newtons: f32, now: Moment) -> Option<bool> {
         let tip = &mut self.tips[finger];
         if !newtons.is_finite() {

@@ -1,10 +1,10 @@
-//! The poses, sequences and reactions that every installation has. They cannot be changed: the user copies or hides them.
+//! The shipped poses, sequences and reactions. They are read-only: the user copies or hides them.
 
 use crate::poses::file;
 use crate::poses::library::PoseLibrary;
 use std::sync::LazyLock;
 
-/// Ids from here on belong to what is shipped.
+/// First id of shipped entries.
 const FIRST_ID: u64 = 1 << 32;
 
 static STARTER: LazyLock<PoseLibrary> = LazyLock::new(|| {
@@ -14,7 +14,7 @@ static STARTER: LazyLock<PoseLibrary> = LazyLock::new(|| {
     read.unwrap_or_default()
 });
 
-/// What is shipped.
+/// The shipped library.
 pub fn starter() -> &'static PoseLibrary {
     &STARTER
 }

@@ -1,23 +1,23 @@
-//! The way from one pose to another on which thumb and index do not meet, and to a grip by size, on which they do at its end.
-//! Counts only; the drawn hand's geometry proves it in the tests, and feeds no motion.
+//! The path between two poses on which thumb and index do not meet, and the path to a grip by size, at whose end they do.
+//! Computed from angles only; the tests prove it with the geometry of the drawn hand, which feeds no motion.
 
 use crate::hand::gap::{Gap, gap_on_path};
 use crate::hand::{Angle, Dof, PerDof, Speed};
 
-/// Angles of some joints; `None` = left alone.
+/// Angles of some joints; `None` leaves a joint where it is.
 pub type Targets = PerDof<Option<Angle>>;
 
-/// From here on the index is out of the thumb's reach.
+/// At this angle and above, the index is out of the thumb's reach.
 const INDEX_CLEAR: i16 = 550;
-/// At this bend the thumb is out of the index's reach however it is rotated.
+/// At this bend the thumb is out of the index's reach at any rotation.
 const BEND_CLEAR: i16 = 800;
-/// The same for any rotation: twice the bend and the rotation together.
+/// The same at other bends: twice the bend plus the rotation.
 const THUMB_CLEAR: i16 = 2 * BEND_CLEAR;
 
-/// The targets to take one after the other on the way to `to`; the last is `to`, or what of it is left to do.
+/// The targets to reach in turn on the way to `to`; the last is `to`, or the remaining part of it.
 ///
-/// Where one of thumb and index closes while the other opens, the thumb goes first out of the way, and bends last. A joint
-/// of which it is not known where it is counts as bent, and one that has arrived counts as at its target.
+/// Where one of thumb and index closes while the other opens, the thumb first moves out of the way, and bends last. A joint of
+/// unknown angle counts as bent, and one that has arrived counts as at its target.
 pub fn way(from: &PerDof<Option<i16>>, to: &Targets) -> Vec<Targets> {
     let ends = |dof: Dof| {
         let from = from[dof].unwrap_or(0);
@@ -55,19 +55,18 @@ pub fn way(from: &PerDof<Option<i16>>, to: &Targets) -> Vec<Targets> {
     ways
 }
 
-/// A straight part of a way.
+/// A straight part of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WayPart {
-    /// Where the joints go.
+    /// Targets of the joints.
     pub targets: Targets,
-    /// How fast.
     pub speeds: PerDof<Speed>,
-    /// The pads of thumb and index face each other: what stops them may be held.
+    /// True while the pads of thumb and index face each other: an object that stops them may be held.
     pub is_pinching: bool,
 }
 
-/// The way to a gap: open first, unless the hand is on the path already, then along the path on which the pads meet. Of joints
-/// that do not pinch only those that `moves` has.
+/// The path to a gap: open first, unless the hand is already on the path, then along the path on which the pads meet. Other joints
+/// move only if set in `moves`.
 pub fn pinch_way(
     from: &PerDof<Option<i16>>,
     to: Gap,
@@ -75,7 +74,7 @@ pub fn pinch_way(
     moves: &PerDof<bool>,
 ) -> Vec<WayPart> {
     let part = |angles: Targets| PerDof::from_fn(|dof| angles[dof].filter(|_| moves[dof]));
-    // Joints that do not pinch are not looked at.
+    // Joints that do not pinch are ignored.
     let counts = PerDof::from_fn(|dof| match Gap::JOINTS.contains(&dof) {
         true => from[dof].map(f32::from),
         false => Some(f32::from(Angle::MAX.get())),

@@ -1,9 +1,9 @@
-//! What the user asks for besides single joints: poses that every hand knows, and entries of the library that are played.
+//! Motion requests other than single joints: built-in poses, and playing entries of the library.
 
 use crate::hand::{Angle, Dof};
 use crate::poses::library::{EntryId, SequenceId};
 
-/// Poses that need no library.
+/// Built-in poses, independent of the library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Preset {
     /// Every joint open.
@@ -15,7 +15,7 @@ pub enum Preset {
 }
 
 impl Preset {
-    /// Where this joint goes, if it moves at all.
+    /// The target of this joint; `None` if it stays where it is.
     pub fn angle(self, dof: Dof) -> Option<Angle> {
         match (self, dof) {
             (Self::Open, _) => Some(Angle::MAX),
@@ -26,17 +26,17 @@ impl Preset {
     }
 }
 
-/// What the user does with a sequence.
+/// A command to the player.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::VariantNames, strum::IntoStaticStr)]
 pub enum Play {
-    /// Run a sequence or a reaction from its start. Needs arming.
+    /// Runs a sequence or a reaction from its start. Needs arming.
     Start(EntryId),
-    /// Take one step, then wait. Needs arming.
+    /// Runs one step, then waits. Needs arming.
     Step(SequenceId),
-    /// Hold where the hand is, until resumed.
+    /// Holds the hand where it is until resumed.
     Pause,
-    /// Go on where it was paused.
+    /// Continues after a pause.
     Resume,
-    /// End it and hold where the hand is.
+    /// Ends playing and holds the hand where it is.
     End,
 }

@@ -1,4 +1,4 @@
-//! Which setting is best by a stated criterion, over all trials of it. Pure.
+//! The best setting by a stated criterion, over all its trials. Pure.
 
 use crate::hand::statistics::median;
 use crate::trials::measure::metrics::JointMetrics;
@@ -6,20 +6,20 @@ use crate::trials::plan::TrialSetting;
 use crate::trials::summary::TrialSummary;
 use serde::Serialize;
 
-/// What is wanted of a setting. A setting counts if every trial of it ended well, touched with every joint, and, where
-/// the criterion asks for it, stayed within its bounds.
+/// A criterion for settings. A setting counts if every trial of it completed, met the object with every joint, and stayed within
+/// the bounds of the criterion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Criterion {
-    /// The least overshoot, with at least this steady force, g.
+    /// Least overshoot with at least this steady force, g.
     LeastOvershoot {
-        /// Steady force wanted, g.
+        /// Smallest steady force, g.
         steady_g: f64,
     },
-    /// The shortest time to the stop, with at most this overshoot and at least this steady force, g.
+    /// Shortest time to the stop, with at most this overshoot and at least this steady force, g.
     Fastest {
-        /// Overshoot allowed, g.
+        /// Largest overshoot, g.
         overshoot_g: f64,
-        /// Steady force wanted, g.
+        /// Smallest steady force, g.
         steady_g: f64,
     },
 }
@@ -42,18 +42,16 @@ impl std::fmt::Display for Criterion {
     }
 }
 
-/// Middle, lowest and highest of a metric over repeats and joints.
+/// Median, lowest and highest of a metric over repeats and joints.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct MetricSpread {
     pub median: f64,
-    /// The lowest.
     pub min: f64,
-    /// The highest.
     pub max: f64,
 }
 
 impl MetricSpread {
-    /// Of some values; `None` of nothing.
+    /// `None` without values.
     pub fn of(values: &[f64]) -> Option<Self> {
         Some(Self {
             median: median(values)?,
@@ -63,13 +61,13 @@ impl MetricSpread {
     }
 }
 
-/// What the trials of one setting come to. Each spread is known only if every joint of every trial told it.
+/// Results of the trials of one setting. A spread is `None` unless every joint of every trial has a value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Score {
     #[serde(flatten)]
     pub setting: TrialSetting,
     pub trials: usize,
-    /// Trials of it that ended early.
+    /// Trials that ended early.
     pub aborted: usize,
     /// Overshoot, g.
     pub overshoot_g: Option<MetricSpread>,
@@ -77,11 +75,11 @@ pub struct Score {
     pub steady_force_g: Option<MetricSpread>,
     /// Time to the stop, s.
     pub time_to_stop_s: Option<MetricSpread>,
-    /// Whether a peak was beyond the sensor's end.
+    /// True if a peak exceeded the sensor's range.
     pub clipped: bool,
 }
 
-/// The settings that were tried, in the order of first trial; looking for the contact does not count.
+/// The scores of all settings, in the order of their first trial; probes do not count.
 pub fn scores<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> Vec<Score> {
     let mut by_setting: Vec<(TrialSetting, Vec<&TrialSummary>)> = Vec::new();
     for trial in trials.into_iter().filter(|trial| trial.counts()) {
@@ -111,7 +109,7 @@ fn score(setting: TrialSetting, trials: &[&TrialSummary]) -> Score {
     }
 }
 
-/// The best setting, judged by the worst of its trials; the gentler one of two that are equal. `None` if none will do.
+/// The best setting, judged by its worst trial; of equal ones, the gentler. `None` if no setting qualifies.
 pub fn best(scores: &[Score], criterion: Criterion) -> Option<&Score> {
     let rated = scores
         .iter()
@@ -120,7 +118,7 @@ pub fn best(scores: &[Score], criterion: Criterion) -> Option<&Score> {
     least.map(|(score, _)| score)
 }
 
-/// The number that is to be small; `None` if the setting does not count.
+/// The number to minimize; `None` if the setting does not qualify.
 fn rate(score: &Score, criterion: Criterion) -> Option<f64> {
     if score.aborted > 0 {
         return None;
@@ -155,7 +153,6 @@ mod tests {
         }
     }
 
-    /// A trial with this overshoot, steady force and time to the stop.
     fn trial(setting: TrialSetting, [overshoot, steady, stop]: [f64; 3]) -> TrialSummary {
         let span = DwellSpan {
             slow_s: None,

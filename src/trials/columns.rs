@@ -1,11 +1,11 @@
-//! The columns of every table of trials: what the window, the report and the command line show of a trial, from one list.
+//! The columns of all tables of trials: one list for the window, the report and the command line.
 
 use crate::trials::measure::metrics::JointMetrics;
 
-/// What a column shows of one joint in one trial.
+/// A quantity of one joint in one trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Metric {
-    /// Highest force above the threshold.
+    /// Highest force minus the threshold.
     Overshoot,
     /// Highest force.
     Peak,
@@ -17,9 +17,9 @@ pub enum Metric {
     Touch,
     /// From the contact to the steady force.
     Settle,
-    /// From the command to the motion.
+    /// From the command to the start of motion.
     DeadTime,
-    /// What was lost from peak to steady.
+    /// Loss from peak to steady force.
     Relaxation,
     /// Slips during the dwell.
     Slips,
@@ -27,23 +27,21 @@ pub enum Metric {
     Current,
     /// Rise of the temperature.
     Heat,
-    /// Readings of the force a second.
+    /// Force readings per second.
     Rate,
 }
 
 #[derive(Debug, Clone, Copy)]
 pub struct TrialColumn {
-    /// What it shows.
     pub metric: Metric,
-    /// Its name.
     pub name: &'static str,
-    /// Its word in the line of a trial on the command line; `None` = it is not part of it.
+    /// Its word in the trial line of the command line; `None` if it is not part of that line.
     pub word: Option<&'static str>,
     /// Its unit; empty for a count.
     pub unit: &'static str,
-    /// Digits after the point.
+    /// Decimal places.
     pub decimals: usize,
-    /// How to get it.
+    /// Reads it from the metrics.
     pub value: fn(&JointMetrics) -> Option<f64>,
 }
 
@@ -119,7 +117,7 @@ impl TrialColumn {
         }
     }
 
-    /// The value with its digits, or "-"; with a "+" behind a peak that may have been higher than any reading.
+    /// The value, or "-"; with a trailing "+" if the peak may have been higher than any reading.
     pub fn text(&self, joint: &JointMetrics) -> String {
         let text = number((self.value)(joint), self.decimals);
         let is_of_peak = matches!(self.metric, Metric::Peak | Metric::Overshoot);
@@ -130,9 +128,9 @@ impl TrialColumn {
     }
 }
 
-/// A number with so many digits, or "-".
+/// A number with this many decimals, or "-".
 pub fn number(value: Option<f64>, decimals: usize) -> String {
-    // Adding zero takes the sign from a zero.
+    // Adding zero removes the sign of a negative zero.
     value.map_or_else(
         || "-".to_owned(),
         |value| format!("{:.decimals$}", value + 0.0),

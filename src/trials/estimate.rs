@@ -1,14 +1,14 @@
-//! About how long trials take, before they are run. Pure; a rough number for the user, never a rule.
+//! Estimated duration of trials. Pure; a rough number for the user, never a rule.
 
 use crate::hand::{Angle, Speed};
 use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};
 use crate::trials::runner::QUIET;
 use std::time::Duration;
 
-/// Dead times, reading the limits back, the stop, and what is recorded after the release.
+/// Dead times, reading back the limits, the stop, and recording after the release.
 const BESIDES: Duration = Duration::from_millis(1500);
 
-/// About how long one trial takes with the rest after it, if nothing is met on the way: the longest.
+/// Estimated duration of one trial with the rest after it, if the joints meet nothing: the upper bound.
 fn trial(plan: &TrialPlan, setting: TrialSetting) -> Duration {
     let way = longest_way(plan);
     let fast_way = match plan.approach {
@@ -25,7 +25,7 @@ fn trial(plan: &TrialPlan, setting: TrialSetting) -> Duration {
     QUIET + moving + plan.dwell + BESIDES + plan.grid.rest
 }
 
-/// About how long a series takes, and how many trials it has.
+/// Number of trials in a series, and its estimated duration.
 pub fn series(plan: &TrialPlan) -> (usize, Duration) {
     let settings = plan.grid.settings();
     let all: Duration = settings.iter().map(|own| trial(plan, *own)).sum();
@@ -52,7 +52,7 @@ fn longest_way(plan: &TrialPlan) -> f64 {
     f64::from(ways.max().unwrap_or(0).max(0))
 }
 
-/// Where the contact will be is not known: half of the way is as good a guess as another.
+/// The contact is unknown: half of the way is as good a guess as any.
 fn way_before(plan: &TrialPlan, until: Until, way: f64) -> f64 {
     let Until::Angle(at) = until else {
         return way / 2.0;
@@ -77,7 +77,7 @@ mod tests {
         let mut plan = TrialPlan::default();
         let (count, slow) = series(&plan);
         assert_eq!(count, 1);
-        // The whole stroke at speed 25 takes 24 s by the manual's law, 26 s as it was measured.
+        // The full stroke at speed 25 takes 24 s by the manual's formula, 26 s as measured.
         assert!((32.0..42.0).contains(&slow.as_secs_f64()), "{slow:?}");
         let fast_until = |until| Approach::TwoStage {
             fast: Speed::nearest(250),

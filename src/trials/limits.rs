@@ -1,4 +1,4 @@
-//! The readings that end a trial early: faults, heat, force, old or implausible values. Pure; stops nothing itself.
+//! Readings that end a trial early: faults, heat, force, outdated or implausible values. Pure; stops nothing itself.
 
 use crate::hand::heat::HOT;
 use crate::hand::{Dof, HandSample, Moment, PerDof, Timed};
@@ -6,16 +6,16 @@ use crate::record::Abort;
 use crate::trials::plan::Limits;
 use std::time::Duration;
 
-/// Forces and angles older than this are not watched any more, so nothing may go on by them.
+/// Forces and angles older than this are outdated; a trial must not continue with them.
 pub const READING_MAX_AGE: Duration = Duration::from_millis(600);
-/// On a slow line faults take turns with the fingertips while something moves.
+/// On a slow line, fault reads alternate with fingertip reads during motion.
 pub const FAULT_MAX_AGE: Duration = Duration::from_secs(2);
-/// After a time in which this program did not run, readings are awaited for so long.
+/// Grace time for readings after a stall of the program.
 const CATCH_UP: Duration = Duration::from_millis(150);
-/// Temperatures are read more seldom.
+/// Temperatures are read less often.
 pub const HEAT_MAX_AGE: Duration = Duration::from_secs(3);
 
-/// A time in which this program did not run: the computer was busy with something else, or its output was not taken.
+/// An interval in which this program did not run: the computer was busy, or the program's output was blocked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stall {
     pub lasted: Duration,
@@ -23,7 +23,7 @@ pub struct Stall {
 }
 
 impl Stall {
-    /// How much older readings may be so soon after it: what the hand sent meanwhile is still to be read.
+    /// Extra age allowed for readings shortly after a stall: the replies that arrived during it are still unread.
     fn excuses(self, now: Moment) -> Duration {
         if now.since(self.ended) <= CATCH_UP {
             self.lasted
@@ -33,7 +33,7 @@ impl Stall {
     }
 }
 
-/// The first reason to end now, gravest first.
+/// The first reason to end the trial now, gravest first.
 pub fn reason(seen: &Feedback<'_>, limits: &Limits) -> Option<Abort> {
     fault(seen.sample)
         .or_else(|| blind(seen))
@@ -41,7 +41,7 @@ pub fn reason(seen: &Feedback<'_>, limits: &Limits) -> Option<Abort> {
         .or_else(|| heat(seen.sample, limits.stop_c))
 }
 
-/// The reading for which the link disarmed a hand by its heat, if it is known.
+/// The reason after the link disarmed a hand for heat, if a reading shows it.
 pub fn heat_reason(sample: &HandSample, stall: Option<Stall>, now: Moment) -> Option<Abort> {
     let rest_g = &PerDof::splat(None);
     let seen = Feedback {
@@ -53,14 +53,14 @@ pub fn heat_reason(sample: &HandSample, stall: Option<Stall>, now: Moment) -> Op
     blind(&seen).or_else(|| heat(sample, HOT))
 }
 
-/// The readings, and the time at which they are judged.
+/// The readings, and the time of the judgement.
 #[derive(Debug, Clone, Copy)]
 pub struct Feedback<'a> {
-    /// The newest of everything.
+    /// The newest readings.
     pub sample: &'a HandSample,
-    /// Force of each joint at rest, g, once it is known.
+    /// Force of each joint at rest, g; `None` until it is known.
     pub rest_g: &'a PerDof<Option<f64>>,
-    /// The last time in which this program did not run.
+    /// The last stall of the program.
     pub stall: Option<Stall>,
     pub now: Moment,
 }
@@ -73,7 +73,7 @@ pub fn fault(sample: &HandSample) -> Option<Abort> {
     Some(Abort::Fault { joint })
 }
 
-/// The first group whose readings are missing or too old.
+/// The first group whose readings are missing or outdated.
 fn not_watched(seen: &Feedback<'_>) -> Option<Abort> {
     fn age<T>(group: &Option<Timed<T>>, now: Moment) -> Option<Duration> {
         group.as_ref().map(|group| group.age(now))
@@ -91,7 +91,7 @@ fn not_watched(seen: &Feedback<'_>) -> Option<Abort> {
     let mut groups = groups.into_iter();
     let (what, age, _) =
         groups.find(|(_, age, most)| age.is_none_or(|age| age > *most + excused))?;
-    // Only what was in the time since the last reading is its cause.
+    // Only a stall since the last reading is its cause.
     let stall = stall.filter(|stall| age.is_some_and(|age| now.since(stall.ended) < age));
     Some(Abort::NotRead {
         what,
@@ -128,7 +128,7 @@ fn ceiling(seen: &Feedback<'_>, ceiling: i16) -> Option<Abort> {
         .iter()
         .map(|(dof, force)| (dof, above(dof, force.raw())))
         .find(|(_, grams)| *grams >= f64::from(ceiling))?;
-    // The sensor's range is some thousand grams either way.
+    // The sensor's range is a few thousand grams either way.
     #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
     let grams = grams.round() as i32;
     Some(Abort::Ceiling {
@@ -147,7 +147,7 @@ fn heat(sample: &HandSample, limit: u8) -> Option<Abort> {
     })
 }
 
-/// The warmest joint whose temperature makes sense.
+/// The warmest joint with a plausible temperature.
 pub fn warmest(sample: &HandSample) -> Option<(Dof, u8)> {
     let temperatures = sample.temperature?.value;
     temperatures

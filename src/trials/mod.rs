@@ -1,10 +1,10 @@
-//! Grasp trials: what is to be tried, its running, its recording, what was measured, its files. Draws nothing.
+//! Grasp trials: plan, run, recording, metrics and files. Draws nothing.
 //!
-//! [`plan`] says what is tried ([`plan_settings`] keeps it from one start to the next); [`series`] runs it on virtual or real
-//! time and gives what to send ([`runner`] one trial, [`limits`] what ends it); [`recording`] keeps what was read;
-//! [`measure`] computes from it, without looking at the hand again; [`summary`] is one trial that is over; [`columns`] are
-//! the columns of every table; [`session`] is a folder of them, [`report`] its page, [`best`]
-//! finds the best setting; [`search`] searches for it close after close; [`overshoot_file`] keeps what all of them measured of a hand.
+//! [`plan`] defines a series of trials ([`plan_settings`] stores it between starts of the program); [`series`] runs it on virtual or
+//! real time and returns the commands to send ([`runner`] for one trial, [`limits`] for its early end); [`recording`] holds the
+//! readings; [`measure`] computes metrics from it offline; [`summary`] is one finished trial; [`columns`] are the columns of all
+//! tables; [`session`] is a folder of trials, [`report`] its page, [`best`] finds the best setting; [`search`] searches for it close
+//! by close; [`overshoot_file`] stores all measured overshoots of a hand.
 
 pub mod best;
 pub mod columns;

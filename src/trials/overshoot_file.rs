@@ -1,4 +1,4 @@
-//! What trials measured of one hand, kept in a file of that hand: lines of JSON, each of closes of one kind.
+//! Overshoots measured in trials of one hand, in a file per hand: lines of JSON, each with closes of one kind.
 
 use crate::hand::Status;
 use crate::hand::overshoot::{CloseKind, MeasuredCloses, OvershootMap, Stages, Stiffness};
@@ -11,15 +11,15 @@ use crate::trials::summary::Trial;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// No file of it is larger, bytes.
+/// Maximum size of the file, bytes.
 const FILE_MAX: u64 = 16 << 20;
-/// From so many bytes on its closes are counted together.
+/// Above this size, bytes, the file is compacted to one line per kind.
 const LONG: u64 = 1 << 20;
 
-/// What one joint's close in a trial says: its kind, and how far past the threshold it went, g.
+/// One joint's close in a trial: its kind, and its overshoot past the threshold, g.
 pub type MeasuredClose = (CloseKind, f64);
 
-/// What the joints of a trial that met their thresholds say. One that was ended early says nothing: its peak may have been to come.
+/// The closes of the joints that met their thresholds. Empty for a trial that ended early, possibly before its peak.
 pub fn closes_of(trial: &Trial) -> Vec<MeasuredClose> {
     if trial.summary.aborted.is_some() {
         return Vec::new();
@@ -31,7 +31,7 @@ pub fn closes_of(trial: &Trial) -> Vec<MeasuredClose> {
         .collect()
 }
 
-/// How far a joint went past its threshold, if the threshold stopped it.
+/// The overshoot of a joint; `None` if the threshold did not stop it.
 fn over(joint: &JointMetrics) -> Option<f64> {
     let is_held = joint.end_status.as_deref() == Some(Status::ForceReached.name());
     joint.overshoot_g.filter(|over| is_held || *over > 0.0)
@@ -49,26 +49,26 @@ fn kind_of(trial: &Trial, facts: &CloseFacts) -> CloseKind {
     }
 }
 
-/// The file of the hand at an endpoint, beside the settings; `None` for the built-in one, which is another each time.
+/// The file of the hand at an endpoint, beside the settings; `None` for the built-in hand, which differs on each start.
 pub fn file_of(settings: &Path, hand: &Endpoint) -> Option<PathBuf> {
     let folder = settings.with_file_name("overshoot");
     (!hand.is_sim()).then(|| folder.join(format!("{}.jsonl", hand.file_stem())))
 }
 
-/// What a file keeps; nothing where there is none. A line that was cut off as its program died is left out.
+/// Reads the stored closes; empty if there is no file. Lines that do not parse, such as one cut off by a crash, are skipped.
 ///
 /// # Errors
-/// The system's.
+/// The I/O error.
 pub fn read(file: &Path) -> io::Result<OvershootMap> {
     let text = read_text(file, FILE_MAX)?.unwrap_or_default();
     let lines = text.lines().map(serde_json::from_str::<MeasuredCloses>);
     Ok(OvershootMap::of(lines.filter_map(Result::ok)))
 }
 
-/// Adds closes of a day to a file, to which other programs may add at the same time; what is kept then.
+/// Appends the closes of a day, safely alongside other programs, and returns all stored closes.
 ///
 /// # Errors
-/// The system's.
+/// The I/O error.
 pub fn add(file: &Path, closes: &[MeasuredClose], day: &str) -> io::Result<OvershootMap> {
     if !closes.is_empty() {
         let mut new = OvershootMap::default();
@@ -84,16 +84,16 @@ pub fn add(file: &Path, closes: &[MeasuredClose], day: &str) -> io::Result<Overs
     Ok(map)
 }
 
-/// A line for each kind. The empty one before them ends a line that was cut off.
+/// One line per kind. The leading line break ends a line that was cut off.
 fn lines(map: &OvershootMap) -> io::Result<String> {
     let lines: Result<Vec<String>, _> = map.kinds().iter().map(serde_json::to_string).collect();
     Ok(format!("\n{}\n", lines?.join("\n")))
 }
 
-/// Forgets what a file keeps. One that is not there is forgotten already.
+/// Deletes the file; a missing one is no error.
 ///
 /// # Errors
-/// The system's.
+/// The I/O error.
 pub fn forget(file: &Path) -> io::Result<()> {
     match std::fs::remove_file(file) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
@@ -101,7 +101,7 @@ pub fn forget(file: &Path) -> io::Result<()> {
     }
 }
 
-/// All of it as a table for spreadsheets.
+/// All kinds as a CSV table.
 pub fn csv(map: &OvershootMap) -> String {
     let mut kinds: Vec<&MeasuredCloses> = map.kinds().iter().collect();
     kinds.sort_by_key(|own| {

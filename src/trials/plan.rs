@@ -1,4 +1,4 @@
-//! What a series of grasp trials is to do: one type for window, command line and files. Checked once; runs nothing.
+//! The plan of a series of grasp trials: one type for window, command line and files. Checked once; runs nothing.
 
 use crate::hand::overshoot::{Expected, OvershootMap, Stages};
 use crate::hand::{Angle, Dof, Force, OutOfRange, PerDof, Speed};
@@ -6,17 +6,17 @@ use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-/// Trials in one series: a day of them.
+/// Maximum number of trials in one series: about a day.
 pub const TRIALS_MAX: u16 = 1000;
-/// Longest dwell, rest or wait that a plan may ask for.
+/// Longest dwell or rest in a plan.
 pub const WAIT_MAX: Duration = Duration::from_secs(600);
-/// Shortest dwell: less leaves no steady force to measure.
+/// Shortest dwell: a shorter one leaves no steady force to measure.
 pub const DWELL_MIN: Duration = Duration::from_millis(300);
-/// A joint has at least this way to close, so that its motion can be told from noise.
+/// Shortest way of a joint, so that its motion is distinct from noise, units of ANGLE_ACT.
 pub const WAY_MIN: i16 = 30;
-/// Highest temperature that a limit may be set to, °C: from here on the hand itself is near its fault.
+/// Highest temperature limit, °C: beyond it the hand is close to its own fault.
 pub const TEMPERATURE_MAX: u8 = 75;
-/// A measured contact is approached fast up to this far before it, units of ANGLE_ACT, unless said otherwise.
+/// Default margin before a measured contact at which the fast approach ends, units of ANGLE_ACT.
 pub const MARGIN: i16 = 40;
 
 /// A series of grasp trials. In files it is the table `plan` of `session.toml` and `trial_plan` of the settings.
@@ -30,43 +30,43 @@ pub const MARGIN: i16 = 40;
 /// plan.start[Dof::Index] = Some(Angle::new(1000)?);
 /// plan.close[Dof::Index] = Some(Angle::new(0)?);
 /// assert_eq!(plan.check(), Ok(()));
-/// // Too short a way cannot be told from noise.
+/// // So short a way is not distinct from noise.
 /// plan.close[Dof::Index] = Some(Angle::new(990)?);
 /// assert!(plan.check().is_err());
 /// # Ok::<(), handscope_core::hand::OutOfRange>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialPlan {
-    /// Speeds, thresholds and how often each.
+    /// Speeds, thresholds and the number of repeats.
     #[serde(flatten)]
     pub grid: TrialGrid,
-    /// Time held, from the stop on.
+    /// Holding time after the stop.
     #[serde(rename = "dwell_s", with = "seconds")]
     pub dwell: Duration,
-    /// What ends it.
+    /// Limits that end a trial.
     #[serde(flatten)]
     pub limits: Limits,
-    /// How the object is approached.
+    /// Approach to the object.
     #[serde(flatten)]
     pub approach: Approach,
     /// Start angle of each joint; `None` leaves it where it is.
     #[serde(with = "by_joint")]
     pub start: PerDof<Option<Angle>>,
-    /// Angle that each joint closes to; `None` leaves it out.
+    /// Closing target of each joint; `None` leaves it out.
     #[serde(with = "by_joint")]
     pub close: PerDof<Option<Angle>>,
-    /// In the words of the user.
+    /// The user's text.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,
-    /// Words to find it by.
+    /// Search terms.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tags: Vec<String>,
-    /// Keys of a later version, kept as they are.
+    /// Keys of a later version, preserved.
     #[serde(flatten)]
     pub others: toml::Table,
 }
 
-/// How the object is approached.
+/// Approach to the object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "ApproachKeys", into = "ApproachKeys")]
 pub enum Approach {
@@ -76,24 +76,24 @@ pub enum Approach {
     TwoStage {
         /// Speed of the first stage.
         fast: Speed,
-        /// When the second begins, joint by joint.
+        /// Start of the second stage, per joint.
         until: Until,
     },
 }
 
-/// When the slow stage of a joint begins.
+/// Start of the slow stage of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Until {
     /// At this angle, where the joint stops by itself.
     Angle(Angle),
-    /// This far before the contact that a first, slow trial of the series measured.
+    /// At this distance before the contact that a first, slow trial of the series measured.
     Measured {
         /// Units of ANGLE_ACT, 0..=500.
         margin: i16,
     },
-    /// When the proximity of its fingertip has risen by this many counts.
+    /// Once the proximity of its fingertip has risen by this many counts.
     Proximity(i32),
-    /// When its fingertip feels this, g, or its force sensor so much more than before.
+    /// Once its fingertip feels this force, g, or its force sensor reads this much above rest.
     Touch(Force),
 }
 
@@ -122,7 +122,7 @@ pub struct TrialGrid {
     /// Force thresholds.
     #[serde(rename = "forces_g")]
     pub forces: Vec<Force>,
-    /// Trials of each cell.
+    /// Trials per cell.
     pub repeats: usize,
     /// Time between two trials.
     #[serde(rename = "rest_s", with = "seconds")]
@@ -130,7 +130,7 @@ pub struct TrialGrid {
 }
 
 impl TrialGrid {
-    /// One speed and threshold.
+    /// A single trial of one setting.
     pub fn once(setting: TrialSetting) -> Self {
         Self {
             speeds: vec![setting.speed],
@@ -140,7 +140,7 @@ impl TrialGrid {
         }
     }
 
-    /// Settings in the order of the trials: the gentlest first, all repeats of one before the next.
+    /// Settings in trial order: gentlest first, all repeats of one before the next.
     pub fn settings(&self) -> Vec<TrialSetting> {
         let each = |speed: &Speed| {
             let speed = *speed;
@@ -157,20 +157,20 @@ impl TrialGrid {
     }
 }
 
-/// What ends a trial and the series with it.
+/// Limits that end a trial and its series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limits {
-    /// Force on any joint, g above its reading at rest, at which the trial is stopped. It comes after the force: a
-    /// peak that is over between two reads is seen and not prevented.
+    /// Force on any joint, g above its reading at rest, that stops the trial. It reacts to readings: a peak that is over between
+    /// two reads is recorded and not prevented.
     pub ceiling_g: i16,
-    /// Temperature of any joint, °C, at which it is stopped …
+    /// Temperature of any joint, °C, that stops it …
     pub stop_c: u8,
-    /// … and below which all joints must be before the next trial begins.
+    /// … and below which all joints must be before the next trial starts.
     pub start_c: u8,
 }
 
 impl Default for Limits {
-    /// The rated grip of a finger; temperatures well below those at which the hand protects itself.
+    /// The rated grip of a finger, and temperatures well below those at which the hand protects itself.
     fn default() -> Self {
         Self {
             ceiling_g: Force::RATED.get(),
@@ -205,7 +205,7 @@ impl Default for TrialPlan {
 }
 
 impl Approach {
-    /// When its slow stage begins; `None` if it has one speed.
+    /// Start of its slow stage; `None` with one stage.
     pub const fn until(self) -> Option<Until> {
         match self {
             Self::OneStage => None,
@@ -214,7 +214,7 @@ impl Approach {
     }
 }
 
-/// How an approach stands in files: none of these keys for one stage.
+/// The keys of an approach in files: none for one stage.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct ApproachKeys {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -253,28 +253,28 @@ impl TryFrom<ApproachKeys> for Approach {
     }
 }
 
-/// Why the end of a fast approach cannot be taken.
+/// Reason why the end of a fast approach is invalid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum UntilError {
     /// Only some of the three keys of an approach in two stages.
     #[error("an approach in two stages needs fast_speed, until and until_value")]
     Incomplete,
-    /// Nothing has this name.
+    /// An unknown name.
     #[error("'{0}' is not an end of an approach: choose angle, proximity, touch or measured")]
     Name(String),
-    /// An angle or a force outside its range.
+    /// An angle or a force out of range.
     #[error(transparent)]
     Range(#[from] OutOfRange),
-    /// A margin or counts beyond any sense.
+    /// A margin or counts that do not fit their type.
     #[error("{0} is too large")]
     TooLarge(i64),
 }
 
 impl Until {
-    /// By its name in files and its number.
+    /// From its name in files and its number.
     ///
     /// # Errors
-    /// [`UntilError`]: the name is not known, or the number is out of range.
+    /// [`UntilError`]: an unknown name, or a number out of range.
     pub fn new(name: &str, value: i64) -> Result<Self, UntilError> {
         let too_large = |_| UntilError::TooLarge(value);
         match name {
@@ -288,7 +288,7 @@ impl Until {
         }
     }
 
-    /// Stable name for files.
+    /// Stable name in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Angle(_) => "angle",
@@ -298,7 +298,7 @@ impl Until {
         }
     }
 
-    /// Its number.
+    /// Its number in files.
     pub fn value(self) -> i32 {
         match self {
             Self::Angle(angle) => angle.get().into(),
@@ -309,7 +309,7 @@ impl Until {
     }
 }
 
-/// A time as seconds.
+/// Serializes a time as seconds.
 mod seconds {
     use crate::trials::plan::WAIT_MAX;
     use serde::de::Error as _;
@@ -331,7 +331,7 @@ mod seconds {
     }
 }
 
-/// Angles by the names of their joints; a joint without one has no key.
+/// Serializes angles by joint name; a joint without an angle has no key.
 mod by_joint {
     use crate::hand::{Angle, Dof, PerDof};
     use serde::{Deserialize as _, Deserializer, Serializer};
@@ -353,7 +353,7 @@ mod by_joint {
     }
 }
 
-/// A part of a plan that the user may have to change.
+/// The part of a plan that an error refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PlanField {
     /// The choice of joints.
@@ -366,77 +366,77 @@ pub enum PlanField {
     Forces,
     /// Trials of each setting.
     Repeats,
-    /// Time held.
+    /// The dwell.
     Dwell,
-    /// Time between.
+    /// Time between trials.
     Rest,
     /// Speed of the first stage.
     Fast,
-    /// When the first stage ends.
+    /// End of the first stage.
     Until,
-    /// The force that ends it.
+    /// The force ceiling.
     Ceiling,
-    /// The temperatures.
+    /// The temperature limits.
     Heat,
 }
 
-/// Why a plan cannot be run.
+/// Reason why a plan cannot run.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum PlanError {
     /// No joint closes.
     #[error("no joint takes part: name at least one")]
     NoJoint,
-    /// A joint whose start is not known to be further open than its target.
+    /// A joint whose start is not far enough above its target.
     #[error(
         "{} would close from {start} to {close}: it needs a start at least {WAY_MIN} above its target, 1000 is open", dof.name()
     )]
     NoWay {
         /// The joint.
         dof: Dof,
-        /// Where it stands.
+        /// Start angle.
         start: i16,
-        /// Where it goes.
+        /// Target angle.
         close: i16,
     },
-    /// A joint takes part and no start is given for it.
+    /// A closing joint without a start.
     #[error("{} takes part and has no start", dof.name())]
     NoStart {
         /// The joint.
         dof: Dof,
     },
-    /// The stages change outside the way.
+    /// The slow stage would start outside the way.
     #[error("the slow stage of {} would begin at {at}, outside its way from {start} to {close}", dof.name())]
     Stage {
         /// The joint.
         dof: Dof,
-        /// Where the stages change.
+        /// Start of the slow stage.
         at: i16,
-        /// Where it stands.
+        /// Start angle.
         start: i16,
-        /// Where it goes.
+        /// Target angle.
         close: i16,
     },
     /// The first stage is slower than the second.
     #[error("the approach at {fast} is slower than the contact at {speed}")]
     SlowApproach {
-        /// Of the first stage.
+        /// Speed of the first stage.
         fast: i16,
-        /// Of the second.
+        /// Speed of the second stage.
         speed: i16,
     },
-    /// No cell in the grid.
+    /// The grid has no cell.
     #[error(
         "there is nothing to try: name a speed and a force threshold, and try them at least once"
     )]
     Empty,
-    /// A number that is out of its range.
+    /// A number out of range.
     #[error("{what} of {got} is not between {least} and {most}")]
     Range {
-        /// Where it stands.
+        /// The field of the number.
         field: PlanField,
-        /// What it is, for a sentence.
+        /// Its name in the message.
         what: &'static str,
-        /// The value given.
+        /// The number given.
         got: f64,
         /// The smallest.
         least: f64,
@@ -446,15 +446,15 @@ pub enum PlanError {
     /// Temperatures in the wrong order.
     #[error("the temperatures {start} and {stop} must rise and stay at or below {TEMPERATURE_MAX}")]
     Temperature {
-        /// At which trials begin.
+        /// Below which trials start.
         start: u8,
-        /// At which they end.
+        /// At which they stop.
         stop: u8,
     },
 }
 
 impl PlanError {
-    /// What has to be changed.
+    /// The part of the plan to change.
     pub const fn field(&self) -> PlanField {
         match self {
             Self::NoJoint => PlanField::Joints,
@@ -489,10 +489,10 @@ fn within(
 }
 
 impl TrialPlan {
-    /// Checks everything that can be checked without the hand.
+    /// Checks everything that does not depend on the hand.
     ///
     /// # Errors
-    /// [`PlanError`]: the first thing that is wrong.
+    /// [`PlanError`]: the first error.
     pub fn check(&self) -> Result<(), PlanError> {
         if self.joints().next().is_none() {
             return Err(PlanError::NoJoint);
@@ -598,7 +598,7 @@ impl TrialPlan {
         Ok(())
     }
 
-    /// The joints that take part, in register order.
+    /// The joints that close, in register order.
     pub fn joints(&self) -> impl Iterator<Item = Dof> {
         self.ways().map(|(dof, ..)| dof)
     }
@@ -609,7 +609,7 @@ impl TrialPlan {
         Dof::ALL.into_iter().find(|dof| moves(dof) && locked[*dof])
     }
 
-    /// What the user should expect at most above the threshold on a rigid object, and the setting it is of.
+    /// The largest expected overshoot on a rigid object, and its setting; `None` without joints or settings.
     pub fn expected(&self, map: &OvershootMap) -> Option<(TrialSetting, Expected)> {
         let stages = match self.approach {
             Approach::OneStage => Stages::One,
@@ -625,7 +625,7 @@ impl TrialPlan {
             .max_by(|(_, a), (_, b)| a.over_g.total_cmp(&b.over_g))
     }
 
-    /// Whether a first, slow trial has to find the contact.
+    /// True if a first, slow trial must find the contact.
     pub const fn measures_contact(&self) -> bool {
         matches!(
             self.approach,
@@ -647,7 +647,6 @@ impl TrialPlan {
 mod tests {
     use super::*;
 
-    /// The index finger from open to bent, once.
     fn index(speed: i16, force: i16) -> TrialPlan {
         let mut plan = TrialPlan {
             grid: TrialGrid::once(TrialSetting {

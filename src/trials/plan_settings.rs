@@ -1,29 +1,29 @@
-//! The plan that the user was writing, as a table of the settings: read back from one start of the program to the next.
-//! Opens no file; a plan that is read back moves nothing before the user arms and starts it.
+//! The plan in the user's editor as a table of the settings, restored at the next start of the program.
+//! Opens no file; a restored plan moves nothing before the user arms and starts it.
 
 use crate::trials::plan::{TRIALS_MAX, TrialPlan};
 use toml::{Table, Value};
 
-/// Numbers in a list of speeds or thresholds.
+/// Maximum number of speeds or thresholds in a list.
 pub const LIST_MAX: usize = 20;
-/// Characters of the note and of all tags.
+/// Maximum length of the note and all tags together, bytes.
 const WORDS_MAX: usize = 2000;
 
-/// Why a table is not a plan of this version.
+/// Reason why a table is not a plan of this version.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlanReadError {
-    /// A key is missing, or holds what it cannot.
+    /// A key is missing or has an invalid value.
     #[error("{}", .0.message())]
     Form(#[from] toml::de::Error),
-    /// A list or a text is too long or empty, or there are too many repeats.
+    /// A list or a text is too long or empty, or the number of repeats is out of range.
     #[error("{0} is out of range")]
     Range(&'static str),
 }
 
-/// The plan of the settings; the first of all if there is none. What is missing is as in the first.
+/// The plan in the settings; the default plan if there is none. Missing keys take the values of the default plan.
 ///
 /// # Errors
-/// [`PlanReadError`]: it is of another version, or spoilt.
+/// [`PlanReadError`]: a plan of another version, or an invalid one.
 pub fn from_settings(stored: Option<&Value>) -> Result<TrialPlan, PlanReadError> {
     let Some(stored) = stored else {
         return Ok(TrialPlan::default());
@@ -55,12 +55,12 @@ pub fn from_settings(stored: Option<&Value>) -> Result<TrialPlan, PlanReadError>
     Ok(plan)
 }
 
-/// The plan as a table of the settings.
+/// The plan as a table of the settings; `None` if it cannot be serialized.
 pub fn to_settings(plan: &TrialPlan) -> Option<Value> {
     Value::try_from(plan).ok()
 }
 
-/// The first versions kept the whole form: targets of all joints beside the list of those that close, and a number for each
+/// Converts the form of the first versions: targets of all joints beside the list of closing joints, and one number per
 /// kind of approach.
 fn from_first_form(mut table: Table) -> Table {
     let index = || Value::Array(vec!["index".into()]);
@@ -90,7 +90,7 @@ fn from_first_form(mut table: Table) -> Table {
     table
 }
 
-/// The targets of the joints that close.
+/// The targets of the closing joints.
 fn targets_of(joints: &[Value], all: Option<Value>) -> Table {
     let all = all.as_ref();
     let target = |joint: &Value| {

@@ -1,4 +1,4 @@
-//! One running trial: samples and time in, setpoints out. Sends nothing, reads no clock, arms nothing.
+//! One running trial: takes samples and time, returns setpoints. Sends nothing, reads no clock, arms nothing.
 
 use crate::hand::{
     Angle, AngleReading, Dof, Force, Groups, HandSample, Moment, PerDof, Speed, Status, Target,
@@ -10,79 +10,77 @@ use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::{TrialEvent, TrialRecording};
 use std::time::Duration;
 
-/// Time at the start before the closing command: what is read in it is the rest that forces are counted from.
+/// Rest before the closing command; its readings are the zero of all forces.
 pub const QUIET: Duration = Duration::from_millis(500);
-/// Longest wait until the hand shows the speed and threshold that were set.
+/// Longest wait for the hand to confirm speed and threshold.
 const LIMITS_TIMEOUT: Duration = Duration::from_secs(4);
-/// Longest way to the start and back, at a gentle speed.
+/// Longest travel to the start and back, at a gentle speed.
 const TRAVEL_TIMEOUT: Duration = Duration::from_secs(20);
-/// Recorded after the release.
+/// Time recorded after the release.
 const AFTER: Duration = Duration::from_millis(300);
-/// Angles this near to each other are the same.
+/// Angles within this distance count as equal.
 const STILL_COUNTS: i16 = 2;
-/// A joint that reports a stop and stands still for this long has stopped.
+/// A joint that reports a stop and is still for this long has stopped.
 const STILL_DURATION: Duration = Duration::from_millis(200);
-/// One that stands still for this long has stopped, whatever it reports: at speed 1 a joint makes three counts in it.
+/// A joint that is still for this long has stopped, whatever it reports: at speed 1 it moves three counts in that time.
 const STILL_ANYWAY: Duration = Duration::from_millis(1800);
-/// Extra time allowed for closing: the dead time, the ramps, a slow wire.
+/// Extra time for closing: dead time, ramps, a slow wire.
 const CLOSE_SLACK: Duration = Duration::from_secs(4);
-/// Weight of gravity: newtons of a gram.
+/// Newtons per gram.
 const N_PER_G: f64 = 0.009_806_65;
 
-/// What one joint does in the closing.
+/// State of one closing joint.
 #[derive(Debug, Clone, Copy)]
 struct ClosingJoint {
     dof: Dof,
     close: Angle,
-    /// Where it goes at first, if it is not all the way.
+    /// First target, if it does not close all the way at once.
     halt: Option<Angle>,
     slow: bool,
     moved: bool,
     still: Option<(Moment, i16)>,
     from: i16,
-    /// Proximity at the command.
+    /// Proximity at the closing command.
     proximity: Option<i32>,
 }
 
-/// What the hand does in a series, for display.
+/// Activity of the hand in a series, for display.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Stage {
-    /// Between two trials: it rests, or cools.
+    /// Between two trials: rests, or cools.
     Resting,
-    /// It goes to its start.
+    /// Moves to its start.
     Preparing,
-    /// It is still, and its limits are being confirmed.
+    /// Is still while its limits are confirmed.
     Quiet,
     Closing,
-    /// It holds.
+    /// Holds.
     Dwelling,
-    /// It opens.
+    /// Opens.
     Releasing,
-    /// Nothing any more.
+    /// Finished.
     Over,
 }
 
-/// How a trial ended.
+/// End of a trial; `Err` with the reason if it ended early.
 pub type Ending = Result<(), Abort>;
 
-/// A running trial.
 #[derive(Debug, Clone)]
 pub struct Runner {
     plan: TrialPlan,
     setting: TrialSetting,
     epoch: ArmEpoch,
     stage: Stage,
-    /// Since when; zero before it began.
+    /// Start of the stage; zero before the trial begins.
     since: Moment,
     joints: PerDof<Option<ClosingJoint>>,
     rest: PerDof<Mean>,
-    /// Where all joints stand still on their way to the start, and since when.
+    /// Angles at which all joints are still on the way to the start, and since when.
     pose: Option<(Moment, PerDof<i16>)>,
     recording: TrialRecording,
     ending: Option<Ending>,
 }
 
-/// A running mean.
 #[derive(Debug, Clone, Copy, Default)]
 struct Mean {
     sum: f64,
@@ -101,7 +99,7 @@ impl Mean {
 }
 
 impl Runner {
-    /// A trial of a plan that was checked. `contact`: angles at which a first trial met the object.
+    /// A trial of a checked plan. `contact`: angles at which a first trial met the object.
     pub fn new(
         plan: &TrialPlan,
         setting: TrialSetting,
@@ -135,27 +133,25 @@ impl Runner {
         }
     }
 
-    /// The recording so far.
     pub const fn recording(&self) -> &TrialRecording {
         &self.recording
     }
 
-    /// What the hand does now.
+    /// The current activity of the hand.
     pub const fn stage(&self) -> Stage {
         self.stage
     }
 
-    /// How it ended, once it has.
+    /// The end of the trial; `None` while it runs.
     pub const fn ending(&self) -> Option<Ending> {
         self.ending
     }
 
-    /// Returns the recording.
     pub fn into_recording(self) -> TrialRecording {
         self.recording
     }
 
-    /// Ends it early. The first reason stays.
+    /// Ends the trial early. The first reason is kept.
     pub fn abort(&mut self, why: Abort, now: Moment) {
         if self.ending.is_none() {
             self.enter(Stage::Over, TrialEvent::Aborted, now);
@@ -178,7 +174,7 @@ impl Runner {
         }
     }
 
-    /// Advances the time. Returns what to send now, if anything.
+    /// Advances the time. Returns the setpoints to send now, if any.
     pub fn tick(
         &mut self,
         sample: &HandSample,
@@ -250,11 +246,11 @@ impl Runner {
         setpoints
     }
 
-    /// True if all joints stand still at their starts; ends the trial if that takes too long. A joint that still moves
-    /// would finish its way at the closing speed.
+    /// True if all joints are still at their starts; ends the trial if that takes too long. A joint that still moves would finish
+    /// its way at the closing speed.
     fn there(&mut self, sample: &HandSample, now: Moment) -> bool {
         let since = self.since;
-        // Only what was asked for after the command tells of it.
+        // Only replies to requests made after the command show its effect.
         let angle = sample.angle.filter(|angle| angle.asked >= since);
         let away = self.plan.start.iter().find_map(|(dof, start)| {
             let start = (*start)?.get();
@@ -276,7 +272,7 @@ impl Runner {
         false
     }
 
-    /// The joint that is named where none is away and one still moves.
+    /// The joint to report when all are at their starts and one still moves.
     fn first_start(&self) -> (Dof, i16) {
         let mut starts = self.plan.start.iter();
         let first = starts.find_map(|(dof, start)| Some((dof, (*start)?.get())));
@@ -317,7 +313,7 @@ impl Runner {
         }
     }
 
-    /// Closes once the hand was quiet and shows the limits: no finger closes with a threshold that is not known.
+    /// Closes once the hand was quiet and confirmed its limits: no finger closes with an unknown threshold.
     fn quiet(&mut self, sample: &HandSample, now: Moment) -> Option<Setpoints> {
         if now.since(self.since) < QUIET {
             return None;
@@ -360,7 +356,7 @@ impl Runner {
         for (dof, joint) in self.joints.iter_mut() {
             let Some(joint) = joint else { continue };
             joint.look(sample, since, now);
-            // What stopped before it, at an obstacle or for want of accuracy, goes on from where it is.
+            // A joint that stopped earlier, at an obstacle or for lack of accuracy, continues from where it is.
             if !joint.slow
                 && (joint.begins_slow(self.plan.approach, sample, rest_g[dof])
                     || joint.stands(sample, now))
@@ -385,14 +381,14 @@ impl Runner {
         (!setpoints.is_empty()).then_some(setpoints)
     }
 
-    /// The longest that the whole way can take at the setting's speed.
+    /// The longest time that the full way can take at the setting's speed.
     fn close_within(&self) -> Duration {
         let way = f64::from(Angle::MAX.get());
         Duration::from_secs_f64(way / self.setting.speed.angle_per_s()) + CLOSE_SLACK
     }
 }
 
-/// Where a joint halts before its slow stage.
+/// Angle at which a joint halts before its slow stage; `None` without a halt.
 fn halt(plan: &TrialPlan, contact: Option<Angle>, dof: Dof) -> Option<Angle> {
     let Approach::TwoStage { until, .. } = plan.approach else {
         return None;
@@ -409,7 +405,7 @@ fn halt(plan: &TrialPlan, contact: Option<Angle>, dof: Dof) -> Option<Angle> {
 }
 
 impl ClosingJoint {
-    /// Whether its fast stage is over.
+    /// True once its fast stage is over.
     fn begins_slow(&self, approach: Approach, sample: &HandSample, rest_g: Option<f64>) -> bool {
         let Approach::TwoStage { until, .. } = approach else {
             return false;
@@ -438,7 +434,7 @@ impl ClosingJoint {
         }
     }
 
-    /// Notes whether it moves.
+    /// Updates its motion state.
     fn look(&mut self, sample: &HandSample, since: Moment, now: Moment) {
         let Some(angle) = sample.angle.filter(|angle| angle.asked >= since) else {
             return;
@@ -454,7 +450,7 @@ impl ClosingJoint {
         }
     }
 
-    /// Whether it is at its halt, or past it. A drive that rests short of its target has arrived once it says that it stopped.
+    /// True at its halt or past it. A drive resting short of its target has arrived once it reports a stop.
     fn has_halted(&self, halt: Angle, sample: &HandSample) -> bool {
         let angle = sample.angle.map(|angle| angle.value[self.dof]);
         angle.and_then(AngleReading::documented).is_some_and(|at| {
@@ -464,13 +460,13 @@ impl ClosingJoint {
         })
     }
 
-    /// Whether its drive says that it stopped, once it moved.
+    /// True if it has moved and its drive reports a stop.
     fn says_stopped(&self, sample: &HandSample) -> bool {
         let says = sample.status.map(|status| status.value[self.dof]);
         self.moved && says.is_some_and(Status::is_stopped)
     }
 
-    /// Whether it has stopped for good: at its target, at its force, or at an obstacle.
+    /// True once it has finally stopped: at its target, at its force, or at an obstacle.
     fn has_stopped(&self, sample: &HandSample, now: Moment) -> bool {
         self.slow && self.stands(sample, now)
     }

@@ -1,5 +1,5 @@
-//! Writes a session as its trials come. Never writes over another session; each file is whole at any moment, and after each
-//! trial the session is complete up to it.
+//! Writes a session trial by trial. Never overwrites another session; each file is replaced atomically, and after each trial the
+//! session is complete up to it.
 
 use crate::store;
 use crate::trials::best::Criterion;
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 const REPORT_FILE: &str = "report.html";
 
-/// A session that is being written.
+/// A session being written.
 #[derive(Debug)]
 pub struct TrialSessionWriter {
     folder: PathBuf,
@@ -21,10 +21,10 @@ pub struct TrialSessionWriter {
 }
 
 impl TrialSessionWriter {
-    /// Makes the folder and writes what is known before the first trial. The report names the best setting by `criterion`.
+    /// Creates the folder and writes the session without trials. The report names the best setting by `criterion`.
     ///
     /// # Errors
-    /// What the system says; a folder that holds anything is not taken.
+    /// The I/O error; a folder that is not empty is rejected.
     pub fn create(
         folder: &Path,
         head: SessionHead,
@@ -45,10 +45,10 @@ impl TrialSessionWriter {
         Ok(writer)
     }
 
-    /// Writes one trial.
+    /// Adds a trial and writes its files.
     ///
     /// # Errors
-    /// What the system says.
+    /// The I/O error.
     pub fn add(&mut self, summary: &TrialSummary, recording: &TrialRecording) -> io::Result<()> {
         let name = summary.samples_file();
         store::replace(&self.folder.join(&name), csv::write(recording).as_bytes())?;
@@ -60,15 +60,15 @@ impl TrialSessionWriter {
         self.write_session()
     }
 
-    /// Notes what the whole session came to, under a key of its own.
+    /// Adds a result of the whole session under its own key; written with the next trial or at the end.
     pub fn note(&mut self, key: &str, value: toml::Table) {
         self.file.head.others.insert(key.into(), value.into());
     }
 
-    /// Writes how it ended, and the report.
+    /// Writes the end of the session, and the report.
     ///
     /// # Errors
-    /// What the system says.
+    /// The I/O error.
     pub fn finish(mut self, aborted: Option<EarlyEnd>) -> io::Result<()> {
         self.file.head.aborted = aborted;
         self.write_session()?;

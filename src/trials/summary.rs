@@ -1,5 +1,5 @@
-//! What one trial was and came to, without its samples: a row of `session.toml`, of the window's table, of the report and of
-//! the command line's JSON.
+//! One finished trial without its samples: a row of `session.toml`, of the window's table, of the report and of the command
+//! line's JSON.
 
 use crate::record::Abort;
 use crate::trials::measure::metrics::JointMetrics;
@@ -14,17 +14,17 @@ use serde::{Deserialize, Serialize};
 pub enum TrialKind {
     /// Finds the contact, slowly.
     Probe,
-    /// Tries a cell of the grid.
+    /// Tries one cell of the grid.
     Trial,
 }
 
-/// Why a trial or a series ended early. In files it is a sentence.
+/// Reason for the early end of a trial or series. Stored as a sentence in files.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum EarlyEnd {
-    /// As it was seen here.
+    /// Observed in this run.
     Here(Abort),
-    /// In the words of a file.
+    /// Text from a file.
     FromFile(String),
 }
 
@@ -49,63 +49,62 @@ impl std::fmt::Display for EarlyEnd {
     }
 }
 
-/// One trial that is over.
+/// One finished trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialSummary {
-    /// From 1.
+    /// Number in the session, from 1.
     pub number: usize,
-    /// Its purpose.
     pub kind: TrialKind,
-    /// How often this setting was tried, this one included; `None` for a probe.
+    /// Number of this trial among those of its setting, from 1; `None` for a probe.
     pub repeat: Option<usize>,
     /// Speed and threshold.
     #[serde(flatten)]
     pub setting: TrialSetting,
-    /// Why it ended early, if it did.
+    /// Reason for an early end.
     pub aborted: Option<EarlyEnd>,
-    /// The file of its samples, in the folder of its session.
+    /// File of the samples in the session folder.
     pub samples: Option<String>,
-    /// Rows that hold readings.
+    /// Number of recorded rows.
     pub rows: usize,
-    /// Rows that had no place.
+    /// Rows dropped for lack of space.
     pub rows_lost: u64,
-    /// The readings stopped at a peak, so that it counts for nothing and was tried again.
+    /// The readings have a gap at a peak: the trial does not count and was repeated.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub repeated: bool,
-    /// The longest time in it in which this program did not run, s.
+    /// Longest stall of this program during the trial, s.
     #[serde(default)]
     pub stall_s: Option<f64>,
-    /// What was measured, joint by joint, in register order.
+    /// Metrics of the joints, in register order.
     #[serde(default, rename = "joint", skip_serializing_if = "Vec::is_empty")]
     pub joints: Vec<JointMetrics>,
-    /// Keys of a later version, kept as they are.
+    /// Keys of a later version, preserved.
     #[serde(flatten)]
     pub others: toml::Table,
 }
 
 impl TrialSummary {
-    /// Whether it looks for the contact.
+    /// True for a probe.
     pub fn is_probe(&self) -> bool {
         self.kind == TrialKind::Probe
     }
 
-    /// Whether it counts for its setting: looking for the contact does not, nor what was tried again.
+    /// True if it counts for its setting: probes and repeated trials do not.
     pub fn counts(&self) -> bool {
         !self.is_probe() && !self.repeated
     }
 
-    /// Whether the readings of a joint stopped at its peak.
+    /// True if the readings of a joint have a gap at its peak.
     pub fn has_gap(&self) -> bool {
         let mut joints = self.joints.iter();
         joints.any(|joint| joint.peak_doubt == Some(PeakDoubt::Gap))
     }
 
-    /// Takes over how many rows a recording holds.
+    /// Copies the row counts of a recording.
     pub fn count(&mut self, recording: &TrialRecording) {
         (self.rows, self.rows_lost) = (recording.rows().len(), recording.lost());
     }
 
-    /// Its number, what it was for, and its setting.
+    /// Its number, purpose and setting.
     pub fn title(&self) -> String {
         let what = match self.kind {
             TrialKind::Probe => "contact sought",
@@ -114,17 +113,15 @@ impl TrialSummary {
         format!("{} ({what}): {}", self.number, self.setting)
     }
 
-    /// The name of the file that its samples are written to.
+    /// Name of its samples file.
     pub fn samples_file(&self) -> String {
         format!("trial-{:03}.csv", self.number)
     }
 }
 
-/// A trial that is over, with everything that was read in it.
+/// A finished trial with all its readings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trial {
-    /// What it was and came to.
     pub summary: TrialSummary,
-    /// What was read.
     pub recording: TrialRecording,
 }

@@ -1,4 +1,4 @@
-//! A check-up as JSON, a contract with scripts.
+//! A check-up as JSON, a stable format for scripts.
 
 use crate::checkup::check::Check;
 use crate::checkup::report::{CheckupReport, Keeping};
@@ -6,7 +6,7 @@ use crate::checkup::subject::Light;
 use serde_json::{Map, Value, json};
 
 impl CheckupReport {
-    /// `{"check": {…}}`. What is not known is null.
+    /// `{"check": {…}}`. Unknown values are null.
     pub fn json(&self) -> Value {
         let usage = self.usage.as_ref().map(|usage| {
             let closes = usage.closes.iter();

@@ -1,4 +1,4 @@
-//! A figure over the last check-ups as a small line of a page, and in a sentence.
+//! The history of a figure: a small line on a page, and a sentence.
 
 use crate::checkup::check::Check;
 use crate::checkup::trend::day;
@@ -8,12 +8,12 @@ const WIDTH: f64 = 96.0;
 const HEIGHT: f64 = 20.0;
 const MARGIN: f64 = 2.0;
 
-/// Where the line of a trend goes, `x,y x,y …`; `None` for fewer than two points.
+/// Points of the trend line, `x,y x,y …`; `None` for fewer than two check-ups.
 pub(super) fn line(check: &Check) -> Option<String> {
     let points = &check.trend.points;
     let (least, most) = check.trend.range().filter(|_| points.len() >= 2)?;
     let steps = u32::try_from(points.len() - 1).map_or(1.0, f64::from);
-    // What does not change lies in the middle.
+    // A constant value lies in the middle.
     let part = |value: f64| match most - least {
         0.0 => 0.5,
         height => (value - least) / height,
@@ -28,7 +28,7 @@ pub(super) fn line(check: &Check) -> Option<String> {
     Some(places.collect::<Vec<_>>().join(" "))
 }
 
-/// The days and values of a trend, a line each.
+/// Dates and values of a trend, one per line.
 pub fn past_words(check: &Check) -> String {
     let row = check.measured.what.row();
     let points = check.trend.points.iter();
@@ -36,7 +36,7 @@ pub fn past_words(check: &Check) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// That a figure goes one way, if it does.
+/// A sentence about the drift of a figure; `None` if it does not drift.
 pub fn drift_words(check: &Check) -> Option<String> {
     let (row, drift) = (check.measured.what.row(), check.drift()?);
     Some(format!(
@@ -48,7 +48,7 @@ pub fn drift_words(check: &Check) -> Option<String> {
     ))
 }
 
-/// What a figure was measured to be, with the channels that it counts.
+/// The measured value with its unit, and the channels that it counts.
 pub fn value_words(check: &Check) -> String {
     let value = check.measured.what.row().known(&check.measured.value);
     if check.measured.channels.is_empty() {

@@ -1,4 +1,4 @@
-//! What a check-up came to, and its page: one HTML file with nothing from elsewhere. Writes no file itself.
+//! The result of a check-up and its page: one self-contained HTML file. Writes no file itself.
 
 mod json;
 pub mod line;
@@ -12,46 +12,46 @@ use crate::store::calendar::day;
 use askama::Template;
 use std::time::Duration;
 
-/// The file of the page in the folder of a check-up, of its figures, and of its recording.
+/// File names in the folder of a check-up: the page, the figures, the recording.
 pub const PAGE_FILE: &str = "report.html";
 pub const JSON_FILE: &str = "check.json";
 pub const RECORDING_FILE: &str = "check.mcap";
 
-/// Whether a check-up is kept for the next ones to be compared with.
+/// Result of storing a check-up for later comparison.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Keeping {
-    /// It is kept, after so many others.
+    /// Stored, after this many earlier ones.
     Kept { earlier: usize },
-    /// The built-in hand is another each time.
+    /// Not stored: the built-in hand differs on each start.
     BuiltIn,
-    /// It ended early.
+    /// Not stored: it ended early.
     Partial,
-    /// It would be the first, the birth record, and this joint did not go through its stroke: something may stand in the hand.
+    /// Not stored as the first, the birth record: this joint did not complete its stroke, so something may be in the hand.
     NotAsFirst { dof: Dof },
-    /// What the system says.
+    /// The file could not be written.
     Failed { error: String },
 }
 
-/// What a check-up came to.
+/// Result of a check-up.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckupReport {
     /// The hand, as an endpoint.
     pub hand: String,
     pub simulated: bool,
-    /// When, universal time.
+    /// Time of the check-up, UTC.
     pub at: String,
-    /// Why it is partial, if it is, and in English with what became of the stop.
+    /// Reason for an early end, and the same in English with the result of the stop.
     pub aborted: Option<Abort>,
     pub aborted_words: Option<String>,
-    /// How many check-ups of this hand were kept before.
+    /// Number of earlier check-ups stored for this hand.
     pub earlier: usize,
     pub checks: Vec<Check>,
-    /// Joints that were not moved, with their zeros, g: they could not have been stopped gently.
+    /// Joints that were not moved because they could not have been stopped gently, with their zeros, g.
     pub left_alone: Vec<(Dof, f64)>,
     pub keeping: Keeping,
-    /// How much the hand was used, as far as there are recordings of it.
+    /// Use of the hand; `None` without recordings of it.
     pub usage: Option<Usage>,
-    /// Whether what was read and written is recorded beside it.
+    /// True if the traffic is recorded beside it.
     pub recorded: bool,
 }
 
@@ -62,20 +62,20 @@ struct ReportPage<'a> {
 }
 
 impl CheckupReport {
-    /// The page.
+    /// Renders the page.
     ///
     /// # Errors
-    /// What the template says.
+    /// A template error.
     pub fn html(&self) -> Result<String, askama::Error> {
         ReportPage { report: self }.render()
     }
 
-    /// How many figures are of a light.
+    /// The number of figures with this light.
     pub fn count(&self, light: Light) -> usize {
         self.checks.iter().filter(|own| own.light == light).count()
     }
 
-    /// How many are of each light, in words.
+    /// The number of figures with each light, as a sentence.
     pub fn summary(&self) -> String {
         let [fine, watch, act, unknown] =
             [Light::Fine, Light::Watch, Light::Act, Light::Unknown].map(|light| self.count(light));
@@ -85,7 +85,7 @@ impl CheckupReport {
         )
     }
 
-    /// What is to be known of it besides its figures, in sentences.
+    /// Remarks besides the figures, a sentence each.
     pub fn remarks(&self) -> Vec<String> {
         let left_alone = self.left_alone.iter().map(|(dof, zero_g)| {
             format!(
@@ -96,7 +96,7 @@ impl CheckupReport {
         left_alone.chain(self.keeping.words()).collect()
     }
 
-    /// How much the hand was used, in a sentence.
+    /// Use of the hand, as a sentence.
     pub fn usage_words(&self) -> String {
         let Some(usage) = &self.usage else {
             return "Hours in use, closes and stalls: not known, there are no recordings of this hand".into();
@@ -114,7 +114,7 @@ impl CheckupReport {
 }
 
 impl Keeping {
-    /// Why it is not kept, if that is news.
+    /// Reason why it was not stored; `None` where that needs no remark.
     fn words(&self) -> Option<String> {
         match self {
             Self::Kept { .. } | Self::BuiltIn | Self::Partial => None,
@@ -128,7 +128,7 @@ impl Keeping {
 }
 
 impl<'a> ReportPage<'a> {
-    /// The checks of each joint, fingertip and the hand, in their order.
+    /// The checks grouped by joint, fingertip and hand, in order.
     fn groups(&self) -> Vec<(&'static str, &'a [Check])> {
         let same = |a: &Check, b: &Check| a.measured.of == b.measured.of;
         let groups = self.report.checks.chunk_by(same);

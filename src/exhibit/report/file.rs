@@ -1,4 +1,4 @@
-//! The report of a day as TOML, version 1 (assets/manual/exhibit.md). It is taken whole or not at all.
+//! The report of a day as TOML, version 1 (assets/manual/exhibit.md). It is accepted as a whole or rejected.
 
 use crate::exhibit::report::DayReport;
 use crate::hand::{Dof, PerDof, TemperatureReading};
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
 
-/// The format that such a file names.
+/// The `format` value of such a file.
 pub const FORMAT: &str = "handscope-exhibit-day";
 
 #[derive(Serialize, Deserialize)]
@@ -30,7 +30,7 @@ struct DayRow {
     hours: Vec<HourRow>,
 }
 
-/// Highest temperatures of an hour, °C; none where none was read.
+/// Highest temperatures in an hour, °C; `None` without a reading.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct HourRow {
@@ -52,7 +52,7 @@ struct HourRow {
 /// The report as text.
 ///
 /// # Errors
-/// What the TOML writer says; a report that was counted by this program has no such value.
+/// An error of the TOML writer; a report counted by this program never causes one.
 pub fn write(report: &DayReport) -> Result<String, toml::ser::Error> {
     toml::to_string(&DayRow {
         format: FORMAT.into(),
@@ -82,10 +82,10 @@ fn hour_row((hour, drives): (&u8, &PerDof<Option<u8>>)) -> HourRow {
     }
 }
 
-/// The report that a text holds, if it is the one of this day, `2026-11-21`.
+/// Parses a report and checks that it is of this day, `2026-11-21`.
 ///
 /// # Errors
-/// [`FileError`] with line and field; nothing is taken of such a text.
+/// [`FileError`] with line and field; a bad text is rejected as a whole.
 pub fn read(text: &str, day: &str) -> Result<DayReport, FileError> {
     let source = FileText::of(text, FORMAT)?;
     let row: DayRow = source.parse()?;

@@ -1,4 +1,4 @@
-//! What happened at an exhibition on one day, counted; its file and its page.
+//! The counts of one exhibition day, their file and their page.
 
 pub mod file;
 pub mod page;
@@ -12,34 +12,34 @@ use crate::hand::{HandSample, Moment, PerDof};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
-/// A temperature older than this belongs to no hour.
+/// An older temperature is not assigned to an hour.
 const MAX_AGE: Duration = Duration::from_secs(5);
 
 /// One day of an exhibition.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct DayReport {
-    /// `2026-11-21`, in universal time.
+    /// Date in UTC, `2026-11-21`.
     pub day: String,
-    /// The hands that were shown, by their URLs.
+    /// The hands on show, as endpoints.
     pub hands: BTreeSet<String>,
-    /// Visitors that played.
+    /// Visitors who played.
     pub visits: u32,
-    /// How often visitors started each piece, by its name.
+    /// Number of starts by visitors, by name of the piece.
     pub pieces: BTreeMap<String, u32>,
-    /// How often drives reported each fault, by its name.
+    /// Number of reports by drives, by name of the fault.
     pub faults: BTreeMap<String, u32>,
-    /// Rests for heat.
+    /// Rests due to heat.
     pub rests: u32,
     /// Presses of STOP.
     pub stops: u32,
     /// Lost links.
     pub link_losses: u32,
-    /// The highest temperature of each drive in each hour, 0 to 23, °C; `None` where none was read.
+    /// Highest temperature of each drive in each hour, 0 to 23, °C; `None` without a reading.
     pub hottest: BTreeMap<u8, PerDof<Option<u8>>>,
 }
 
 impl DayReport {
-    /// A day on which nothing happened yet.
+    /// An empty report of this day.
     pub fn of(day: &str) -> Self {
         Self {
             day: day.into(),
@@ -47,7 +47,7 @@ impl DayReport {
         }
     }
 
-    /// Counts something.
+    /// Counts an event.
     pub fn count(&mut self, event: &ExhibitEvent) {
         let count = match event {
             ExhibitEvent::Visit => &mut self.visits,
@@ -60,7 +60,7 @@ impl DayReport {
         *count = count.saturating_add(1);
     }
 
-    /// Takes in how warm the drives are in this hour. What is old, or what the manual does not know, is left out.
+    /// Records the drive temperatures in this hour; outdated and undocumented readings are ignored.
     pub fn warm(&mut self, sample: &HandSample, hour: u8, now: Moment) {
         let Some(read) = sample.temperature else {
             return;
@@ -71,7 +71,7 @@ impl DayReport {
         }
     }
 
-    /// Adds what was counted earlier on the same day.
+    /// Adds the counts of an earlier report of the same day.
     pub fn add(&mut self, earlier: &Self) {
         self.hands.extend(earlier.hands.iter().cloned());
         for (count, before) in [
@@ -99,7 +99,7 @@ impl DayReport {
     fn hotter(&mut self, hour: u8, drives: PerDof<Option<u8>>) {
         let highest = self.hottest.entry(hour).or_insert(PerDof::splat(None));
         for (dof, celsius) in drives.iter() {
-            // Nothing is less than any temperature.
+            // `None` is less than any temperature.
             highest[dof] = highest[dof].max(*celsius);
         }
     }

@@ -1,24 +1,24 @@
-//! The report of a day as one HTML page for the user: no script, nothing from elsewhere; how it looks stands in `page.html`
-//! beside this file. Writes no file itself.
+//! The report of a day as one self-contained HTML page for the user, without scripts; its layout is `page.html` beside this file.
+//! Writes no file itself.
 
 use crate::exhibit::heat::HOT;
 use crate::exhibit::report::DayReport;
 use crate::hand::Dof;
 use askama::Template;
 
-/// What the template is filled with.
+/// Data for the template.
 #[derive(Template)]
 #[template(path = "page.html", config = "exhibit/report/askama.toml")]
 struct DayPage<'a> {
     report: &'a DayReport,
 }
 
-/// The page of a day.
+/// Renders the page of a day.
 ///
 /// # Errors
-/// What the template says.
+/// A template error.
 pub fn html(report: &DayReport) -> Result<String, askama::Error> {
-    // No control sign but the break of lines has a place in a page.
+    // Control characters other than line breaks are not allowed in a page.
     let is_control = |letter: char| letter.is_control() && letter != '\n';
     let page = DayPage { report }.render()?;
     Ok(page.replace(is_control, "\u{FFFD}"))

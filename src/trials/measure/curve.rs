@@ -1,10 +1,10 @@
-//! One quantity of one joint over time, as it is measured from: known values only, in the order of time. Detects nothing.
+//! One quantity of one joint over time: known values only, in order of time. Detects nothing.
 
 use crate::hand::Dof;
 use crate::history::decimated;
 use crate::trials::recording::{SampleRow, TipSample, TrialRecording, seconds};
 
-/// A value and when it was received.
+/// A value and its time of arrival.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CurvePoint {
     /// Seconds from the closing command.
@@ -13,7 +13,7 @@ pub struct CurvePoint {
     pub v: f64,
 }
 
-/// Values in the order of time. What was not read is not there.
+/// Values in order of time, without gaps for missing readings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TimeSeries(Vec<CurvePoint>);
 
@@ -31,7 +31,7 @@ impl TimeSeries {
         &self.0
     }
 
-    /// The points from one time to another, both included.
+    /// The points in a closed interval.
     pub fn between(
         &self,
         from: f64,
@@ -41,7 +41,7 @@ impl TimeSeries {
         self.0.iter().copied().filter(inside)
     }
 
-    /// The values from one time to another.
+    /// The values in a closed interval.
     pub fn values(&self, from: f64, to: f64) -> Vec<f64> {
         self.between(from, to).map(|point| point.v).collect()
     }
@@ -52,13 +52,13 @@ impl TimeSeries {
         Self(self.0.get(start..).unwrap_or_default().to_vec())
     }
 
-    /// Times and values, at most so many: no extreme is lost.
+    /// Times and values, decimated to at most `most` points; extremes are preserved.
     pub fn decimated(&self, most: usize) -> Vec<[f64; 2]> {
         let points: Vec<[f64; 2]> = self.0.iter().map(|point| [point.t, point.v]).collect();
         decimated(&points, most)
     }
 
-    /// The value at a time, on the line between its neighbours; `None` outside the curve.
+    /// The value at a time, interpolated; `None` outside the curve.
     pub fn at(&self, t: f64) -> Option<f64> {
         let next = self.0.iter().position(|point| point.t >= t)?;
         let after = self.0.get(next)?;
@@ -72,7 +72,7 @@ impl TimeSeries {
         }
     }
 
-    /// The same with another zero.
+    /// The curve with `zero` subtracted.
     pub fn less(&self, zero: f64) -> Self {
         self.0
             .iter()
@@ -84,9 +84,9 @@ impl TimeSeries {
 /// All curves of one joint.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct JointCurves {
-    /// ANGLE_ACT, where the manual knows the value.
+    /// ANGLE_ACT; documented values only.
     pub angle: TimeSeries,
-    /// FORCE_ACT, g, as it came.
+    /// FORCE_ACT, g; the offset is included.
     pub force: TimeSeries,
     /// CURRENT, mA.
     pub current: TimeSeries,
@@ -98,14 +98,14 @@ pub struct JointCurves {
     pub normal: TimeSeries,
     /// Tangential force, N.
     pub tangential: TimeSeries,
-    /// Its direction, degrees; only while there is contact.
+    /// Direction of the tangential force, degrees; only during contact.
     pub direction: TimeSeries,
     /// Proximity, counts.
     pub proximity: TimeSeries,
 }
 
 impl JointCurves {
-    /// What a recording holds of one joint. The thumb's rotation moves no fingertip of its own and has none.
+    /// The curves of one joint in a recording. The thumb's rotation moves no fingertip of its own and has no tip curves.
     pub fn of(recording: &TrialRecording, dof: Dof) -> Self {
         let finger = Some(dof.finger()).filter(|finger| finger.bend() == dof);
         let zero = recording.zero();

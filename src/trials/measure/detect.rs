@@ -1,4 +1,4 @@
-//! When a curve begins to rise, and how noisy it is. Knows no joint and no trial.
+//! The start of a rise in a curve, and its noise. Knows no joint and no trial.
 
 use crate::hand::statistics::{count, median, spread};
 use crate::trials::measure::curve::{CurvePoint, TimeSeries};
@@ -8,20 +8,20 @@ use crate::trials::measure::curve::{CurvePoint, TimeSeries};
 pub struct RestLevel {
     /// The median.
     pub level: f64,
-    /// The standard deviation; single wild values do not count.
+    /// The standard deviation without outliers.
     pub sigma: f64,
 }
 
-/// Values below which nothing can be said of a curve's noise.
+/// Fewer values give no noise level.
 const REST_LEAST: usize = 3;
-/// A value is wild if it is so many standard deviations off, as the median deviation has them …
+/// A value is an outlier beyond this many standard deviations, estimated from the median deviation …
 const WILD_SIGMAS: f64 = 4.0;
-/// … of readings that are whole numbers: the median deviation of little noise is nothing.
+/// … which is at least this, since readings are whole numbers and low noise has a median deviation of zero.
 const WHOLE: f64 = 1.0;
 
-/// Level and noise between two times; `None` with fewer than 3 values.
+/// Level and noise in an interval; `None` with fewer than 3 values.
 pub fn rest(curve: &TimeSeries, from: f64, to: f64) -> Option<RestLevel> {
-    /// Of a normal distribution, its standard deviation by its median deviation.
+    /// Ratio of standard deviation to median deviation, of a normal distribution.
     const BY_MEDIAN: f64 = 1.4826;
     let values = curve.values(from, to);
     if values.len() < REST_LEAST {
@@ -39,12 +39,12 @@ pub fn rest(curve: &TimeSeries, from: f64, to: f64) -> Option<RestLevel> {
     })
 }
 
-/// A line is drawn between readings no further apart than this, s. Farther apart, nobody knows what lay between, and a
-/// reading counts from when it was there: late, never early.
+/// Longest gap to interpolate across, s. Across a longer one the course is unknown, and the event counts from the later reading:
+/// late, never early.
 const LINE_MAX_S: f64 = 0.06;
 
-/// When a curve first passes a level for good: two values in a row beyond it, on the line between the last value before
-/// and the first beyond, if they are near each other. `None` if it does not, or if the first value known already is beyond.
+/// Time at which a curve first exceeds a level with two values in a row, interpolated from the last value below if that is near.
+/// `None` if it does not, or if the first known value is already above.
 pub fn passes(points: impl Iterator<Item = CurvePoint>, level: f64) -> Option<f64> {
     let mut before: Option<CurvePoint> = None;
     let mut first: Option<f64> = None;
@@ -69,8 +69,8 @@ pub fn passes(points: impl Iterator<Item = CurvePoint>, level: f64) -> Option<f6
     None
 }
 
-/// When a curve begins to leave its rest in a ramp: it passes `level` for good, and the line from there to `double` the
-/// level is drawn back to zero, but not beyond the last value that was below a third of the level.
+/// Time at which a curve starts a ramp from rest: it passes `level` for good, and the line from there to twice the level is extended
+/// back to zero, but not before the last value below a third of the level.
 pub fn begins(curve: &TimeSeries, from: f64, level: f64) -> Option<f64> {
     let points = || curve.between(from, f64::INFINITY);
     let one = passes(points(), level)?;
@@ -124,7 +124,7 @@ mod tests {
                 .collect();
             let mean = sigmas.iter().sum::<f64>() / 200.0;
             assert!((mean / truth - 1.0).abs() < 0.06, "{truth}: {mean}");
-            // 45 readings tell it within 11 %, one standard deviation.
+            // 45 readings determine it within 11 %, one standard deviation.
             let off = sigmas.iter().map(|own| (own / truth - 1.0).abs());
             let far = off.filter(|off| *off > 0.25).count();
             assert!(far <= 15, "{truth}: {far} of 200");

@@ -1,19 +1,19 @@
-//! The metrics of one recorded trial, joint by joint. Pure; what cannot be known is `None`, never zero.
+//! The metrics of one recorded trial, joint by joint. Pure; an unknown value is `None`, never zero.
 //!
-//! Times are those at which replies arrived, counted from the moment at which the closing command was given to the
+//! Times are arrival times of replies, counted from the moment at which the closing command was handed to the
 //! link. Errors, with T the time between two reads (see `rate_hz`, `longest_gap_s`) and S the noise of the force at rest:
 //!
-//! * times: T late at most; for contact and motion less, as they are drawn back along the rise where T is up to 60 ms. T of
-//!   touch is that of the fingertips, which a slow line reads more seldom than forces. A command waits for the request on
-//!   the wire before it, so dead time and time to contact hold up to one transaction more (15 ms on a slow hand);
-//! * motion: half a unit of ANGLE_ACT more, which is 12 ms at speed 25 and nothing at 250;
-//! * forces: the reading at rest is taken away, so a sensor's offset does not count. A peak is the highest reading: too
-//!   low if the force peaked between two reads (`peak_doubt`, if that may have been much), too high by up to 2 S. At the
-//!   sensor's end it is a lower bound (`clipped`);
-//! * contact by force: at 15 g or 5 S, whichever is more; by touch: at 0.1 N;
-//! * steady force: a median, within S; settle time: to within 5 %, 3 S or 10 g of it, whichever is most, of the middle of three
-//!   readings: a single wild one does not count;
-//! * temperatures are whole degrees, read some times a second.
+//! * times: late by T at most; contact and motion by less, as they are extrapolated back along the rise where T is up to 60 ms. T of
+//!   touch is that of the fingertips, which a slow line reads less often than forces. A command waits for the current request on
+//!   the wire, so dead time and time to contact include up to one more transaction (15 ms on a slow hand);
+//! * motion: half a unit of ANGLE_ACT more, which is 12 ms at speed 25 and negligible at 250;
+//! * forces: the reading at rest is subtracted, so a sensor's offset does not count. A peak is the highest reading: too
+//!   low if the force peaked between two reads (`peak_doubt`, if by much), too high by up to 2 S. At the
+//!   sensor's limit it is a lower bound (`clipped`);
+//! * contact by force: at 15 g or 5 S, whichever is larger; by touch: at 0.1 N;
+//! * steady force: a median, within S; settle time: until the median of three readings stays within 5 %, 3 S or 10 g of it, whichever
+//!   is largest: a single outlier does not count;
+//! * temperatures are whole degrees, read a few times per second.
 
 use crate::hand::statistics::median;
 use crate::hand::{Angle, Dof, Status};
@@ -25,28 +25,28 @@ use crate::trials::plan::{TrialPlan, TrialSetting};
 use crate::trials::recording::{TrialEvent, TrialRecording, seconds};
 use serde::{Deserialize, Serialize};
 
-/// How long before the command counts as rest.
+/// Length of the rest before the command.
 const REST_S: f64 = 0.45;
-/// What stands for the STATUS of a joint that never moved.
+/// STATUS text of a joint that never moved.
 pub const DEAD_DRIVE: &str = "dead_drive";
-/// Way that is motion, units of ANGLE_ACT: between two whole readings, where neither is favoured.
+/// Change of angle that is motion, units of ANGLE_ACT: midway between two whole readings.
 const MOTION: f64 = 2.5;
-/// Least force that is contact, g, and how many times the noise.
+/// Smallest force that is contact, g, and as a multiple of the noise.
 const CONTACT_G: f64 = 15.0;
 const CONTACT_SIGMAS: f64 = 5.0;
 /// Normal force of a fingertip that is contact, N.
 const TOUCH_N: f64 = 0.1;
-/// Readings at or beyond it are the sensor's end (manual 2.6.16), g.
+/// Readings from this on are at the sensor's limit (manual 2.6.16), g.
 const FORCE_END_G: f64 = 4000.0;
-/// The steady force is that of the last part of the dwell, s at most …
+/// The steady force is measured over the end of the dwell, s at most …
 const STEADY_S: f64 = 0.5;
-/// … and of no fewer readings than these.
+/// … with at least this many readings.
 const STEADY_LEAST: usize = 5;
-/// How near to the steady force counts as settled: share, g, and multiples of the noise.
+/// Tolerance of settling: share of the steady force, g, and multiples of the noise.
 const SETTLED_SHARE: f64 = 0.05;
 const SETTLED_G: f64 = 10.0;
 const SETTLED_SIGMAS: f64 = 3.0;
-/// A joint whose angle stays within 2 for this long stands still, s.
+/// A joint is still if its angle stays within 2 for this long, s.
 const STILL_S: f64 = 0.1;
 const STILL: f64 = 2.0;
 
@@ -56,13 +56,13 @@ pub struct JointMetrics {
     /// The joint.
     #[serde(rename = "joint")]
     pub dof: Dof,
-    /// Reading of the force sensor before the command, g; all forces below are counted from it.
+    /// Reading of the force sensor before the command, g; all forces below are relative to it.
     pub rest_force_g: Option<f64>,
-    /// Noise of it, g: standard deviation.
+    /// Noise of that reading, g: standard deviation.
     pub noise_g: Option<f64>,
-    /// From the command to the motion, s.
+    /// From the command to the start of motion, s.
     pub dead_time_s: Option<f64>,
-    /// Whether the fingertip felt something before the command; not known without touch.
+    /// True if the fingertip felt a force before the command; `None` without touch readings.
     pub contact_at_start: Option<bool>,
     /// From the command to the contact, by force, s.
     pub time_to_contact_s: Option<f64>,
@@ -70,19 +70,19 @@ pub struct JointMetrics {
     pub time_to_touch_s: Option<f64>,
     /// Angle at the contact, by force, or else by touch; units of ANGLE_ACT.
     pub contact_angle: Option<f64>,
-    /// From the command to the stop, s: as the drive says, or where it does not, by its angle.
+    /// From the command to the stop, s: as reported by the drive, else by its angle.
     pub time_to_stop_s: Option<f64>,
     /// Highest force, g.
     pub peak_force_g: Option<f64>,
-    /// Why it may have been higher than any reading; `None` if readings were as near to each other as they usually are.
+    /// Reason why the peak may exceed all readings; `None` if the readings were as dense as usual.
     #[serde(default)]
     pub peak_doubt: Option<PeakDoubt>,
-    /// What it may have been more between two readings, g.
+    /// Possible extra height of the peak between two readings, g.
     #[serde(default)]
     pub peak_missed_g: Option<f64>,
-    /// Whether the sensor was at its end, so that the force was higher than that.
+    /// True if the sensor was at its limit, so that the force was higher.
     pub clipped: Option<bool>,
-    /// Highest force above the threshold, g; negative if it stayed below.
+    /// Highest force minus the threshold, g; negative if it stayed below.
     pub overshoot_g: Option<f64>,
     /// From the contact until the force stays near its steady value, s.
     pub settle_time_s: Option<f64>,
@@ -92,25 +92,25 @@ pub struct JointMetrics {
     pub relaxation_g: Option<f64>,
     /// Highest current, mA.
     pub peak_current_ma: Option<f64>,
-    /// Highest temperature during and after, above that before, °C.
+    /// Highest temperature during and after the close, minus that before, °C.
     pub temperature_rise_c: Option<f64>,
-    /// STATUS at the end of the dwell, in a word; [`DEAD_DRIVE`] for a joint that never moved.
+    /// STATUS at the end of the dwell, as text; [`DEAD_DRIVE`] for a joint that never moved.
     pub end_status: Option<String>,
-    /// It was told to close, was free to, and never moved: nothing was measured of it, whatever its drive reports.
+    /// The joint was commanded to close and free to move, but never moved: its close has no results, whatever its drive reports.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub dead_drive: bool,
-    /// Slips during the dwell; `None` if touch told too little to know.
+    /// Slips during the dwell; `None` with too few touch readings.
     pub slip_count: Option<usize>,
-    /// Readings of the force a second.
+    /// Force readings per second.
     pub rate_hz: Option<f64>,
-    /// Longest time between two of them, s.
+    /// Longest gap between them, s.
     pub longest_gap_s: Option<f64>,
     #[serde(default, rename = "slip", skip_serializing_if = "Vec::is_empty")]
     pub slips: Vec<SlipEvent>,
 }
 
 impl JointMetrics {
-    /// Why nothing of the close is known, if so. A finger that met nothing has at least stopped.
+    /// The reason if the close has no results. A finger that met nothing still has a stop.
     pub fn why_empty(&self) -> Option<&'static str> {
         let has_none = self.time_to_stop_s.is_none() && self.peak_force_g.is_none();
         let why = if self.dead_drive {
@@ -140,7 +140,7 @@ pub fn measure(
     let end = end.or_else(|| recording.rows().last().map(|row| row.at));
     let end_s = end.map_or(0.0, |end| seconds(command, end));
     let threshold_g = f64::from(setting.force.get());
-    // What ended a trial early may have come before any motion.
+    // A trial that ended early may have ended before any motion.
     let is_whole = recording.when(TrialEvent::Release).is_some();
     plan.joints()
         .map(|dof| {
@@ -164,7 +164,7 @@ pub fn measure(
         .collect()
 }
 
-/// True if a joint should have gone a good way, was looked at often enough, and stayed where it was.
+/// True if a joint had a long way to go, was read often enough, and did not move.
 fn never_moved(angle: &TimeSeries, target: Angle, end: f64) -> bool {
     let Some(still) = rest(angle, -REST_S, 0.0) else {
         return false;
@@ -176,7 +176,7 @@ fn never_moved(angle: &TimeSeries, target: Angle, end: f64) -> bool {
         && angle.between(0.0, end).all(stays)
 }
 
-/// True if the drive says what stopped it.
+/// True if the drive reports the reason of its stop.
 fn is_held(end_status: Option<&str>) -> bool {
     let held = [
         Status::ForceReached,
@@ -187,18 +187,18 @@ fn is_held(end_status: Option<&str>) -> bool {
     held.iter().any(|status| end_status == Some(status.name()))
 }
 
-/// When the dwell ends, seconds from the command, and what the threshold was.
+/// Times of a close, in seconds from the command, and its threshold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DwellSpan {
-    /// Of the order to go on slowly, in an approach of two stages: what halted before it is no stop.
+    /// Order to continue slowly, in an approach of two stages: an earlier halt is not a stop.
     pub slow_s: Option<f64>,
-    /// Of the release, or of what ended the trial.
+    /// Release, or early end of the trial.
     pub end_s: f64,
     /// FORCE_SET, g.
     pub threshold_g: f64,
 }
 
-/// Measures one joint; its command was at 0.
+/// Measures one joint; the command is at 0.
 pub fn measure_joint(dof: Dof, curves: &JointCurves, span: DwellSpan) -> JointMetrics {
     let end = span.end_s;
     let at_rest = rest(&curves.force, -REST_S, 0.0);
@@ -214,7 +214,7 @@ pub fn measure_joint(dof: Dof, curves: &JointCurves, span: DwellSpan) -> JointMe
         ),
     };
     let pressed = contact.is_some() || touched == Some(true);
-    // A hand that moves within one reading of the command shows no dead time, but moves.
+    // A hand that moves within one reading of the command shows no dead time, but does move.
     let moves_from = motion.or_else(|| moved(&curves.angle, end).then_some(0.0));
     let stop = match span.slow_s {
         None => moves_from.and_then(|from| stop(curves, from, end)),
@@ -274,7 +274,7 @@ fn motion_start(angle: &TimeSeries) -> Option<f64> {
     begins(&away, 0.0, MOTION)
 }
 
-/// Whether a reading after the command is away from the rest before it.
+/// True if a reading after the command differs from the rest before it.
 fn moved(angle: &TimeSeries, end: f64) -> bool {
     let still = rest(angle, -REST_S, 0.0);
     let is_away = |still: RestLevel| {
@@ -284,7 +284,7 @@ fn moved(angle: &TimeSeries, end: f64) -> bool {
     still.is_some_and(is_away)
 }
 
-/// Whether the fingertip felt something before the command.
+/// True if the fingertip felt a force before the command; `None` without readings.
 fn touched_before(normal: &TimeSeries) -> Option<bool> {
     let before = median(&normal.values(-REST_S, 0.0))?;
     Some(before >= TOUCH_N)
@@ -295,7 +295,7 @@ fn contact(force: &TimeSeries, rest: RestLevel, end: f64) -> Option<f64> {
     passes(force.between(-REST_S, end), level).filter(|at| *at >= 0.0)
 }
 
-/// When the drive first says that it stopped after it said that it moves; without its word, when it stands still.
+/// Time at which the drive first reports a stop after motion; without status readings, at which the angle is still.
 fn stop(curves: &JointCurves, from: f64, end: f64) -> Option<f64> {
     let stopped = |point: &CurvePoint| status(point.v).is_some_and(Status::is_stopped);
     let mut said = curves.status.between(0.0, end).skip_while(stopped);
@@ -314,7 +314,7 @@ fn stop(curves: &JointCurves, from: f64, end: f64) -> Option<f64> {
     })
 }
 
-/// When the drive stopped for good: the halt between two stages is over once it says again that it moves.
+/// Time of the final stop: the halt between two stages ends when the drive reports motion again.
 fn stop_after_slow(curves: &JointCurves, slow: f64, end: f64) -> Option<f64> {
     let moves = |point: &CurvePoint| status(point.v).is_some_and(Status::is_moving);
     let last = curves.status.between(slow, end).rfind(moves);
@@ -364,7 +364,7 @@ fn settle(
     Some(settled - contact)
 }
 
-/// Each with the middle of its value and its neighbours'; the ends as they are.
+/// Each value replaced by the median of itself and its neighbours; the ends unchanged.
 fn middle_of_three(points: &[CurvePoint]) -> Vec<CurvePoint> {
     let middle = |at: usize, point: &CurvePoint| {
         let around = at.checked_sub(1).and_then(|from| points.get(from..at + 2));
@@ -378,7 +378,7 @@ fn middle_of_three(points: &[CurvePoint]) -> Vec<CurvePoint> {
     points.map(|(at, point)| middle(at, point)).collect()
 }
 
-/// The temperature is followed to the end of the recording: heat comes late.
+/// Followed to the end of the recording, since heat arrives late.
 fn temperature_rise(temperature: &TimeSeries) -> Option<f64> {
     let before = median(&temperature.values(f64::NEG_INFINITY, 0.0))?;
     Some(highest(temperature, f64::INFINITY)? - before)

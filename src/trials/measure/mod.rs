@@ -1,4 +1,4 @@
-//! What a recorded trial comes to: curves, where they begin to rise, slips, and the metrics that are made of them.
+//! Analysis of a recorded trial: curves, onsets, slips, and the metrics computed from them.
 
 pub mod curve;
 pub mod detect;

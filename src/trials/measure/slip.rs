@@ -1,27 +1,27 @@
-//! Slips of a held object: friction that jumps or creeps. Computes from curves, nothing else.
+//! Slips of a held object: sudden or creeping changes of friction. Computed from curves only.
 
 use crate::hand::grip::GripThresholds;
 use crate::hand::grip::slip::{APART_S, BEFORE_LEAST, HELD_N, HeldMoment, SlipDetector, SlipJump};
 use crate::trials::measure::curve::{JointCurves, TimeSeries};
 use serde::{Deserialize, Serialize};
 
-/// Tangential and normal force that are read together are at most this far apart.
+/// Tangential and normal force of one read are at most this far apart.
 const TOGETHER_S: f64 = 0.001;
 
 /// One slip of the object on a fingertip.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SlipEvent {
-    /// When it was first seen, seconds from the closing command.
+    /// First sighting, seconds from the closing command.
     pub at_s: f64,
-    /// Largest rise of tangential by normal force over what it was before.
+    /// Largest rise of the ratio of tangential to normal force.
     pub ratio_jump: f64,
-    /// Largest turn of the tangential force, degrees; `None` if the direction was not known.
+    /// Largest rotation of the tangential force, degrees; `None` if the direction is unknown.
     pub turn_deg: Option<f64>,
 }
 
-/// The slips from one time to another; `None` if the fingertip told too little to know.
+/// The slips in an interval; `None` with too few readings of the fingertip.
 ///
-/// A jump counts if two readings in a row show it, so slips are seen one reading late and those shorter than two
+/// A jump counts if two readings in a row show it, so slips are detected one reading late, and those shorter than two
 /// readings (40 ms on a sensor of 50 Hz) are missed.
 pub fn slips(curves: &JointCurves, from: f64, to: f64) -> Option<Vec<SlipEvent>> {
     let held = moments(curves, from, to);

@@ -1,50 +1,50 @@
-//! The peak that readings of a force may not have shown. Computes from a curve, nothing else.
+//! The part of a force peak that readings may have missed. Computed from a curve only.
 
 use crate::trials::measure::curve::{CurvePoint, TimeSeries};
 use serde::{Deserialize, Serialize};
 
-/// Readings of the force no further apart than this miss no peak: a grip stays where the impact took it for longer, s.
+/// Force readings no further apart than this miss no peak, s: a grip stays at its impact force for longer.
 pub const GAP_S: f64 = 0.025;
-/// So many times what is usual between two readings, a gap is unusual.
+/// A gap is unusual at this multiple of the usual interval.
 const GAP_TIMES: f64 = 2.5;
-/// A peak may come this long after the drive reports its stop, s: a report is not read at once.
+/// A peak may come this long after the drive reports its stop, s: the report is not read at once.
 const PEAK_LATE_S: f64 = 0.05;
-/// A reading after the highest that is lower than this share of it: the impact was shorter than the time between two.
+/// If the reading after the highest is below this share of it, the impact was shorter than the interval between readings.
 const BRIEF_BELOW: f64 = 0.7;
-/// So much lower, as a multiple of the noise and some grams, it is no noise.
+/// A drop is not noise above this many times the noise plus some grams.
 const BRIEF_SIGMAS: f64 = 6.0;
 const BRIEF_G: f64 = 20.0;
 
-/// Why the peak of a close may have been higher than any reading.
+/// Reason why the peak of a close may exceed all readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PeakDoubt {
-    /// The readings stopped there for longer than they usually do.
+    /// The readings had an unusual gap there.
     Gap,
-    /// The force fell at once, as from something that breaks: it was shorter than the time between two readings.
+    /// The force dropped at once, as from a breaking object: the peak was shorter than the interval between readings.
     Brief,
 }
 
-/// What readings of a rising force may not have shown.
+/// Possible error of a peak between readings.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Unseen {
-    /// What the peak may have been more, g, as far as the steepest rise that was read tells.
+    /// Possible extra height of the peak, g, from the steepest rise that was read.
     pub missed_g: f64,
     pub doubt: Option<PeakDoubt>,
 }
 
-/// When a force rose, seconds from the command, and how often it is usually read.
+/// Times of a rise of force, seconds from the command, and the usual rate of readings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RiseSpan {
     pub contact_s: f64,
     pub stop_s: f64,
-    /// Readings a second.
+    /// Readings per second.
     pub rate_hz: f64,
     pub noise_g: f64,
 }
 
-/// What may have been missed from the contact to the stop, of a force above its rest. Between two readings that are far apart, or
-/// beside a single one that is far above the next, the force may have risen on as fast as it ever rose.
+/// The force possibly missed from contact to stop, for a curve relative to rest. In a long gap, or beside a single reading far above
+/// the next, the force may have risen as steeply as anywhere in the curve.
 pub fn unseen(force: &TimeSeries, span: RiseSpan) -> Unseen {
     let usual = 1.0 / span.rate_hz.max(1.0);
     let (from, to) = (span.contact_s, span.stop_s + PEAK_LATE_S);
@@ -52,7 +52,7 @@ pub fn unseen(force: &TimeSeries, span: RiseSpan) -> Unseen {
         .between(from - 2.0 * usual - GAP_S, to + 2.0 * usual + GAP_S)
         .collect();
     let first = points.iter().rposition(|point| point.t < from);
-    // The gap may be longer than what was looked at before the contact.
+    // The gap may be longer than the part examined before the contact.
     let before = force.points().iter().rfind(|point| point.t < from);
     let before = before.copied().filter(|_| first.is_none());
     let points: Vec<CurvePoint> = before.into_iter().chain(points).collect();
@@ -89,7 +89,7 @@ mod tests {
         noise_g: 0.0,
     };
 
-    /// 5000 g/s from 0.5 to 0.6 s, then nearly level, read where `keep` says so.
+    /// 5000 g/s from 0.5 to 0.6 s, then nearly level, read where `keep` returns true.
     fn seen(keep: impl Fn(f64) -> bool, force: impl Fn(f64) -> f64) -> Unseen {
         let times = (0..150).map(|n| f64::from(n) * 0.01 + 0.003);
         let curve: TimeSeries = times.filter(|t| keep(*t)).map(|t| (t, force(t))).collect();
@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn readings_as_usual_miss_nothing() {
         assert_eq!(seen(|_| true, grip), Unseen::default());
-        // Nor does a gap before the contact, or in the dwell.
+        // A gap before the contact or in the dwell does not count either.
         assert_eq!(seen(|t| !(0.2..0.4).contains(&t), grip).doubt, None);
         assert_eq!(seen(|t| !(0.8..1.2).contains(&t), grip).doubt, None);
     }
@@ -116,7 +116,7 @@ mod tests {
             assert_eq!(unseen.doubt, Some(PeakDoubt::Gap), "{gap:?}");
         }
         let unseen = seen(|t| !(0.57..0.65).contains(&t), grip);
-        // From 315 g at 0.563 s it rises on for 90 ms at most; 498 g were read after it.
+        // From 315 g at 0.563 s it may rise for another 90 ms; the next reading is 498 g.
         assert!((unseen.missed_g - 267.0).abs() < 20.0, "{unseen:?}");
     }
 

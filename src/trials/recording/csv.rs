@@ -1,4 +1,4 @@
-//! The samples of a trial as a table of text, written and read back. Opens no file.
+//! The samples of a trial as a CSV table, written and parsed. Opens no file.
 
 use crate::hand::{Dof, Finger, Moment, PerDof, PerFinger};
 use crate::store::{FileCause, FileError};
@@ -9,9 +9,9 @@ use std::fmt::{Display, Write as _};
 use std::str::FromStr;
 use std::time::Duration;
 
-/// Where the closing command stands in time when a table is read: late enough that what was before it has a place.
+/// Time of the closing command in a parsed table: late enough for earlier rows to have positive times.
 const ZERO: Duration = Duration::from_secs(3600);
-/// Quantities of a joint in the order of the columns; of a fingertip likewise.
+/// Quantities of a joint in column order, then those of a fingertip.
 const OF_JOINTS: [&str; 6] = [
     "angle",
     "force_g",
@@ -22,7 +22,6 @@ const OF_JOINTS: [&str; 6] = [
 ];
 const OF_TIPS: [&str; 4] = ["normal_n", "tangential_n", "direction_deg", "proximity"];
 
-/// The names of the columns.
 fn columns() -> Vec<String> {
     let of_joints = OF_JOINTS.into_iter().flat_map(|quantity| {
         Dof::ALL
@@ -39,8 +38,8 @@ fn columns() -> Vec<String> {
     all.chain(std::iter::once("event".to_owned())).collect()
 }
 
-/// Comma-separated values, one line for each row and each event: `time_s` from [`TrialRecording::zero`], six columns a quantity,
-/// four a fingertip, and `event`. What was not read in that moment is an empty cell.
+/// Comma-separated values, one line per row and event: `time_s` from [`TrialRecording::zero`], six columns per joint quantity, five
+/// per fingertip quantity, and `event`. A quantity without a reading at that time is an empty cell.
 pub fn write(recording: &TrialRecording) -> String {
     let mut text = columns().join(",");
     text.push('\n');
@@ -102,10 +101,10 @@ fn error_in(line: usize, cause: FileCause) -> FileError {
     }
 }
 
-/// Reads a table.
+/// Parses a table.
 ///
 /// # Errors
-/// [`FileError`]: the first thing that is wrong.
+/// [`FileError`]: the first error.
 pub fn read(csv: &str) -> Result<TrialRecording, FileError> {
     let mut lines = csv.lines().enumerate();
     let columns = columns();
@@ -133,7 +132,7 @@ pub fn read(csv: &str) -> Result<TrialRecording, FileError> {
     Ok(recording)
 }
 
-/// One line, cell by cell.
+/// One line, parsed cell by cell.
 struct Cells<'a> {
     line: usize,
     columns: &'a [String],
@@ -174,7 +173,7 @@ impl Cells<'_> {
         error_in(self.line, FileCause::Malformed(what))
     }
 
-    /// The next cell; none if it is empty.
+    /// The next cell; `None` if it is empty.
     fn next<T: FromStr>(&mut self) -> Result<Option<T>, FileError> {
         let at = self.at;
         self.at += 1;
@@ -185,7 +184,7 @@ impl Cells<'_> {
         text.parse().map(Some).map_err(|_no_number| self.wrong(at))
     }
 
-    /// A group of all joints; none if one is missing.
+    /// The values of all joints; `None` if one is missing.
     fn six<T: FromStr>(&mut self) -> Result<Option<PerDof<T>>, FileError> {
         let mut values: PerDof<Option<T>> = PerDof::from_fn(|_| None);
         for dof in Dof::ALL {

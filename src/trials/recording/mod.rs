@@ -1,16 +1,16 @@
-//! What was read during one trial, row by row as it came, and what happened between. Computes nothing.
+//! The readings of one trial, row by row as they arrived, and its events. Computes nothing.
 
 pub mod csv;
 
 use crate::hand::{Dof, Group, Groups, HandSample, Moment, PerDof, PerFinger, Timed};
 
-/// Rows of one recording: minutes at the rate of the fastest wire. Rows past it are counted, not kept.
+/// Maximum number of rows: minutes at the rate of the fastest wire. Further rows are counted and dropped.
 pub const ROWS_MAX: usize = 200_000;
 
-/// One answer of the hand. What it did not hold is `None`; raw numbers are kept as they came.
+/// One reply of the hand. Values it did not contain are `None`; raw numbers are unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SampleRow {
-    /// When the reply was there.
+    /// Time of arrival.
     pub at: Moment,
     /// ANGLE_ACT.
     pub angle: Option<PerDof<i16>>,
@@ -23,14 +23,14 @@ pub struct SampleRow {
     pub faults: Option<PerDof<u8>>,
     /// TEMP, °C.
     pub temperature: Option<PerDof<u8>>,
-    /// The fingertips that this answer held.
+    /// The fingertips in this reply.
     pub tips: PerFinger<Option<TipSample>>,
 }
 
-/// What one fingertip said.
+/// Readings of one fingertip.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TipSample {
-    /// Normal force, N; `None` if it was no finite number.
+    /// Normal force, N; `None` if it was not a finite number.
     pub normal_n: Option<f32>,
     /// Tangential force, N.
     pub tangential_n: Option<f32>,
@@ -40,15 +40,15 @@ pub struct TipSample {
     pub proximity: i32,
 }
 
-/// Something that happened during a trial.
+/// An event of a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TrialMark {
-    /// When it was given to the link, or seen.
+    /// Time at which it was handed to the link, or observed.
     pub at: Moment,
     pub what: TrialEvent,
 }
 
-/// What may happen during a trial.
+/// Kinds of events in a trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrialEvent {
     /// The joints were sent to their starts.
@@ -57,22 +57,22 @@ pub enum TrialEvent {
     Limits,
     /// The closing command.
     Close,
-    /// A joint went on slowly.
+    /// A joint continued slowly.
     Slow(Dof),
-    /// All joints stood still: the dwell began.
+    /// All joints were still: the dwell began.
     Stopped,
-    /// The joints did not stop in time: the dwell began all the same.
+    /// The joints did not stop in time: the dwell began regardless.
     NotStopped,
     /// The opening command.
     Release,
     /// All joints were back at their starts.
     Released,
-    /// It was ended early.
+    /// The trial ended early.
     Aborted,
 }
 
 impl TrialEvent {
-    /// Stable lower-case name for files and JSON.
+    /// Stable lower-case name in files and JSON.
     pub fn name(self) -> String {
         match self {
             Self::Prepare => "prepare".into(),
@@ -88,7 +88,7 @@ impl TrialEvent {
     }
 }
 
-/// One trial as it was read, oldest row first.
+/// The readings of one trial, oldest row first.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TrialRecording {
     rows: Vec<SampleRow>,
@@ -97,7 +97,7 @@ pub struct TrialRecording {
 }
 
 impl TrialRecording {
-    /// Keeps what is fresh in a sample.
+    /// Appends the fresh values of a sample.
     pub fn push(&mut self, sample: &HandSample, fresh: Groups) {
         let row = row(sample, fresh);
         if row.at == Moment::ZERO {
@@ -106,7 +106,7 @@ impl TrialRecording {
         self.push_row(row);
     }
 
-    /// Keeps one row. Rows come in the order of time.
+    /// Appends a row; rows come in order of time.
     pub fn push_row(&mut self, row: SampleRow) {
         if self.rows.len() >= ROWS_MAX {
             self.lost += 1;
@@ -115,12 +115,12 @@ impl TrialRecording {
         self.rows.push(row);
     }
 
-    /// Keeps what happened.
+    /// Appends an event.
     pub fn mark(&mut self, at: Moment, what: TrialEvent) {
         self.marks.push(TrialMark { at, what });
     }
 
-    /// The same with its events and without its rows, which count as lost.
+    /// A copy with its events and without its rows, which count as lost.
     pub fn without_rows(&self) -> Self {
         let rows = u64::try_from(self.rows.len()).unwrap_or(u64::MAX);
         Self {
@@ -134,30 +134,29 @@ impl TrialRecording {
         &self.rows
     }
 
-    /// All that happened.
     pub fn marks(&self) -> &[TrialMark] {
         &self.marks
     }
 
-    /// When something happened first.
+    /// Time of the first event of this kind.
     pub fn when(&self, what: TrialEvent) -> Option<Moment> {
         let mark = self.marks.iter().find(|mark| mark.what == what);
         mark.map(|mark| mark.at)
     }
 
-    /// Rows that had no place any more.
+    /// Rows dropped for lack of space.
     pub const fn lost(&self) -> u64 {
         self.lost
     }
 
-    /// The moment that times in files are counted from: the closing command, or the first row where none was given.
+    /// The zero of times in files: the closing command, or the first row if there was none.
     pub fn zero(&self) -> Moment {
         let first = self.rows.first().map(|row| row.at);
         self.when(TrialEvent::Close).or(first).unwrap_or_default()
     }
 }
 
-/// Seconds from one moment to another, negative if it is earlier.
+/// Seconds from `zero` to `at`, negative if `at` is earlier.
 pub fn seconds(zero: Moment, at: Moment) -> f64 {
     at.since(zero).as_secs_f64() - zero.since(at).as_secs_f64()
 }

@@ -1,5 +1,5 @@
-//! A session as one HTML page for the user: parameters, metrics, curves, the hand's quirks. One file, no script, nothing
-//! from elsewhere; how it looks stands in `report.html` and `plot.svg` beside this file. Writes no file itself.
+//! A session as one self-contained HTML page for the user, without scripts: parameters, metrics, curves, the hand's quirks. Its
+//! layout is `report.html` and `plot.svg` beside this file. Writes no file itself.
 
 pub(crate) mod overlay;
 pub(crate) mod plot;
@@ -16,10 +16,10 @@ use crate::trials::session::{SessionHead, TrialSessionFile};
 use crate::trials::summary::TrialSummary;
 use askama::Template;
 
-/// Trials whose curves are drawn; the samples of the others lie beside the page.
+/// Maximum number of trials with curves; the samples of the others are in files beside the page.
 pub const DRAWN_MAX: usize = 60;
 
-/// The report of a session, drawn as its trials come.
+/// The report of a session, drawn trial by trial.
 #[derive(Debug, Default)]
 pub struct Report {
     criterion: Option<Criterion>,
@@ -28,14 +28,13 @@ pub struct Report {
     overlay: Overlay,
 }
 
-/// The curves of one trial.
 #[derive(Debug)]
 struct TrialCurves {
     title: String,
     plots: [Plot; 3],
 }
 
-/// What the template is filled with.
+/// Data for the template.
 #[derive(Template)]
 #[template(path = "report.html", config = "trials/report/askama.toml")]
 struct ReportPage<'a> {
@@ -48,7 +47,7 @@ struct ReportPage<'a> {
 }
 
 impl Report {
-    /// Of a session without trials. The best setting is named by `criterion`.
+    /// An empty report. It names the best setting by `criterion`.
     pub fn new(criterion: Option<Criterion>) -> Self {
         Self {
             criterion,
@@ -56,7 +55,7 @@ impl Report {
         }
     }
 
-    /// Draws one trial.
+    /// Draws the curves of a trial.
     pub fn add(&mut self, trial: &TrialSummary, recording: &TrialRecording) {
         self.overlay.add(trial, recording);
         if self.curves.len() >= DRAWN_MAX {
@@ -69,10 +68,10 @@ impl Report {
         });
     }
 
-    /// The page of the session whose trials were drawn.
+    /// Renders the page of the session.
     ///
     /// # Errors
-    /// What the template says.
+    /// A template error.
     pub fn html(&self, session: &TrialSessionFile) -> Result<String, askama::Error> {
         let page = ReportPage {
             head: &session.head,
@@ -82,7 +81,7 @@ impl Report {
             criterion: self.criterion,
             report: self,
         };
-        // No control sign but the break of lines has a place in a page.
+        // Control characters other than line breaks are not allowed in a page.
         let is_control = |letter: char| letter.is_control() && letter != '\n';
         Ok(page.render()?.replace(is_control, "\u{FFFD}"))
     }

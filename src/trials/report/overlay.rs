@@ -1,4 +1,4 @@
-//! The forces of several trials over each other, as a part of the page of a session. Measures nothing.
+//! The forces of several trials in one plot of a session page. Measures nothing.
 
 use crate::hand::Dof;
 use crate::trials::measure::curve::{JointCurves, TimeSeries};
@@ -7,12 +7,11 @@ use crate::trials::recording::TrialRecording;
 use crate::trials::report::plot::{Plot, STROKES};
 use crate::trials::summary::TrialSummary;
 
-/// What is drawn before the command, s.
+/// Time shown before the command, s.
 pub(crate) const BEFORE_S: f64 = 0.5;
-/// Lines that are drawn over each other; more are a carpet.
+/// Maximum number of lines in the plot; more would be unreadable.
 const LINES_MAX: usize = 24;
 
-/// The force of one joint in one trial.
 #[derive(Debug)]
 struct ForceLine {
     setting: TrialSetting,
@@ -20,16 +19,16 @@ struct ForceLine {
     force: TimeSeries,
 }
 
-/// Forces that are drawn over each other.
+/// The lines of the plot.
 #[derive(Debug, Default)]
 pub(crate) struct Overlay {
     lines: Vec<ForceLine>,
-    /// Lines that had no place.
+    /// Lines dropped beyond [`LINES_MAX`].
     pub(crate) left_out: usize,
 }
 
 impl Overlay {
-    /// Takes in the forces of a trial, as far as there is room.
+    /// Adds the forces of a trial, up to [`LINES_MAX`] lines.
     pub(crate) fn add(&mut self, trial: &TrialSummary, recording: &TrialRecording) {
         for joint in &trial.joints {
             if self.lines.len() >= LINES_MAX {
@@ -45,7 +44,7 @@ impl Overlay {
         }
     }
 
-    /// All of them in one picture; `None` of fewer than two lines.
+    /// All lines in one plot; `None` for fewer than two.
     pub(crate) fn plot(&self) -> Option<Plot> {
         if self.lines.len() < 2 {
             return None;
@@ -62,7 +61,7 @@ impl Overlay {
         Some(plot)
     }
 
-    /// Which stroke is what: a stroke for each joint, or for each setting where one joint was tried.
+    /// The legend: a stroke per joint, or per setting if only one joint was tried.
     pub(crate) fn keys(&self) -> Vec<(usize, String)> {
         let mut keys: Vec<(usize, String)> = self.lines.iter().map(|own| self.key(own)).collect();
         keys.sort();

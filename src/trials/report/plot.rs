@@ -1,18 +1,18 @@
-//! Lines over time as a picture in SVG, for a page that is read without a program. Knows no trial.
+//! Lines over time as an SVG picture for a static page. Knows no trial.
 
 use crate::trials::measure::curve::TimeSeries;
 use askama::Template;
 
-/// Size of a picture and of the room around the lines, points.
+/// Size of a picture and its margins, points.
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 180.0;
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = 8.0;
 const TOP: f64 = 8.0;
 const BOTTOM: f64 = 24.0;
-/// Points of a line: two for each of more columns than there are pixels.
+/// Maximum number of points in a line: two per column, with more columns than pixels.
 const POINTS_MAX: usize = 1280;
-/// Strokes that a page has.
+/// Number of stroke styles on a page.
 pub(crate) const STROKES: usize = 6;
 
 #[derive(Debug)]
@@ -21,14 +21,12 @@ struct ReportLine {
     points: Vec<[f64; 2]>,
 }
 
-/// When something happened.
 #[derive(Debug)]
 struct PlotMark {
     at_s: f64,
     what: String,
 }
 
-/// A picture.
 #[derive(Debug, Template)]
 #[template(
     path = "plot.svg",
@@ -42,12 +40,12 @@ pub(crate) struct Plot {
     lines: Vec<ReportLine>,
     level: Option<f64>,
     marks: Vec<PlotMark>,
-    /// Lowest and highest of what is shown.
+    /// Lowest and highest value shown.
     extent: Option<(f64, f64)>,
 }
 
 impl Plot {
-    /// An empty one over a stretch of time. `name` is what it shows, with its unit.
+    /// An empty plot of a time range. `name` is the quantity with its unit.
     pub(crate) const fn new(name: &'static str, from_s: f64, to_s: f64) -> Self {
         Self {
             name,
@@ -60,7 +58,7 @@ impl Plot {
         }
     }
 
-    /// Adds a line in one of the page's strokes, 0 the first.
+    /// Adds a line with one of the page's strokes, from 0.
     pub(crate) fn add(&mut self, stroke: usize, curve: &TimeSeries) {
         let points = curve.decimated(POINTS_MAX);
         for [_, value] in &points {
@@ -70,13 +68,13 @@ impl Plot {
         self.lines.push(ReportLine { stroke, points });
     }
 
-    /// Shows a level to compare with.
+    /// Adds a horizontal reference line.
     pub(crate) fn set_level(&mut self, level: f64) {
         self.include(level);
         self.level = Some(level);
     }
 
-    /// Shows when something happened.
+    /// Adds a vertical mark.
     pub(crate) fn mark(&mut self, at_s: f64, what: String) {
         self.marks.push(PlotMark { at_s, what });
     }

@@ -1,4 +1,4 @@
-//! What one recorded close says about a joint and the object. Pure.
+//! Facts about a joint and the object from one recorded close. Pure.
 
 use crate::hand::statistics::median;
 use crate::hand::{Dof, Status};
@@ -7,54 +7,54 @@ use crate::trials::measure::metrics::JointMetrics;
 use crate::trials::recording::{TrialEvent, seconds};
 use crate::trials::summary::Trial;
 
-/// The last part of the dwell in which the joint is taken to rest, s.
+/// Final part of the dwell, in which the joint counts as at rest, s.
 const REST_S: f64 = 0.3;
-/// The least way into an object that tells its stiffness, units of ANGLE_ACT; an angle is a whole number.
+/// Smallest way into an object that determines its stiffness, units of ANGLE_ACT; an angle is a whole number.
 const PRESSED_LEAST: f64 = 4.0;
 
-/// One joint in one close. Forces are above the reading at rest.
+/// One joint in one close. Forces are relative to the reading at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CloseFacts {
     pub dof: Dof,
-    /// It was told to close and never moved.
+    /// Commanded to close, but it never moved.
     pub is_dead: bool,
-    /// Its drive reports that a force stopped it.
+    /// Its drive reports a stop by force.
     pub stopped_by_force: bool,
-    /// The fingertip felt something before it moved.
+    /// The fingertip felt a force before the joint moved.
     pub touched_before: bool,
-    /// Where it met the object, units of ANGLE_ACT.
+    /// Angle at the contact, units of ANGLE_ACT.
     pub contact: Option<f64>,
     /// From the command to the contact, s.
     pub to_contact_s: Option<f64>,
-    /// From the command to the motion, s.
+    /// From the command to the start of motion, s.
     pub dead_time_s: Option<f64>,
     /// From the command to the stop, s.
     pub close_s: Option<f64>,
-    /// From the order to go on slowly to the stop, s; `None` in one stage.
+    /// From the order to continue slowly to the stop, s; `None` in one stage.
     pub slow_s: Option<f64>,
     /// Highest force, g.
     pub peak_g: Option<f64>,
-    /// What that may have been more between two readings, g.
+    /// Possible extra height of the peak between two readings, g.
     pub missed_g: f64,
-    /// The readings stopped at the peak for longer than they usually do: what it was is not known.
+    /// The readings may have missed the peak: its height is unknown.
     pub is_uncertain: bool,
-    /// What the force sensor read at rest, g.
+    /// Reading of the force sensor at rest, g.
     pub offset_g: f64,
-    /// The sensor was at its end.
+    /// The sensor was at its limit.
     pub is_clipped: bool,
-    /// What was left at the end of the dwell, g.
+    /// Force at the end of the dwell, g.
     pub steady_g: Option<f64>,
     /// Noise of the force at rest, g: standard deviation.
     pub noise_g: f64,
-    /// g for each unit of ANGLE_ACT, at rest; `None` where it gave too little to tell.
+    /// Stiffness, g per unit of ANGLE_ACT, at rest; `None` if the object gave too little to determine it.
     pub stiffness: Option<f64>,
-    /// What it is at least, where it gave too little to tell.
+    /// Lower bound of the stiffness, if the object gave too little to determine it.
     pub stiffness_at_least: Option<f64>,
-    /// Slips while it was held; `None` if touch told too little.
+    /// Slips during the dwell; `None` with too few touch readings.
     pub slips: Option<usize>,
-    /// Usual time between two readings, s.
+    /// Usual interval of readings, s.
     pub reading_s: Option<f64>,
-    /// Longest time between two readings of the force, s.
+    /// Longest gap between readings of the force, s.
     pub longest_gap_s: Option<f64>,
 }
 

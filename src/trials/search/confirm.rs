@@ -1,9 +1,9 @@
-//! What closes of a setting, and of those near it, say about closes to come: the bound of the peaks, and what is left of the grip. Pure.
+//! Predictions from closes of a setting and of similar ones: the bound of future peaks, and the remaining grip. Pure.
 //!
-//! One rule decides which bound: where 59 closes tell of the setting, or one of the peaks was far above the others, it is the largest
-//! of them, whatever their distribution; where fewer were asked for and none was, they are taken to vary normally, and the
-//! claim says so. How late stops are is the same at all speeds, as far as anybody knows; so closes at other speeds count, carried
-//! along the growth of the peaks, and none that was over the limit is forgotten as the setting changes.
+//! One rule decides on the bound: with 59 relevant closes, or with one peak far above the others, it is the largest peak,
+//! whatever the distribution; with fewer requested closes and no such peak, a normal distribution is assumed, and the
+//! claim states that. Stops are assumed to be equally late at all speeds; so closes at other speeds count, scaled
+//! along the growth of the peaks, and a close over the limit stays relevant when the setting changes.
 
 use crate::hand::Dof;
 use crate::hand::statistics::{count, mean, spread};
@@ -13,13 +13,13 @@ use crate::trials::search::joint::JointModel;
 use crate::trials::search::peak::Contact;
 use crate::trials::search::tolerance::{Assurance, tolerance_factor};
 
-/// A largest peak is no bound to the last gram: readings may miss the top of a peak, and what is carried is a little unsure. So
-/// many standard deviations of all are added to it.
+/// The largest peak is not an exact bound: readings may miss the top of a peak, and scaled peaks are uncertain. This many
+/// standard deviations of all peaks are added.
 const LARGEST_MORE: f64 = 1.0;
-/// A peak that is so many standard deviations above the mean of the others is not of the same normal distribution: of those, one of
-/// thousands is.
+/// A peak this many standard deviations above the mean of the others does not fit their normal distribution, in which one peak in
+/// thousands is this high.
 const TAIL_SIGMAS: f64 = 4.5;
-/// Of fewer peaks nothing of the kind can be said.
+/// Fewer peaks do not show a tail.
 const TAIL_LEAST: usize = 8;
 
 /// One joint's closes.
@@ -50,7 +50,7 @@ impl Confirmation {
         }
     }
 
-    /// Takes a close of which all was measured.
+    /// Adds a completely measured close.
     pub(crate) fn add(&mut self, facts: &[CloseFacts]) {
         for (joint, facts) in self.joints.iter_mut().zip(facts) {
             joint.peaks_g.extend(facts.peak_g);
@@ -64,7 +64,7 @@ impl Confirmation {
         self.closes_s.len()
     }
 
-    /// The joint that holds with least, and with what, g.
+    /// The joint with the weakest hold, and its force, g.
     pub(crate) fn least_hold(&self) -> (Dof, f64) {
         let least = self.joints.iter().map(|joint| (joint.dof, joint.least()));
         let least = least.min_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -76,7 +76,7 @@ impl Confirmation {
         mean(&self.closes_s).unwrap_or_default()
     }
 
-    /// What is claimed of each joint.
+    /// The claim about each joint.
     pub(crate) fn claims(
         &self,
         models: &[JointModel],
@@ -102,7 +102,7 @@ impl JointCloses {
     }
 }
 
-/// What peaks to come of a setting stay below, g.
+/// Bound of the future peaks of a setting, g.
 pub(crate) fn bound_g(model: &JointModel, now: Contact, is_free: bool) -> f64 {
     if is_free {
         return largest_g(model, now);
@@ -110,7 +110,7 @@ pub(crate) fn bound_g(model: &JointModel, now: Contact, is_free: bool) -> f64 {
     let carried = model.growth.carried(now);
     let highest = carried.peaks_g.iter().copied().fold(0.0, f64::max);
     let sigma = deviation(&carried.peaks_g);
-    // Ten closes may happen to be alike, so their standard deviation is no less than that of all, or than the whole search expects.
+    // Ten closes may be alike by chance, so their deviation counts as at least that of all, and that of the model.
     let here = &carried.here_g;
     let sigma = sigma.max(deviation(here)).max(model.growth.scatter(now));
     let factor = tolerance_factor(here.len(), Assurance::USUAL);
@@ -119,14 +119,14 @@ pub(crate) fn bound_g(model: &JointModel, now: Contact, is_free: bool) -> f64 {
     bound.max(highest)
 }
 
-/// The bound whatever the distribution, g: 0 of nothing.
+/// The distribution-free bound, g; 0 without peaks.
 pub(crate) fn largest_g(model: &JointModel, now: Contact) -> f64 {
     let peaks = model.growth.carried(now).peaks_g;
     let highest = peaks.iter().copied().fold(0.0, f64::max);
     highest + LARGEST_MORE * deviation(&peaks)
 }
 
-/// Whether one of the peaks was far above the others.
+/// True if one of the peaks was far above the others.
 pub(crate) fn has_tail(model: &JointModel, now: Contact) -> bool {
     is_far_above(&model.growth.carried(now).peaks_g, model.noise_g())
 }
@@ -142,7 +142,7 @@ fn is_far_above(peaks_g: &[f64], noise_g: f64) -> bool {
         && mean(others).is_some_and(|mean| highest - mean > TAIL_SIGMAS * sigma)
 }
 
-/// Standard deviation; 0 of fewer than two.
+/// Standard deviation; 0 for fewer than two values.
 fn deviation(values: &[f64]) -> f64 {
     (spread(values) / (count(values) - 1.0).max(1.0)).sqrt()
 }

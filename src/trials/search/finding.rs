@@ -1,4 +1,4 @@
-//! What a search came to: a claim that can be believed, or why there is none; what was tried, and what could not be told. Pure.
+//! The result of a search: a justified claim, or the reason for its absence; the closes tried, and open questions. Pure.
 
 use crate::hand::Dof;
 use crate::trials::plan::TrialSetting;
@@ -7,7 +7,7 @@ use crate::trials::search::tolerance::Assurance;
 use serde::Serialize;
 use std::time::Duration;
 
-/// How an object is come near in a close that was found.
+/// Approach of a close in a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(tag = "stages")]
 pub enum FoundApproach {
@@ -19,7 +19,7 @@ pub enum FoundApproach {
     TwoStage {
         /// SPEED_SET of the first stage.
         fast_speed: i16,
-        /// The second begins so far before the mean contact, units of ANGLE_ACT.
+        /// Start of the second stage before the mean contact, units of ANGLE_ACT.
         margin: i16,
     },
 }
@@ -27,7 +27,7 @@ pub enum FoundApproach {
 /// A close that was tried.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tried {
-    /// Of the trial, from 1.
+    /// Trial number, from 1.
     pub number: usize,
     #[serde(flatten)]
     pub setting: TrialSetting,
@@ -36,9 +36,9 @@ pub struct Tried {
     pub peak_g: Option<f64>,
     /// From the command to the last joint's stop, s.
     pub close_s: Option<f64>,
-    /// Whether its peak was over the limit.
+    /// True if its peak was over the limit.
     pub over_limit: bool,
-    /// Whether it counts for the claim.
+    /// True if it counts for the claim.
     pub confirms: bool,
 }
 
@@ -51,28 +51,28 @@ pub struct JointClaim {
     pub contact_angle: f64,
     /// Bound of the peak, g.
     pub peak_bound_g: f64,
-    /// The peaks that it rests on, g.
+    /// The peaks behind the bound, g.
     pub peaks_g: Vec<f64>,
-    /// The least that was left of the grip, g.
+    /// The lowest remaining grip, g.
     pub hold_g: f64,
-    /// g for each unit of ANGLE_ACT; `None` where it gave too little to tell.
+    /// Stiffness, g per unit of ANGLE_ACT; `None` if the object gave too little to determine it.
     pub stiffness_g: Option<f64>,
 }
 
-/// The fastest close that stays under the limit, as it was confirmed.
+/// The fastest confirmed close under the limit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
     pub setting: TrialSetting,
     pub approach: FoundApproach,
     pub joints: Vec<JointClaim>,
-    /// From the command to the last joint's stop, mean, s.
+    /// Mean time from the command to the last joint's stop, s.
     pub close_s: f64,
-    /// Closes that the bound rests on.
+    /// Closes behind the bound.
     pub closes: usize,
-    /// Those of them that were closed with this setting.
+    /// Those of them made with this setting.
     pub here: usize,
     pub assurance: Assurance,
-    /// Whether the bound is the largest of them, whatever their distribution.
+    /// True if the bound is the largest of them, whatever their distribution.
     pub distribution_free: bool,
 }
 
@@ -126,54 +126,54 @@ const fn title(dof: Dof) -> &'static str {
     }
 }
 
-/// Why there is no claim.
+/// Reason for a search without a claim.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum NoClaim {
-    /// It never moved.
+    /// The joint never moved.
     #[error(
         "told to close, {} never moved: look at STATUS, ERROR and the supply, and whether something blocks it", dof.name()
     )]
     Dead { dof: Dof },
-    /// It pressed against something before it moved.
+    /// The fingertip pressed against something before the joint moved.
     #[error(
         "the fingertip of {} felt something before it moved: place the object so that no finger touches it when the hand is open", dof.name()
     )]
     Touching { dof: Dof },
-    /// It went all its way and met nothing.
+    /// The joint met nothing on its full way.
     #[error(
         "{} met nothing on its way: put the object where it closes, or let it close further", dof.name()
     )]
     NoContact { dof: Dof },
-    /// It met nothing where it had met the object.
+    /// The joint met nothing at the place of the object.
     #[error(
         "{} met nothing any more where it had met the object: put it back, and see that it cannot move away", dof.name()
     )]
     Lost { dof: Dof },
-    /// The object became softer, or its force went away.
+    /// The object became softer, or its force vanished.
     #[error(
         "the object gives under {}: it held {before_g:.0} g for each count before and {now_g:.0} g now; look whether it is damaged, and ask for a lower limit", dof.name()
     )]
     Gives {
         dof: Dof,
-        /// g for each unit of ANGLE_ACT.
+        /// g per unit of ANGLE_ACT.
         before_g: f64,
         now_g: f64,
     },
-    /// The object does not stay where it is.
+    /// The object moves from close to close.
     #[error(
         "the object creeps: {} meets it {:.1} counts {} with each close; fix it, or put it where it cannot move", dof.name(), counts.abs(), if *counts > 0.0 { "earlier" } else { "later" }
     )]
     Creeps {
         dof: Dof,
-        /// Units of ANGLE_ACT from one close to the next.
+        /// Units of ANGLE_ACT per close.
         counts: f64,
     },
-    /// The object slipped even at the slowest.
+    /// The object slips even in the slowest close.
     #[error(
         "the object slips under {} even at a slow close: hold it with more, or place it better", dof.name()
     )]
     Slips { dof: Dof },
-    /// The limit is not above what the sensor tells from its noise.
+    /// The limit is too close to the noise of the sensor.
     #[error(
         "a limit of {limit_g} g cannot be told from the noise of {}, which is {noise_g:.0} g: ask for at least {least_g:.0} g", dof.name()
     )]
@@ -188,7 +188,7 @@ pub enum NoClaim {
         "even at speed {speed} {} may peak at {peak_g:.0} g with the threshold that holds: raise the limit, or hold with less", dof.name()
     )]
     TooStrong { dof: Dof, speed: i16, peak_g: f64 },
-    /// Not enough is left of the grip.
+    /// Too little of the grip remains.
     #[error(
         "{} holds with {holds_g:.0} g only under this limit, not with {wanted_g}: raise the limit, or hold with less", dof.name()
     )]
@@ -197,44 +197,44 @@ pub enum NoClaim {
         holds_g: f64,
         wanted_g: i16,
     },
-    /// Something could not be read.
+    /// The peak could not be read.
     #[error(
         "the peak of {} could not be measured: its force readings are missing or too few", dof.name()
     )]
     NotMeasured { dof: Dof },
-    /// When it stopped, or what it held then, could not be read.
+    /// The stop, or the force held after it, could not be read.
     #[error(
         "the stop of {} could not be seen: its angle, status or force readings after it are missing or too few", dof.name()
     )]
     NoStop { dof: Dof },
-    /// Its sensor reads so much at rest that the drive stops before it meets anything.
+    /// The sensor reads so high at rest that the drive stops before it meets anything.
     #[error(
         "{} stops before it meets anything: its force sensor reads {offset_g:.0} g at rest, which its drive counts; calibrate the force sensors", dof.name()
     )]
     Offset { dof: Dof, offset_g: f64 },
-    /// It did not settle.
+    /// The search did not converge.
     #[error(
         "no setting could be confirmed in {trials} closes: the peaks scatter too much for this limit; the object may lie differently each time"
     )]
     NotConfirmed { trials: usize },
 }
 
-/// What a drive was found to compare its force threshold with.
+/// The reference of a drive's force threshold, as found by a search.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ComparedThreshold {
     #[serde(rename = "joint")]
     pub dof: Dof,
-    /// `None` where the closes did not tell.
+    /// `None` if the closes do not determine it.
     pub compared: Option<Compared>,
-    /// What its force sensor reads at rest, g.
+    /// Reading of its force sensor at rest, g.
     pub offset_g: f64,
 }
 
-/// An offset of less, g, makes no difference.
+/// Smaller offsets, g, make no difference.
 const NOTABLE_OFFSET_G: f64 = 10.0;
 
 impl ComparedThreshold {
-    /// Whether the offset is worth a word.
+    /// True if the offset is worth reporting.
     pub fn is_notable(&self) -> bool {
         self.offset_g.abs() > NOTABLE_OFFSET_G
     }
@@ -260,7 +260,7 @@ impl std::fmt::Display for ComparedThreshold {
     }
 }
 
-/// What could not be told.
+/// A question that the search could not answer.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Untold {
     #[error("whether the object slipped: the fingertip of {} told too little", dof.name())]
@@ -286,7 +286,7 @@ pub enum Untold {
 }
 
 impl Untold {
-    /// Whether it is the same of the same joint; a figure may differ.
+    /// True for the same question about the same joint; figures may differ.
     pub(crate) fn is_of_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Slips { dof }, Self::Slips { dof: same })
@@ -300,43 +300,43 @@ impl Untold {
     }
 }
 
-/// All that a search came to.
+/// The complete result of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
-    /// The claim, or why there is none.
+    /// The claim, or the reason for its absence.
     pub result: Result<Claim, NoClaim>,
     /// Every close, in order.
     pub tried: Vec<Tried>,
     pub untold: Vec<Untold>,
-    /// What the drives compare their thresholds with, in the order of the joints.
+    /// The threshold references of the drives, in joint order.
     pub compared: Vec<ComparedThreshold>,
 }
 
-/// What a search does.
+/// Activity of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchStage {
-    /// Slow closes that look for the contact.
+    /// Slow closes to find the contact.
     Probing,
-    /// Upwards from slow.
+    /// Increasing the speed.
     Rising,
-    /// A setting, again and again.
+    /// Repeating one setting.
     Confirming {
-        /// Closes of it that are done.
+        /// Its finished closes.
         done: usize,
         of: usize,
     },
-    /// Nothing any more.
+    /// Finished.
     Over,
 }
 
-/// Where a search stands, to be shown.
+/// Progress of a search, for display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchProgress {
     pub stage: SearchStage,
     /// Every close so far.
     pub tried: Vec<Tried>,
-    /// Closes that are still to come, about.
+    /// Estimated number of remaining closes.
     pub closes_left: usize,
-    /// How long they take, about.
+    /// Their estimated duration.
     pub left: Duration,
 }

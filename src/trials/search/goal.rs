@@ -1,4 +1,4 @@
-//! What the user wants of a close, checked once, and the plan that its trials are made from. Runs nothing.
+//! The user's goal for a close, checked once, and the plan of its trials. Runs nothing.
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::{
@@ -7,34 +7,34 @@ use crate::trials::plan::{
 use crate::trials::search::tolerance::{Assurance, FREE_90, FREE_95};
 use std::time::Duration;
 
-/// The smallest limit that can be asked for, g: sensors rarely tell less from their noise.
+/// Smallest limit, g: a lower one is rarely distinct from sensor noise.
 pub const LIMIT_MIN_G: i16 = 30;
-/// The limit if nobody says, g.
+/// Default limit, g.
 const LIMIT_G: i16 = 500;
-/// What a grasp holds with if nobody says: this share of the limit.
+/// Default grasp force, as a share of the limit.
 pub const HOLD_SHARE: f64 = 0.4;
-/// The most that a grasp may be asked to hold with: the rest is for what a drive runs past its threshold.
+/// Largest grasp force, as a share of the limit: the rest is room for the overshoot of a drive.
 pub const HOLD_SHARE_MAX: f64 = 0.8;
-/// The first threshold is at most this share of the limit: how far a drive runs past it, and what it compares it with, is not known.
+/// Largest share of the limit for the first threshold: the overshoot and the reference of the drive are not known yet.
 const FIRST_SHARE: f64 = 0.3;
-/// Closes that confirm a setting.
+/// Number of closes that confirm a setting.
 pub const CLOSES_MIN: usize = 5;
 pub const CLOSES_MAX: usize = 100;
 pub const CLOSES: usize = FREE_95;
-/// How far past the limit a force may be before the hand is stopped: a trial over the limit is told from a crash.
+/// Force ceiling at which the hand is stopped, relative to the limit: separates a trial over the limit from a crash.
 const CEILING_SHARE: f64 = 1.4;
 const CEILING_MORE_G: f64 = 100.0;
-/// Held so long in each trial: long enough to see what is left once the grip has relaxed.
+/// Dwell of each trial: long enough to see the grip after it relaxed.
 const DWELL: Duration = Duration::from_millis(700);
-/// Between two trials.
+/// Rest between two trials.
 const REST: Duration = Duration::from_millis(300);
 
-/// The fastest close that is wanted: its peak stays under a limit, and it holds with some force.
+/// Goal: the fastest close with its peak under a limit and a minimum hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchGoal {
     /// Limit of the peak on each joint, g.
     pub limit_g: i16,
-    /// What is left on each joint once the grip has relaxed, g at least.
+    /// Smallest force on each joint after the grip has relaxed, g.
     pub hold_g: i16,
     /// Closes that confirm the setting.
     pub closes: usize,
@@ -42,23 +42,23 @@ pub struct SearchGoal {
     pub distribution_free: bool,
     /// Start angle of each joint; `None` leaves it where it is.
     pub start: PerDof<Option<Angle>>,
-    /// Angle that each joint closes to at most; `None` leaves it out.
+    /// Closing limit of each joint; `None` leaves it out.
     pub close: PerDof<Option<Angle>>,
-    /// The temperatures; the ceiling of the force comes from the limit.
+    /// The temperature limits; the force ceiling follows from the limit.
     pub limits: Limits,
-    /// In the words of the user.
+    /// The user's text.
     pub note: String,
-    /// Words to find it by.
+    /// Search terms.
     pub tags: Vec<String>,
 }
 
-/// Why a goal cannot be tried.
+/// Reason why a goal is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum GoalError {
-    /// A limit outside what can be measured and set.
+    /// A limit outside the measurable and settable range.
     #[error("a limit of {got} g is not between {LIMIT_MIN_G} and {} g", Force::RATED.get())]
     Limit { got: i16 },
-    /// More to hold than the limit leaves room for.
+    /// A hold that leaves no room under the limit.
     #[error(
         "holding with {hold} g leaves too little room under a limit of {limit} g: hold with at most {most} g, or raise the limit"
     )]
@@ -66,12 +66,12 @@ pub enum GoalError {
     /// Too few or too many closes.
     #[error("{got} closes are not between {CLOSES_MIN} and {CLOSES_MAX}")]
     Closes { got: usize },
-    /// Too few closes to say anything without a distribution.
+    /// Too few closes for a distribution-free bound.
     #[error(
         "{got} closes say nothing without a distribution: {FREE_90} say 90 of 100 closes with 90 %, {FREE_95} say 95 of 100 with 95 %"
     )]
     TooFew { got: usize },
-    /// What makes no plan.
+    /// An invalid plan.
     #[error(transparent)]
     Plan(#[from] PlanError),
 }
@@ -83,7 +83,7 @@ impl Default for SearchGoal {
 }
 
 impl SearchGoal {
-    /// A goal for some joints from open, with what is usual for the rest.
+    /// A goal for some joints from open, with defaults for the rest.
     pub fn new(joints: &[Dof], limit_g: i16) -> Self {
         let of = |angle| PerDof::from_fn(|dof| joints.contains(&dof).then_some(angle));
         Self {
@@ -99,12 +99,12 @@ impl SearchGoal {
         }
     }
 
-    /// What is held with if nobody says, g.
+    /// Default hold, g.
     pub fn usual_hold_g(limit_g: i16) -> i16 {
         whole(f64::from(limit_g) * HOLD_SHARE)
     }
 
-    /// What the confirming closes will say.
+    /// The assurance of the confirming closes.
     pub const fn assurance(&self) -> Assurance {
         if !self.distribution_free {
             return Assurance::USUAL;
@@ -115,10 +115,10 @@ impl SearchGoal {
         }
     }
 
-    /// Checks it.
+    /// Checks the goal.
     ///
     /// # Errors
-    /// [`GoalError`]: what has to change.
+    /// [`GoalError`]: the first error.
     pub fn check(&self) -> Result<(), GoalError> {
         let (limit, hold, got) = (self.limit_g, self.hold_g, self.closes);
         if !(LIMIT_MIN_G..=Force::RATED.get()).contains(&limit) {
@@ -137,7 +137,7 @@ impl SearchGoal {
         Ok(self.plan(self.first_setting()).check()?)
     }
 
-    /// What the first, slow trial is made with.
+    /// The setting of the first, slow trial.
     pub fn first_setting(&self) -> TrialSetting {
         let force = (1.1 * f64::from(self.hold_g)).min(FIRST_SHARE * f64::from(self.limit_g));
         TrialSetting {
@@ -146,7 +146,7 @@ impl SearchGoal {
         }
     }
 
-    /// A trial of this setting in one stage.
+    /// The plan of a trial with this setting in one stage.
     pub fn plan(&self, setting: TrialSetting) -> TrialPlan {
         let limit = f64::from(self.limit_g);
         let ceiling = (limit * CEILING_SHARE).max(limit + CEILING_MORE_G);
@@ -175,7 +175,7 @@ impl SearchGoal {
         joints.filter_map(|(dof, target)| target.map(|_| dof))
     }
 
-    /// Where a joint's way begins and how far it leads, units of ANGLE_ACT.
+    /// Start and length of a joint's way, units of ANGLE_ACT.
     pub(crate) fn way(&self, dof: Dof) -> (f64, f64) {
         let start = self.start[dof].unwrap_or(Angle::MAX).get();
         let close = self.close[dof].unwrap_or(Angle::MIN).get();
@@ -183,7 +183,7 @@ impl SearchGoal {
     }
 }
 
-/// To the nearest whole number; runs past the ends stay at the ends.
+/// Rounds to a whole number; saturates at the ends of the range.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "a float cast saturates, which is what is wanted"

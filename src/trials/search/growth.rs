@@ -1,99 +1,97 @@
-//! How a peak grows with the speed: what was measured on this object, continued along the shapes that hands of the family showed,
-//! above what the drive compares its threshold with. The shapes choose the next trial; a claim takes no more of them than the
-//! least scatter of its peaks. Pure.
+//! Growth of a peak with the speed: measurements on this object, extrapolated along shapes seen on hands of the family,
+//! above the force at which the drive stops. The shapes choose the next trial; a claim uses them only for the
+//! minimum scatter of its peaks. Pure.
 
 use crate::hand::impact::{overshoot_g, second_hand_overshoot_g};
 use crate::hand::statistics::{count, mean, median, spread};
 use crate::trials::search::offset::{Compared, OffsetEvidence};
 use crate::trials::search::peak::{CarriedPeaks, Contact, SeenPeak};
 
-/// Mixtures of the two published shapes that are tried.
+/// Number of mixtures of the two published shapes.
 const MIXTURES: u32 = 10;
-/// How fast this hand may be for each unit of speed, of what the published ones are.
+/// Candidate paces of this hand, relative to the published ones.
 const PACES: [f64; 4] = [0.85, 0.9, 0.95, 1.0];
-/// Where a stop always comes equally late, the way grows with the speed itself, and the force with these powers of it: more than
-/// one on what gets stiffer as it is pressed.
+/// Powers for constantly late stops: the way grows with the speed, and the force with a power of the way, above one for an object
+/// that stiffens as it is pressed.
 const POWERS: [f64; 4] = [1.0, 1.25, 1.5, 2.0];
-/// Below this threshold the published peaks say little, g: a smaller one is continued from here.
+/// Below this threshold, g, the published peaks are not reliable; a lower one is extrapolated from here.
 const LIGHT_G: f64 = 100.0;
-/// A peak repeats itself to this share of its overshoot, as far as nothing else is known; that counts as so many closes.
+/// Prior scatter of a peak, as a share of its overshoot, and its weight in closes.
 const REPEATS_TO: f64 = 0.035;
 const REPEATS_TRUST: f64 = 6.0;
-/// Numbers that a fit takes from the closes: scale, shape, comparison.
+/// Degrees of freedom used by a fit: scale, shape, reference.
 const FITTED: f64 = 2.0;
-/// What a shape may differ from this hand's, as a share of the overshoot.
+/// Possible deviation of a shape from this hand's, as a share of the overshoot.
 const SHAPE_ERROR: f64 = 0.10;
-/// How much worse than the best a shape may fit and still be possible (chi-square).
+/// A shape whose fit is this much worse than the best is still possible (chi-square).
 const POSSIBLE: f64 = 4.0;
-/// How much worse than the best a whole comparison may fit and still be possible: an offset looks much like a slower start.
+/// A reference whose fit is this much worse than the best is still possible: an offset resembles a slower start.
 const COMPARED_POSSIBLE: f64 = 25.0;
-/// So much worse it is not what the drive does.
+/// A reference whose fit is this much worse is excluded.
 const COMPARED_TOLD: f64 = 9.0;
-/// A best fit worse than this for each trial means that no shape is like this hand.
+/// A best fit worse than this per trial means that no shape matches this hand.
 const STRANGE: f64 = 6.0;
-/// Closes that are this much slower, as a share of the speed, tell of the same stops.
+/// Closes slower than this share of the speed do not count for it.
 const NEAR: f64 = 0.3;
-/// Closes whose middle is known, and how much it may differ from what the shape says.
+/// Number of closes with a reliable median, and the largest correction by it.
 const MIDDLE_LEAST: usize = 5;
 const CARRY_MOST: f64 = 2.0;
-/// Then the worst shape is taken, and so much more.
+/// In that case the worst shape is used, with this factor.
 const STRANGE_MORE: f64 = 1.3;
 
-/// What one joint's closes measured.
+/// Peak model of one joint, from its closes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PeakGrowth {
     seen: Vec<SeenPeak>,
     evidence: OffsetEvidence,
-    /// Noise of the force, g.
     noise_g: f64,
-    /// The shapes, fitted to what was seen: the best, and those that are possible beside it.
+    /// The fitted shapes: the best, and all that are possible.
     best: Option<Fit>,
     possible: Vec<Fit>,
     is_strange: bool,
-    /// To what share of its overshoot a peak repeats itself.
+    /// Scatter of a peak, as a share of its overshoot.
     repeats_to: f64,
-    /// How well the best of each comparison fits.
+    /// Misfit of the best fit for each reference.
     as_read: Option<f64>,
     above_rest: Option<f64>,
 }
 
-/// A shape, fitted.
+/// A fitted shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Fit {
     compared: Compared,
     shape: Shape,
     scale: f64,
-    /// Standard deviation of the scale.
     unsure: f64,
     misfit: f64,
-    /// The same with one mean close a setting: a shape is wrong by as much in each repeat, so repeats tell no drives apart.
+    /// The misfit with one mean close per setting: a shape has the same error in each repeat, so repeats do not discriminate.
     misfit_of_settings: f64,
 }
 
 impl PeakGrowth {
-    /// Takes one close.
+    /// Adds a close.
     pub fn add(&mut self, seen: SeenPeak) {
         self.seen.push(seen);
         self.evidence.add(&seen, self.noise_g);
         self.fit_all();
     }
 
-    /// Takes over the noise of the force for the closes to come, g.
+    /// Sets the noise of the force for further closes, g.
     pub const fn set_noise(&mut self, noise_g: f64) {
         self.noise_g = noise_g;
     }
 
-    /// Takes a drive that closed no further although nothing was in its way, with a threshold that its sensor reads at rest.
+    /// Notes a drive that stopped with nothing in its way, because its sensor reads its threshold at rest.
     pub fn stopped_in_air(&mut self, offset_g: f64) {
         self.evidence.stopped_in_air(offset_g);
     }
 
-    /// What the sensor read at rest before the last close, g.
+    /// Reading of the sensor at rest before the last close, g.
     pub fn offset_g(&self) -> f64 {
         self.evidence.offset_g()
     }
 
-    /// What the drive compares its threshold with, as far as the closes tell.
+    /// The reference of the drive's threshold; `None` if the closes do not determine it.
     pub fn compared(&self) -> Option<Compared> {
         self.evidence.told().or_else(|| {
             let (as_read, above_rest) = (self.as_read?, self.above_rest?);
@@ -107,26 +105,26 @@ impl PeakGrowth {
         })
     }
 
-    /// The fastest speed that was closed with, if its peak was surely seen.
+    /// The fastest speed so far; `None` without closes.
     pub fn fastest(&self) -> Option<f64> {
         let speeds = self.seen.iter().map(|own| own.at.speed);
         speeds.reduce(f64::max)
     }
 
-    /// The highest force above rest that a threshold stopped it at, most likely, g.
+    /// The highest force above rest at which a threshold has probably stopped it, g.
     pub fn stopped_most(&self) -> f64 {
         let thresholds = self.seen.iter().map(|own| own.at.threshold_g);
         self.stops_at(thresholds.fold(0.0, f64::max))
     }
 
-    /// The force above rest at which a threshold most likely stops the drive, g.
+    /// The force above rest at which a threshold probably stops the drive, g.
     pub fn stops_at(&self, threshold_g: f64) -> f64 {
         let compared = self.best.map(|fit| fit.compared);
         let compared = compared.or(self.compared()).unwrap_or_default();
         compared.stops_at(threshold_g, self.offset_g())
     }
 
-    /// The peak that is likely, g; `None` before anything was measured.
+    /// The expected peak, g; `None` before any was measured.
     pub fn likely(&self, at: Contact) -> Option<f64> {
         let best = self.best.as_ref()?;
         let stops_at = best.compared.stops_at(at.threshold_g, self.offset_g());
@@ -134,7 +132,7 @@ impl PeakGrowth {
         Some(stops_at + over * self.correction(best, at.speed))
     }
 
-    /// What the nearest trials on either side were of what the fit says of them.
+    /// Ratio of measured to fitted overshoot, interpolated between the nearest trials on both sides.
     fn correction(&self, fit: &Fit, speed: f64) -> f64 {
         let side = |is_on_it: &dyn Fn(f64) -> bool, nearer: &dyn Fn(f64, f64) -> bool| {
             let on_it = self.seen.iter().map(|own| own.at.speed);
@@ -146,7 +144,7 @@ impl PeakGrowth {
                 over += fit.compared.over_g(own);
                 fitted += fit.over_g(own);
             }
-            // Of peaks that are no more than noise nothing can be said.
+            // Overshoots no larger than noise carry no information.
             let tells = fitted > 5.0 * self.noise_g && over > 0.0;
             tells.then(|| (nearest, over / fitted))
         };
@@ -161,7 +159,7 @@ impl PeakGrowth {
         }
     }
 
-    /// The highest mean peak that is possible, g.
+    /// The highest possible mean peak, g; `None` without a fit.
     pub fn upper(&self, at: Contact) -> Option<f64> {
         let most = self.possible.iter().map(|fit| {
             let stops_at = fit.compared.stops_at(at.threshold_g, self.offset_g());
@@ -177,9 +175,9 @@ impl PeakGrowth {
         most.reduce(f64::max)
     }
 
-    /// The peaks of the closes at this speed or faster, and of those slower that still tell of the same stops, carried to it along the
-    /// shape that fits best: a stop that came late in one of them would come as late in this one. As soon as some were closed
-    /// with it, their middle says how much the others are carried.
+    /// The peaks of all relevant closes, those at this speed or faster and somewhat slower ones, scaled to it along the best
+    /// shape: a stop that was late in one of them would be equally late here. Once there are several closes at this setting, their
+    /// median corrects the scaling.
     pub fn carried(&self, at: Contact) -> CarriedPeaks {
         let Some(best) = self.best.as_ref() else {
             return CarriedPeaks::default();
@@ -220,18 +218,17 @@ impl PeakGrowth {
         carried
     }
 
-    /// How many closes were seen.
     pub fn closes(&self) -> usize {
         self.seen.len()
     }
 
-    /// Standard deviation of single closes around what is likely, g.
+    /// Standard deviation of single closes around the expected peak, g.
     pub fn scatter(&self, at: Contact) -> f64 {
         let over = self.likely(at).unwrap_or_default() - self.stops_at(at.threshold_g);
         self.noise_g.hypot(self.repeats_to * over)
     }
 
-    /// From the settings that were closed more than once, and from how far single closes are off the best fit.
+    /// Scatter from repeated settings, and from the deviation of single closes from the best fit.
     fn repeated(&self) -> f64 {
         let (mut squares, mut freedom) = (REPEATS_TRUST * REPEATS_TO.powi(2), REPEATS_TRUST);
         let mut fitted = FITTED;
@@ -249,7 +246,7 @@ impl PeakGrowth {
             let over = single.map(|fit| (compared.over_g(own), fit.over_g(own)));
             if let Some((over, fit)) = over.filter(|(_, fit)| *fit > 10.0 * self.noise_g) {
                 squares += (over / fit - 1.0).powi(2);
-                // As many closes as a fit has numbers of its own tell nothing.
+                // As many closes as the fit has parameters add no degrees of freedom.
                 freedom += if fitted > 0.0 { 0.0 } else { 1.0 };
                 fitted -= 1.0;
             }
@@ -297,7 +294,7 @@ impl PeakGrowth {
         self.repeats_to = self.repeated();
     }
 
-    /// How many closes had the same speed and threshold as each.
+    /// Number of closes with the same speed and threshold, for each close.
     fn repeats(&self) -> Vec<f64> {
         let same = |own: &SeenPeak| {
             let same = self.seen.iter().filter(|other| other.at == own.at);
@@ -306,7 +303,7 @@ impl PeakGrowth {
         self.seen.iter().map(same).collect()
     }
 
-    /// The scale by weighted least squares. A peak below what stops the drive tells nothing of what it runs past that.
+    /// Fits the scale by weighted least squares. A peak below the force that stops the drive shows no overshoot and is skipped.
     fn fit(&self, compared: Compared, shape: Shape, repeats: &[f64]) -> Option<Fit> {
         let noise = self.noise_g + 1.0;
         let (mut xy, mut xx) = (0.0, 0.0);
@@ -348,7 +345,7 @@ impl PeakGrowth {
         })
     }
 
-    /// The scale of a shape that goes through the fastest trial.
+    /// The scale at which a shape passes through the fastest trial.
     fn scale_of_fastest(&self, fit: &Fit) -> f64 {
         let fastest = self.seen.iter();
         let fastest = fastest.max_by(|a, b| a.at.speed.total_cmp(&b.at.speed));
@@ -364,29 +361,29 @@ impl PeakGrowth {
 }
 
 impl Fit {
-    /// What it says of a close that was seen.
+    /// The fitted overshoot of a close, g.
     fn over_g(&self, seen: &SeenPeak) -> f64 {
         let stops_at = self.compared.stops_at_in(seen);
         self.shape.peak_g(seen.at.speed, stops_at, self.scale) - stops_at
     }
 }
 
-/// How a peak grows with the speed.
+/// Shape of the growth of a peak with the speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Shape {
-    /// As on the published block.
+    /// As measured on the published block.
     Published {
-        /// How much of it is as on the second hand, 0..=1.
+        /// Share of the second hand's shape, 0..=1.
         second: f64,
-        /// How fast the hand is of what the published ones are.
+        /// Speed of this hand relative to the published ones.
         pace: f64,
     },
-    /// A way that grows with the speed, and a force that grows with this power of the way.
+    /// The way is proportional to the speed, and the force grows with this power of the way.
     Late(f64),
 }
 
 impl Shape {
-    /// The peak where the drive is stopped at this force, g.
+    /// The peak of a drive that is stopped at this force, g.
     fn peak_g(self, speed: f64, stops_at: f64, scale: f64) -> f64 {
         match self {
             Self::Published { second, pace } => {
@@ -398,7 +395,7 @@ impl Shape {
         }
     }
 
-    /// A peak and its error as a point of a line through zero, whose slope is the scale: x, y, and the weight of y.
+    /// A peak and its error as a point on a line through zero, whose slope is the scale: x, y, and the weight of y.
     fn point(self, speed: f64, stops_at: f64, (peak_g, error_g): (f64, f64)) -> (f64, f64, f64) {
         match self {
             Self::Published { second, pace } => (
@@ -416,7 +413,7 @@ impl Shape {
     }
 }
 
-/// Grams above the threshold on the published block.
+/// Overshoot on the published block, g.
 fn published_g(speed: f64, threshold_g: f64, second: f64) -> f64 {
     (1.0 - second) * overshoot_g(speed, threshold_g.max(LIGHT_G))
         + second * second_hand_overshoot_g(speed)
@@ -485,14 +482,14 @@ mod tests {
         assert!(growth.upper(at(100.0)).unwrap() > 220.0 + 250.0);
     }
 
-    /// A drive that runs on for 60 ms at 1.5 units a second for each unit of speed, on 25 g for each unit.
+    /// A drive with 60 ms of overrun at 1.5 units per second for each unit of speed, on 25 g per unit.
     fn late_g(speed: f64) -> f64 {
         speed * 1.5 * 0.06 * 25.0
     }
 
     #[test]
     fn a_peak_below_the_threshold_is_no_leave_to_go_faster() {
-        // The sensor reads 146 g at rest, and the drive counts them: 220 g stop it at 74.
+        // The sensor reads 146 g at rest, and the drive counts them: a threshold of 220 g stops it at 74.
         let stops_at = 220.0 - 146.0;
         let closes = [25.0, 8.0].map(|speed| seen(at(speed), 146.0, stops_at + late_g(speed)));
         let growth = known(3.0, &closes);
@@ -514,7 +511,7 @@ mod tests {
     fn where_the_closes_do_not_tell_the_higher_peak_of_both_is_allowed_for() {
         let growth = known(3.0, &[seen(at(25.0), 60.0, 220.0 + 40.0)]);
         assert_eq!(growth.compared(), None);
-        // With the offset counted the overshoot was 100 g, and is twice that at twice the speed.
+        // With the offset counted, the overshoot is 100 g, and twice that at twice the speed.
         assert!(growth.upper(at(50.0)).unwrap() >= 160.0 + 200.0);
     }
 

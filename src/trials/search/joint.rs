@@ -1,4 +1,4 @@
-//! What is known of one joint and the object before it, from the closes so far. Pure.
+//! The model of one joint and the object before it, from the closes so far. Pure.
 
 use crate::hand::Dof;
 use crate::hand::statistics::{count, mean, median, spread};
@@ -8,46 +8,46 @@ use crate::trials::search::growth::PeakGrowth;
 use crate::trials::search::offset::Compared;
 use crate::trials::search::peak::{Contact, SeenPeak};
 
-/// Scatter of a contact as published, units of ANGLE_ACT (7.5 counts of the position), and for how many closes that counts.
+/// Published scatter of a contact, units of ANGLE_ACT (7.5 counts of the position), and its weight in closes.
 const CONTACT_SCATTER: f64 = 3.75;
 const CONTACT_TRUST: f64 = 4.0;
-/// The slow stage begins so many standard deviations before the mean contact.
+/// The slow stage begins this many standard deviations before the mean contact.
 const MARGIN_SIGMAS: f64 = 3.3;
-/// An angle is a whole number, and a joint is sent on two units before its halt.
+/// An angle is a whole number, and a joint is sent two units past its halt.
 const MARGIN_MORE: f64 = 2.0;
-/// A contact is told from this force on, g, or this many times the noise …
+/// A contact is detected from this force on, g, or from this many times the noise …
 const CONTACT_G: f64 = 15.0;
 const CONTACT_SIGMAS: f64 = 5.0;
-/// … which is so much too late at most, units of ANGLE_ACT.
+/// … which delays it by at most this, units of ANGLE_ACT.
 const LATE_MOST: f64 = 12.0;
-/// A contact is told where a joint goes less than this between two readings, units of ANGLE_ACT; a stiffness, where that is less
-/// than this share of the way into the object.
+/// A contact counts if the joint moves less than this between two readings, units of ANGLE_ACT; a stiffness, if that is less than
+/// this share of the way into the object.
 const SHARP: f64 = 5.0;
 const SHARP_SHARE: f64 = 0.25;
-/// A stiffness below this share of what it was means that the object gives.
+/// The object gives if its stiffness falls below this share of its earlier value.
 const GIVES_BELOW: f64 = 0.5;
-/// Left of the grip, as a share of the force that stopped the drive, below which the object gave.
+/// The object gave if the remaining grip is below this share of the force that stopped the drive.
 const GONE_BELOW: f64 = 0.4;
-/// What is left of a peak before any was measured.
+/// Remaining share of a peak before any was measured.
 const USUALLY_LEFT: f64 = 0.92;
-/// Added to what is to be held, g, so that the grip is left in each close.
+/// Added to the hold, g, so that every close keeps enough grip.
 const HOLD_MORE_G: f64 = 4.0;
-/// Closes whose overshoots differ less than this, as a share of the peak, do not show what is left of an overshoot.
+/// Closes whose overshoots, as shares of the peak, differ by less do not show how overshoot relaxes.
 const OVER_SPREAD: f64 = 0.05;
-/// A force that stops a drive is at least this, this many times the noise, and this share of the limit.
+/// Lower bounds of the force that stops a drive: absolute, as a multiple of the noise, and as a share of the limit.
 const STOPS_MIN_G: f64 = 15.0;
 const STOPS_SIGMAS: f64 = 6.0;
 const STOPS_SHARE: f64 = 0.06;
-/// FORCE_SET is at least this, g, whatever a sensor reads at rest.
+/// Smallest FORCE_SET, g, whatever a sensor reads at rest.
 const THRESHOLD_MIN_G: f64 = 5.0;
 
-/// A contact that moves so many standard deviations of its trend, and so far in all, units of ANGLE_ACT, does not stay where it is.
+/// The object creeps if the trend of its contact exceeds this many of its standard deviations, and this total, units of ANGLE_ACT.
 const CREEP_SIGMAS: f64 = 4.5;
 const CREEP_LEAST: f64 = 8.0;
-/// Of fewer closes no trend is told.
+/// Fewer closes show no trend.
 const CREEP_CLOSES: usize = 10;
 
-/// What one close left of its peak.
+/// Peak and remaining force of one close.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Left {
     threshold_g: f64,
@@ -56,7 +56,6 @@ struct Left {
     steady_g: f64,
 }
 
-/// One joint.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct JointModel {
     pub(crate) dof: Dof,
@@ -65,7 +64,7 @@ pub(crate) struct JointModel {
     stiffnesses: Vec<f64>,
     noises: Vec<f64>,
     left: Vec<Left>,
-    /// Units of ANGLE_ACT a second for each unit of SPEED_SET.
+    /// Units of ANGLE_ACT per second for each unit of SPEED_SET.
     rates: Vec<f64>,
 }
 
@@ -82,7 +81,7 @@ impl JointModel {
         }
     }
 
-    /// Takes what a close says; the reason to end if the object gave.
+    /// Learns from a close. Returns the reason to end the search if the object gave.
     pub(crate) fn learn(&mut self, facts: &CloseFacts, at: Contact) -> Option<NoClaim> {
         let dof = self.dof;
         self.noises.push(facts.noise_g);
@@ -114,7 +113,7 @@ impl JointModel {
         })
     }
 
-    /// Takes how fast a joint went that has one speed from `start` to the contact.
+    /// Learns the rate of a joint that moves at one speed from `start` to the contact.
     pub(crate) fn learn_rate(&mut self, facts: &CloseFacts, start: f64, speed: f64) {
         let way = facts.contact.map(|contact| start - contact);
         // A hand that moves within one reading of the command shows no dead time.
@@ -125,7 +124,7 @@ impl JointModel {
         }
     }
 
-    /// Stiffness before and now, where it dropped.
+    /// The stiffness before and now, if it dropped.
     fn gives(&self, facts: &CloseFacts, at: Contact) -> Option<(f64, f64)> {
         let stops_at = self.growth.stops_at(at.threshold_g);
         let gone = facts.peak_g.zip(facts.steady_g).filter(|(peak, steady)| {
@@ -139,12 +138,12 @@ impl JointModel {
         (now < GIVES_BELOW * before).then_some((before, now))
     }
 
-    /// The way of a joint between two readings, units of ANGLE_ACT.
+    /// Motion of a joint between two readings, units of ANGLE_ACT.
     fn step(&self, facts: &CloseFacts, at: Contact) -> f64 {
         facts.reading_s.unwrap_or_default() * at.speed * self.rate()
     }
 
-    /// The stiffness that a close tells: none if the contact may be off by much of the way into the object.
+    /// The stiffness shown by a close; `None` if the error of the contact is a large part of the way into the object.
     fn stiffness_in(&self, facts: &CloseFacts, at: Contact) -> Option<f64> {
         let pressed = facts.steady_g.zip(facts.stiffness);
         let (steady, stiffness) = pressed.filter(|_| !facts.is_uncertain)?;
@@ -152,7 +151,7 @@ impl JointModel {
         (self.step(facts, at) < SHARP_SHARE * pressed).then_some(stiffness)
     }
 
-    /// The highest stiffness that a close may be of: between two readings a contact is drawn early, never late.
+    /// Upper bound of the stiffness in a close: interpolation places a contact early, never late.
     fn stiffness_most(&self, facts: &CloseFacts, at: Contact) -> Option<f64> {
         let pressed = facts.steady_g.zip(facts.stiffness);
         let (steady, stiffness) = pressed.filter(|_| !facts.is_uncertain)?;
@@ -160,7 +159,7 @@ impl JointModel {
         (pressed > 0.0).then(|| steady / pressed)
     }
 
-    /// How the contact moves from close to close, where it does: the object does not stay where it is.
+    /// The trend of the contact from close to close, if the object does not stay in place.
     pub(crate) fn creeps(&self) -> Option<NoClaim> {
         let (counts, unsure) = trend(&self.contacts)?;
         let is_told = counts.abs() > CREEP_SIGMAS * unsure;
@@ -171,22 +170,21 @@ impl JointModel {
         })
     }
 
-    /// Noise of the force, g.
     pub(crate) fn noise_g(&self) -> f64 {
         median(&self.noises).unwrap_or_default()
     }
 
-    /// g for each unit of ANGLE_ACT.
+    /// Median stiffness, g per unit of ANGLE_ACT.
     pub(crate) fn stiffness(&self) -> Option<f64> {
         median(&self.stiffnesses)
     }
 
-    /// Units of ANGLE_ACT a second for each unit of SPEED_SET.
+    /// Units of ANGLE_ACT per second for each unit of SPEED_SET.
     pub(crate) fn rate(&self) -> f64 {
         median(&self.rates).unwrap_or(1.5)
     }
 
-    /// The mean contact, units of ANGLE_ACT; brought back from the force that told it to where it began.
+    /// The mean contact, units of ANGLE_ACT, corrected for the force needed to detect it.
     pub(crate) fn contact(&self) -> Option<f64> {
         Some(mean(&self.contacts)? + self.late())
     }
@@ -199,7 +197,7 @@ impl JointModel {
         late.unwrap_or(1.0).min(LATE_MOST)
     }
 
-    /// How far before the mean contact the slow stage begins, units of ANGLE_ACT. While little is known it is wider.
+    /// Start of the slow stage before the mean contact, units of ANGLE_ACT. It is wider with few closes.
     pub(crate) fn margin(&self) -> f64 {
         let n = count(&self.contacts).max(1.0);
         let spread = spread(&self.contacts);
@@ -208,13 +206,13 @@ impl JointModel {
         MARGIN_SIGMAS * sigma * (1.0 + 2.0 / n).sqrt() + MARGIN_MORE
     }
 
-    /// The force above rest, g, that a drive has at least to be stopped by: noise must not do it.
+    /// The lowest force above rest that may stop a drive, g, so that noise does not.
     pub(crate) fn stops_least(&self, limit_g: f64) -> f64 {
         let noise = STOPS_SIGMAS * self.noise_g();
         STOPS_MIN_G.max(noise).max(STOPS_SHARE * limit_g)
     }
 
-    /// The least threshold that stops it above its noise, whatever it is compared with, g.
+    /// The lowest threshold that stops the drive above its noise, for every reference it may have, g.
     pub(crate) fn threshold_least(&self, limit_g: f64) -> f64 {
         let offset = self.growth.offset_g();
         let stops_at = self.stops_least(limit_g);
@@ -227,13 +225,13 @@ impl JointModel {
         (stops_at + counted).max(THRESHOLD_MIN_G)
     }
 
-    /// The threshold that stops it at this force above rest, g; where its drive is not known to count the offset, not above it.
+    /// The threshold that stops the drive at this force above rest, g; without the offset unless its drive is known to count it.
     pub(crate) fn threshold_for(&self, force_g: f64) -> f64 {
         let compared = self.growth.compared().unwrap_or(Compared::AboveRest);
         compared.threshold_for(force_g, self.growth.offset_g())
     }
 
-    /// What its drive was found to compare its threshold with.
+    /// The reference of its drive's threshold, as found.
     pub(crate) fn compared(&self) -> ComparedThreshold {
         ComparedThreshold {
             dof: self.dof,
@@ -242,15 +240,15 @@ impl JointModel {
         }
     }
 
-    /// What is left of the grip at least, g.
+    /// Lower bound of the remaining grip, g; `None` before any peak was measured.
     pub(crate) fn holds(&self, at: Contact) -> Option<f64> {
         let peak = self.growth.likely(at)?;
         let over = (1.0 - self.growth.stops_at(at.threshold_g) / peak.max(1.0)).clamp(0.0, 1.0);
         Some(self.left_of_peak(over) * peak - HOLD_MORE_G - self.noise_g())
     }
 
-    /// What is left of a peak, as a share, of which this share is overshoot: some drives keep what they ran past their threshold,
-    /// others relax to it. A line through what was seen; where that does not show it, nothing is left of more overshoot.
+    /// Remaining share of a peak with this share of overshoot: some drives keep their overshoot, others relax to the threshold. Fits a
+    /// line to the closes; if they do not show it, further overshoot is assumed to relax fully.
     fn left_of_peak(&self, over: f64) -> f64 {
         let seen = self.left.iter().filter(|own| own.peak_g > 1.0);
         let seen: Vec<(f64, f64)> = seen
@@ -281,7 +279,7 @@ impl JointModel {
     }
 }
 
-/// By how much values rise from one to the next, and the standard deviation of that; `None` of too few.
+/// Slope of the values per close, and its standard deviation; `None` for too few.
 fn trend(values: &[f64]) -> Option<(f64, f64)> {
     if values.len() < CREEP_CLOSES {
         return None;

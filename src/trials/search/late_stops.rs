@@ -1,5 +1,5 @@
-//! Whole searches against the physics of a hand by another author (a spring with relaxation, a drive that stops some time after its
-//! threshold, read every ten milliseconds), without a wire: how many of their claims are false, by the closes to come.
+//! Complete searches against the hand physics of another author (a spring with relaxation, a drive that stops some time after its
+//! threshold, read every ten milliseconds), without a wire: counts the claims that future closes refute.
 
 use crate::hand::Dof;
 use crate::trials::plan::{Approach, Until};
@@ -9,26 +9,26 @@ use crate::trials::search::goal::SearchGoal;
 use crate::trials::search::settings_search::{NextClose, SettingsSearch};
 
 const LIMIT_G: i16 = 500;
-/// Closes to come that a claim is checked by.
+/// Future closes that check a claim.
 const CHECKS: u32 = 1500;
-/// Where the object is, units of ANGLE_ACT, and how stiff, g for each of them.
+/// Mean and deviation of the contact, units of ANGLE_ACT, and stiffness, g per unit.
 const CONTACT: f64 = 500.0;
 const CONTACT_SD: f64 = 3.75;
 const STIFFNESS: f64 = 25.0;
-/// Share of the force that relaxes, and in which time, ms.
+/// Share of the force that relaxes, and its time constant, ms.
 const RELAXES: f64 = 0.08;
 const RELAXES_MS: f64 = 150.0;
-/// Counts a millisecond for each unit of speed.
+/// Counts per millisecond for each unit of speed.
 const RATE: f64 = 0.00152;
 const NOISE_G: f64 = 3.0;
 const DEAD_S: f64 = 0.064;
 
-/// How late stops are, ms.
+/// Delays of stops, ms.
 #[derive(Debug, Clone, Copy)]
 struct Stops {
     mean: f64,
     sd: f64,
-    /// Share of stops that are later, by an exponential distribution with this mean.
+    /// Share of stops that are later, and the mean of their exponential extra delay.
     tail: (f64, f64),
 }
 
@@ -46,7 +46,7 @@ struct Hand {
 }
 
 struct Close {
-    /// Highest force, g, and the highest that was read.
+    /// Highest force, g, and highest reading.
     peak_g: f64,
     read_g: f64,
     steady_g: f64,
@@ -151,7 +151,7 @@ impl Hand {
         (close, facts)
     }
 
-    /// A search; `None` where the ceiling ended it.
+    /// Runs a search; `None` if the force ceiling ended it.
     fn search(&mut self, goal: &SearchGoal) -> Option<(Claim, Vec<f64>)> {
         let ceiling = goal.plan(goal.first_setting()).limits.ceiling_g;
         let mut search = SettingsSearch::new(goal.clone()).unwrap();
@@ -168,7 +168,7 @@ impl Hand {
         Some((claim, peaks))
     }
 
-    /// Share of closes to come that are above a claim's bound.
+    /// Share of future closes above a claim's bound.
     fn above(&mut self, claim: &Claim) -> f64 {
         let (speed, force) = (claim.setting.speed.get(), claim.setting.force.get());
         let bound = claim.peak_bound_g();
@@ -179,7 +179,7 @@ impl Hand {
     }
 }
 
-/// Claims, false ones, and those that say that they rest on a normal distribution.
+/// Counts of claims: all, false ones, and those that assume a normal distribution.
 #[derive(Debug, Default)]
 struct Count {
     searches: usize,
@@ -236,7 +236,7 @@ fn of_claims_on_hands_whose_stops_are_sometimes_late_few_are_false() {
 /// Shares of late stops, and seeds.
 const SEEDS: [(f64, &[u64]); 2] = [(0.1, &[18]), (0.15, &[1, 5, 8, 15])];
 
-/// Hands of which a search without a reserve for later stops had a close over 1.15 of the limit.
+/// Hands on which a search without a reserve for later stops had a close over 1.15 of the limit.
 #[test]
 fn a_stop_later_than_all_before_seldom_goes_far_over_the_limit() {
     let goal = SearchGoal::new(&[Dof::Index], LIMIT_G);
@@ -271,7 +271,7 @@ fn a_claim_of_few_closes_says_what_it_takes_for_granted_unless_a_stop_was_late()
         words.contains("95 % sure if the peaks vary normally"),
         "{words}"
     );
-    // One stop in five is late: ten closes show it.
+    // One stop in five is late, which ten closes show.
     let late = (0..5).find_map(|seed| {
         let mut hand = Hand {
             stops: stops(2.0, (0.2, 20.0)),

@@ -1,9 +1,9 @@
-//! Finding the fastest close whose peak stays under a limit: the goal, the search, and what it came to. Runs nothing.
+//! Search for the fastest close with its peak under a limit: goal, search and result. Runs nothing.
 //!
-//! [`goal`] is what the user wants; [`settings_search`] chooses close after close, from what [`close`] reads out of each recording,
-//! what a joint's closes say together, and how the peak grows with the speed ([`growth`]), and what the
-//! drive compares its threshold with ([`offset`]); [`tolerance`] is how sure a bound
-//! is; [`finding`] is the claim, or why there is none.
+//! [`goal`] is the user's request; [`settings_search`] chooses close after close, from the facts that [`close`] extracts from each
+//! recording, the closes of each joint together, the growth of the peak with the speed ([`growth`]), and the reference
+//! of the drive's threshold ([`offset`]); [`tolerance`] quantifies the confidence of a
+//! bound; [`finding`] is the claim, or the reason for its absence.
 
 pub mod close;
 mod confirm;

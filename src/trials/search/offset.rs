@@ -1,33 +1,33 @@
-//! What a drive compares its force threshold with: what its sensor reads, or what that is more than at rest. The manual says the
-//! first (2.6.12); a peak below the threshold of one of them tells. Pure.
+//! The reference of a drive's force threshold: the sensor reading, or the reading above rest. The manual states the
+//! first (2.6.12); a peak below the threshold of one of them excludes it. Pure.
 
 use crate::trials::search::peak::SeenPeak;
 use serde::Serialize;
 
-/// A peak is told from a threshold by so many times the noise, and some grams more.
+/// A peak is distinct from a threshold beyond this many times the noise plus some grams.
 const TOLD_SIGMAS: f64 = 4.0;
 const TOLD_MORE_G: f64 = 3.0;
-/// More than this share of the closes against it, and it is not what the drive does.
+/// A reference is excluded if more than this share of the closes contradict it.
 const AGAINST_MOST: f64 = 0.25;
 
-/// What a drive compares its force threshold with.
+/// The reference of a drive's force threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Default)]
 #[serde(rename_all = "snake_case")]
 pub enum Compared {
-    /// FORCE_ACT as it is read, the sensor's offset included (manual 2.6.12).
+    /// FORCE_ACT as read, including the sensor's offset (manual 2.6.12).
     #[default]
     AsRead,
-    /// The force above what the sensor reads at rest.
+    /// The force above the reading at rest.
     AboveRest,
-    /// Something else: it stops below either.
+    /// Something else: it stops below both.
     Unknown,
 }
 
 impl Compared {
-    /// All, as the manual has it first.
+    /// All, the manual's first.
     pub const ALL: [Self; 3] = [Self::AsRead, Self::AboveRest, Self::Unknown];
 
-    /// The force above rest at which a threshold stops the drive, g; nothing is taken off an overshoot where that is not known.
+    /// The force above rest at which a threshold stops the drive, g; 0 if unknown, so that the whole peak counts as overshoot.
     pub fn stops_at(self, threshold_g: f64, offset_g: f64) -> f64 {
         match self {
             Self::AsRead => (threshold_g - offset_g).max(0.0),
@@ -36,17 +36,17 @@ impl Compared {
         }
     }
 
-    /// The same in a close that was seen.
+    /// The same for a recorded close.
     pub(crate) fn stops_at_in(self, seen: &SeenPeak) -> f64 {
         self.stops_at(seen.at.threshold_g, seen.offset_g)
     }
 
-    /// Grams above it.
+    /// Overshoot of a recorded close, g.
     pub(crate) fn over_g(self, seen: &SeenPeak) -> f64 {
         seen.peak_g - self.stops_at_in(seen)
     }
 
-    /// Whether a peak is lower than this can be.
+    /// True if a peak is lower than this reference allows.
     pub(crate) fn is_contradicted_by(self, seen: &SeenPeak, noise_g: f64) -> bool {
         self.over_g(seen) < -told_from(noise_g) - seen.missed_g
     }
@@ -60,12 +60,12 @@ impl Compared {
     }
 }
 
-/// What an offset has to be more than to be told, g.
+/// Smallest difference that is distinct from noise, g.
 pub(crate) fn told_from(noise_g: f64) -> f64 {
     TOLD_SIGMAS * noise_g + TOLD_MORE_G
 }
 
-/// What the closes of a joint tell of its drive.
+/// Evidence about the reference of a drive, from the closes of its joint.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct OffsetEvidence {
     closes: f64,
@@ -97,7 +97,7 @@ impl OffsetEvidence {
         against > AGAINST_MOST * self.closes
     }
 
-    /// What the drive may compare with.
+    /// The references that are still possible.
     pub(crate) fn possible(&self) -> Vec<Compared> {
         let as_read = !self.is_against(self.against_as_read);
         let above_rest = !self.in_air && !self.is_against(self.against_above_rest);
@@ -109,7 +109,7 @@ impl OffsetEvidence {
         }
     }
 
-    /// What it compares with, where the peaks leave one only.
+    /// The reference, if the evidence leaves only one.
     pub(crate) fn told(&self) -> Option<Compared> {
         match self.possible().as_slice() {
             [Compared::Unknown] => None,

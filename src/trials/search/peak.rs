@@ -1,6 +1,6 @@
-//! What one close asked for, and the peak that it measured.
+//! The setting of one close, and its measured peak.
 
-/// A speed and a threshold.
+/// A speed and a threshold at the contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
     /// Units of SPEED_SET.
@@ -13,23 +13,23 @@ pub struct Contact {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenPeak {
     pub at: Contact,
-    /// What the force sensor read at rest before it, g.
+    /// Reading of the force sensor at rest before it, g.
     pub offset_g: f64,
-    /// Highest force above that, g.
+    /// Highest force above that reading, g.
     pub peak_g: f64,
-    /// What it may have been more between two readings, g.
+    /// Possible extra height between two readings, g.
     pub missed_g: f64,
-    /// Whether its readings were as near to each other as they usually are.
+    /// True unless its readings may have missed the top.
     pub is_certain: bool,
 }
 
-/// The peaks of closes, as they would be at one speed and threshold.
+/// Peaks of closes, scaled to one speed and threshold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CarriedPeaks {
     /// All of them, g.
     pub peaks_g: Vec<f64>,
-    /// Those that were closed with it, g.
+    /// Those of closes made at this setting, g.
     pub here_g: Vec<f64>,
-    /// How many of all are certain.
+    /// Number of certain ones among all.
     pub certain: usize,
 }

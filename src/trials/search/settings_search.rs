@@ -1,6 +1,6 @@
-//! The search for the fastest close under a limit: which close is next, and what it said. Two slow ones first, then upwards, at
-//! most twice as fast each time, to the fastest whose upper bound stays under the limit; then the same again and again until it is
-//! a claim. Pure: it moves nothing and reads no clock.
+//! The search for the fastest close under a limit: chooses the next close from the results so far. Two slow closes first, then
+//! faster ones, at most twice as fast each time, up to the fastest whose upper bound stays under the limit; then repeats until they
+//! support a claim. Pure: moves nothing and reads no clock.
 
 use crate::hand::impact::RIGID_G_PER_COUNT;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
@@ -21,71 +21,71 @@ use crate::trials::search::tolerance::{Assurance, FREE_95, tolerance_factor};
 use crate::trials::summary::Trial;
 use std::time::Duration;
 
-/// The slowest close that is tried, units of SPEED_SET.
+/// The slowest close tried, units of SPEED_SET.
 const SLOWEST: i16 = 3;
-/// The second probe comes near with this speed, and slows down so far before the contact that the first met.
+/// Approach speed of the second probe, and its margin before the contact found by the first.
 const SECOND_FAST: i16 = 200;
 const SECOND_MARGIN: i16 = 60;
-/// Where it is not known whether the drive counts the offset of its sensor, the second probe is so much slower: what is left of its
-/// peak then tells.
+/// Speed reduction of the second probe if the threshold reference of the drive is unknown: the remaining part of its peak then
+/// shows it.
 const SECOND_SLOWER: f64 = 3.0;
-/// No close is more than so many times as fast as the fastest before it.
+/// Each close is at most this many times as fast as the fastest before it.
 const RISE_MOST: f64 = 2.0;
-/// Speeds nearer to each other than this share are as good as the same.
+/// Speeds that differ by less than this share count as equal.
 const SPEED_STEP: f64 = 0.01;
-/// Thresholds that are compared are apart by this share of the force that they stop at.
+/// Ratio between the stopping forces of successive candidate thresholds.
 const THRESHOLD_STEP: f64 = 1.08;
-/// A threshold that stops the drive at so many times the force of those before tells more.
+/// A threshold is informative if it stops the drive at this many times the earlier forces.
 const HARDER: f64 = 1.1;
 /// The highest force that may stop the drive, as a share of the limit.
 const STOPS_MOST: f64 = 0.95;
-/// Closes in a row that may be uncertain, or end in the air.
+/// Successive closes that may be uncertain or end in free air.
 const REPEATS_MAX: usize = 3;
-/// How a close in two stages comes near.
+/// Approach speed of a close in two stages.
 const FAST: i16 = Speed::MAX.get();
-/// A setting that is this much faster, as a share of the close, is worth another close, and ten more.
+/// Saving that is worth another close, and ten more, as a share of the closing time.
 const WORTH_ONE: f64 = 0.02;
 const WORTH_TEN: f64 = 0.05;
-/// Steps upwards, and settings that are tried for confirmation.
+/// Maximum number of speed increases, and of settings to confirm.
 const RISES_MAX: usize = 10;
 const CONFIRMATIONS_MAX: usize = 20;
-/// After so many closes a claim is taken as it is, even if something quicker may be left.
+/// After this many closes a claim is accepted, even if a faster setting may exist.
 const RISING_UNTIL: usize = 40;
-/// Closes of the setting itself that a claim rests on, whatever else it rests on.
+/// Closes of the setting itself that every claim needs.
 const HERE_LEAST: usize = 10;
-/// Until so many closes are left, a stop is taken to be possible that runs on this many times as far as they usually do: most closes
-/// are run slower than the last, so that a late stop is met where it does little.
+/// Until enough closes are done, a stop may overrun by this many times the usual: most closes then run slower than the last ones,
+/// so that a late stop first shows up where it does little harm.
 const LATE: f64 = 3.0;
-/// Where some stops came late, the next may be later than all: the largest overshoot is taken for so many times as much.
+/// With some late stops, the next may be later than all: the largest overshoot is scaled by this.
 const LATER: f64 = 1.3;
-/// What the largest of many closes is taken to be above what is likely, as a multiple of their standard deviation.
+/// Expected distance of the largest of many closes from the mean, in standard deviations.
 const LARGEST_SIGMAS: f64 = 2.7;
-/// What is aimed at of the room under the limit: bounds of few closes scatter themselves.
+/// Share of the room under the limit to aim at, since bounds from few closes scatter.
 const AIM: f64 = 0.97;
-/// All closes of a search.
+/// Maximum number of closes in a search.
 pub const TRIALS_MAX: usize = 250;
-/// From the order to go on slowly to the motion: the dead time and a reading, s.
+/// From the order to continue slowly to the motion, s: dead time and one reading.
 const PAUSE_S: f64 = 0.1;
-/// What a limit has to be above the noise for.
+/// Smallest limit, as a multiple of the noise.
 const LIMIT_SIGMAS: f64 = 15.0;
-/// A close that is over the limit takes the speeds from this share of its own on away.
+/// A close over the limit excludes speeds from this share of its own on.
 const BARRED_FROM: f64 = 0.97;
-/// How late a drive may stop, s, as far as nothing is known of it; and the slowest that a first close is made for that.
+/// Assumed delay of a stop before any was measured, s, and the lowest speed of a first close chosen for it.
 const STOPS_LATE_S: f64 = 0.08;
 const GENTLE_LEAST: i16 = 5;
-/// A threshold this near above the reading at rest is met by the noise alone.
+/// A threshold closer than this many noise deviations above the reading at rest is reached by noise alone.
 const STOPS_SIGMAS: f64 = 6.0;
-/// About how long a close takes before any was measured.
+/// Estimated duration of a close before any was measured.
 const CLOSE_TAKES: Duration = Duration::from_secs(7);
 
-/// A close that is to be run.
+/// The next close to run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NextClose {
     pub plan: TrialPlan,
     pub setting: TrialSetting,
-    /// Where each joint met the object.
+    /// Mean contact angle of each joint; `None` before it is known.
     pub contact: PerDof<Option<Angle>>,
-    /// Whether it looks for the contact.
+    /// True if it searches for the contact.
     pub is_probe: bool,
 }
 
@@ -97,14 +97,14 @@ enum SearchPhase {
     Confirming(Confirmation),
 }
 
-/// What is tried.
+/// The setting and approach being tried.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Choice {
     setting: TrialSetting,
     approach: FoundApproach,
 }
 
-/// A search under way.
+/// A running search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SettingsSearch {
     goal: SearchGoal,
@@ -112,29 +112,28 @@ pub struct SettingsSearch {
     phase: SearchPhase,
     choice: Choice,
     threshold_g: f64,
-    /// Closes over the limit, and with a slip: nothing as fast with as high a threshold.
+    /// Closes over the limit, or with a slip: nothing as fast at such a threshold is tried again.
     barred: Vec<Contact>,
-    /// How many standard deviations above their mean the peaks are bounded.
+    /// Bound of the peaks, in standard deviations above their mean.
     factor: f64,
-    /// What has to be left of the grip by the model, g, where less than that was left in closes.
+    /// Modelled hold that is required, g, after closes held less than their model.
     hold_more_g: f64,
-    /// Closes in a row whose peak is not certain, or that ended in the air.
+    /// Successive closes that were uncertain or ended in free air.
     repeats: usize,
     confirmations: usize,
-    /// A peak was far above the others: they do not vary normally.
+    /// A peak was far above the others: the distribution is not normal.
     has_tail: bool,
     tried: Vec<Tried>,
     untold: Vec<Untold>,
     result: Option<Result<Claim, NoClaim>>,
-    /// How long the last close took, with its ways.
+    /// Duration of the last close, including travel.
     took: Option<Duration>,
 }
 
 impl SettingsSearch {
-    /// A search for this goal.
     ///
     /// # Errors
-    /// [`GoalError`]: it cannot be tried.
+    /// [`GoalError`] if the goal is invalid.
     pub fn new(goal: SearchGoal) -> Result<Self, GoalError> {
         goal.check()?;
         let first = goal.first_setting();
@@ -165,12 +164,12 @@ impl SettingsSearch {
         })
     }
 
-    /// The plan that its trials begin with: joints, ways, limits. Speed and threshold are the first's.
+    /// The plan of its trials: joints, ways and limits, with speed and threshold of the current choice.
     pub fn plan(&self) -> TrialPlan {
         self.goal.plan(self.choice.setting)
     }
 
-    /// What it came to, once it is over.
+    /// The result; `None` while the search runs.
     pub fn finding(&self) -> Option<Finding> {
         let result = self.result.clone()?;
         let compared: Vec<ComparedThreshold> =
@@ -191,12 +190,10 @@ impl SettingsSearch {
         })
     }
 
-    /// Every close so far.
     pub fn tried(&self) -> &[Tried] {
         &self.tried
     }
 
-    /// Where it stands.
     pub fn progress(&self) -> SearchProgress {
         let of = self.needed();
         let (stage, closes_left) = match &self.phase {
@@ -214,7 +211,7 @@ impl SettingsSearch {
                 } else {
                     here
                 };
-                // The last of them are of the setting itself.
+                // The last of them must be of the setting itself.
                 let left = of
                     .saturating_sub(done)
                     .max(self.here_least() - here.min(self.here_least()));
@@ -232,7 +229,7 @@ impl SettingsSearch {
         }
     }
 
-    /// The next close; `None` once it is over.
+    /// The next close; `None` once the search is over.
     pub fn next(&self) -> Option<NextClose> {
         if self.result.is_some() {
             return None;
@@ -256,13 +253,13 @@ impl SettingsSearch {
         })
     }
 
-    /// Takes a close that ended well, and chooses the next.
+    /// Learns from a completed close, and chooses the next.
     pub fn learn(&mut self, trial: &Trial) {
         self.took = took(trial).or(self.took);
         self.learn_facts(trial.summary.number, &CloseFacts::of(trial));
     }
 
-    /// Takes what a close that ended well says, and chooses the next.
+    /// Learns from the facts of a completed close, and chooses the next.
     pub(crate) fn learn_facts(&mut self, number: usize, facts: &[CloseFacts]) {
         self.note(number, facts);
         if let Err(none) = self.take(facts) {
@@ -291,7 +288,7 @@ impl SettingsSearch {
     }
 
     fn take(&mut self, facts: &[CloseFacts]) -> Result<(), NoClaim> {
-        // In noise no contact can be told, so it goes first.
+        // Checked first, since no contact is detectable in noise.
         self.check_noise(facts)?;
         if let Some(stopped) = self.stopped_in_air(facts) {
             return self.stop_later(stopped);
@@ -332,7 +329,7 @@ impl SettingsSearch {
         }
     }
 
-    /// The same close once more; `why` if that was done often enough.
+    /// Repeats the same close; fails with `why` after too many repeats.
     const fn again(&mut self, why: NoClaim) -> Result<(), NoClaim> {
         self.repeats += 1;
         if self.repeats > REPEATS_MAX {
@@ -341,7 +338,7 @@ impl SettingsSearch {
         Ok(())
     }
 
-    /// The joint whose drive stopped before it met anything, by what its sensor reads at rest.
+    /// The joint whose drive stopped before it met anything, because of its reading at rest.
     fn stopped_in_air(&self, facts: &[CloseFacts]) -> Option<CloseFacts> {
         let limit = self.limit();
         let mut joints = self.joints.iter().zip(facts);
@@ -354,7 +351,7 @@ impl SettingsSearch {
         stopped.map(|(_, facts)| *facts)
     }
 
-    /// A threshold that a sensor does not read at rest.
+    /// Chooses a threshold above the reading at rest.
     fn stop_later(&mut self, stopped: CloseFacts) -> Result<(), NoClaim> {
         let (dof, offset_g) = (stopped.dof, stopped.offset_g);
         let limit = self.limit();
@@ -381,7 +378,7 @@ impl SettingsSearch {
         })
     }
 
-    /// What ends it at once; whether the object slipped.
+    /// Checks the facts: `Err` ends the search; otherwise true if the object slipped.
     fn look(&mut self, facts: &[CloseFacts]) -> Result<bool, NoClaim> {
         let mut slips = false;
         let is_first = self.phase == SearchPhase::First;
@@ -504,7 +501,7 @@ impl SettingsSearch {
         };
     }
 
-    /// The quicker of both approaches at this speed; in one stage where there is no room for two.
+    /// The quicker approach at this speed; one stage if there is no room for two.
     fn approach(&self, at: Contact) -> FoundApproach {
         let margins = self.joints.iter().map(JointModel::margin);
         let margin = margins.fold(0.0, f64::max).ceil();
@@ -520,7 +517,7 @@ impl SettingsSearch {
         }
     }
 
-    /// The way to the contact of the joint that has the least, units of ANGLE_ACT.
+    /// The shortest way to the contact among the joints, units of ANGLE_ACT.
     fn room(&self) -> f64 {
         let room = self.joints.iter().map(|joint| {
             let (start, _) = self.goal.way(joint.dof);
@@ -529,7 +526,7 @@ impl SettingsSearch {
         room.fold(f64::INFINITY, f64::min)
     }
 
-    /// About how long a close takes after the dead time, s.
+    /// Estimated time of a close after the dead time, s.
     fn takes(&self, approach: FoundApproach, at: Contact) -> f64 {
         let rate = self.joints.first().map_or(1.5, JointModel::rate).max(0.01);
         let pressed = self.joints.iter().filter_map(|joint| {
@@ -548,12 +545,12 @@ impl SettingsSearch {
         fast_s + (slow_way + pressed) / (rate * at.speed.max(1.0))
     }
 
-    /// The highest mean peak that is possible by all that is known, with what single closes scatter.
+    /// The highest mean peak that is still possible, plus the scatter of single closes.
     fn safe(&self, joint: &JointModel, at: Contact) -> Option<f64> {
         Some(joint.growth.upper(at)? + 2.0 * joint.growth.scatter(at))
     }
 
-    /// The bound that is likely to be confirmed.
+    /// The bound that will probably be confirmed.
     fn expected(&self, joint: &JointModel, at: Contact) -> Option<f64> {
         let bound = self.expected_at_last(joint, at)?;
         if !self.is_early(joint, at) {
@@ -563,7 +560,7 @@ impl SettingsSearch {
         Some(bound.max(stops_at + LATE * (joint.growth.likely(at)? - stops_at)))
     }
 
-    /// The same once enough was closed to know how late stops are.
+    /// The same once enough closes show how late stops are.
     fn expected_at_last(&self, joint: &JointModel, at: Contact) -> Option<f64> {
         let factor = if self.is_free() {
             LARGEST_SIGMAS
@@ -571,13 +568,13 @@ impl SettingsSearch {
             self.factor
         };
         let usual = joint.growth.likely(at)? + factor * joint.growth.scatter(at);
-        // What was over the limit once counts for all settings to come.
+        // A close over the limit counts for all later settings.
         let stops_at = joint.growth.stops_at(at.threshold_g);
         let reserve = if self.has_tail { LATER } else { 1.0 };
         Some(usual.max(stops_at + reserve * (largest_g(joint, at) - stops_at)))
     }
 
-    /// Whether the bound is the largest of all closes: it was asked for, so many were, or their peaks are not normal.
+    /// True if the bound is the largest of all closes: on request, with enough closes, or if their peaks are not normal.
     const fn is_free(&self) -> bool {
         self.goal.distribution_free || self.goal.closes >= FREE_95 || self.has_tail
     }
@@ -590,12 +587,12 @@ impl SettingsSearch {
         self.goal.closes
     }
 
-    /// Whether too little was closed to know how late stops are.
+    /// True while too few closes show how late stops are.
     fn is_early(&self, joint: &JointModel, at: Contact) -> bool {
         self.is_free() && joint.growth.carried(at).certain + HERE_LEAST < self.needed()
     }
 
-    /// Closes that tell of this one.
+    /// Number of closes relevant to this setting.
     fn told(&self, at: Contact) -> usize {
         let told = self.joints.iter().map(|own| own.growth.carried(at).certain);
         told.min().unwrap_or_default()
@@ -617,7 +614,7 @@ impl SettingsSearch {
         self.joints.iter().all(holds)
     }
 
-    /// Thresholds that may be tried, the lowest first.
+    /// Candidate thresholds, ascending.
     fn thresholds(&self) -> Vec<f64> {
         let limit = self.limit();
         let least = self.joints.iter().map(|joint| joint.threshold_least(limit));
@@ -643,7 +640,7 @@ impl SettingsSearch {
         }
     }
 
-    /// The fastest close so far.
+    /// The speed of the fastest close so far.
     fn fastest(&self) -> f64 {
         let fastest = self
             .joints
@@ -652,12 +649,12 @@ impl SettingsSearch {
         fastest.reduce(f64::min).unwrap_or(self.speed())
     }
 
-    /// How fast the next close may be.
+    /// The highest speed allowed for the next close.
     fn fastest_step(&self) -> f64 {
         (RISE_MOST * self.fastest()).min(Speed::MAX.get().into())
     }
 
-    /// The quickest close that holds and whose bound stays under the limit, at speeds up to `most`.
+    /// The quickest close up to speed `most` that holds, with its bound under the limit.
     fn quickest(
         &self,
         most: f64,
@@ -670,7 +667,7 @@ impl SettingsSearch {
             if low >= high || !self.is_under(at(low), &bound) {
                 continue;
             }
-            // The bounds rise with the speed but for small dips of the published shapes.
+            // The bounds increase with the speed, except for small dips in the published shapes.
             while high - low > 1.0_f64.max(SPEED_STEP * low) {
                 let middle = f64::midpoint(low, high).floor();
                 if self.is_under(at(middle), &bound) {
@@ -691,7 +688,7 @@ impl SettingsSearch {
         best.map(|(_, at)| at)
     }
 
-    /// The quickest that nothing known so far speaks against.
+    /// The quickest close that no result so far rules out.
     fn quickest_safe(&self) -> Option<Contact> {
         let both = |own: &Self, joint: &JointModel, at: Contact| {
             Some(own.safe(joint, at)?.max(own.expected(joint, at)?))
@@ -699,12 +696,12 @@ impl SettingsSearch {
         self.quickest(self.fastest_step(), both)
     }
 
-    /// The quickest that is likely to be confirmed, no faster than any close was.
+    /// The quickest close that will probably be confirmed, no faster than any close so far.
     fn quickest_likely(&self) -> Option<Contact> {
         self.quickest(self.fastest(), Self::expected)
     }
 
-    /// Goes on upwards, or confirms.
+    /// Increases the speed, or starts to confirm.
     fn rise(&mut self, rises: usize) -> Result<(), NoClaim> {
         let Some(next) = self.quickest_safe() else {
             return match self.harder() {
@@ -725,8 +722,8 @@ impl SettingsSearch {
         self.confirm(next)
     }
 
-    /// Where nothing is sure to hold and to stay under the limit: the highest threshold that stays under it, if it tells more than
-    /// those before.
+    /// The highest threshold that stays under the limit, if it is more informative than those before. For when no setting is certain
+    /// both to hold and to stay under the limit.
     fn harder(&self) -> Option<Contact> {
         let thresholds = self.thresholds().into_iter().rev();
         let mut speeds = thresholds.filter_map(|threshold_g| {
@@ -748,7 +745,7 @@ impl SettingsSearch {
         speeds.next().filter(|at| stops_at(*at) > HARDER * before)
     }
 
-    /// How much of the last close this would save with the best approach to it, as a share.
+    /// Saving by this setting with its best approach, as a share of the last close.
     fn gain(&self, at: Contact) -> f64 {
         let Some(close) = self.tried.last().and_then(|own| own.close_s) else {
             return 1.0;
@@ -769,7 +766,7 @@ impl SettingsSearch {
         Ok(())
     }
 
-    /// After a close over the limit, or a slip: something slower.
+    /// Chooses something slower, after a close over the limit or a slip.
     fn narrow(&mut self, facts: &[CloseFacts], slips: bool) -> Result<(), NoClaim> {
         let is_slowest = self.speed() <= f64::from(SLOWEST);
         if slips && (is_slowest || self.phase == SearchPhase::First) {
@@ -795,7 +792,7 @@ impl SettingsSearch {
         }
     }
 
-    /// Confirms the quickest that is likely and not barred.
+    /// Confirms the quickest setting that is likely to pass and not excluded.
     fn slower(&mut self) -> Result<(), NoClaim> {
         match self.quickest_likely() {
             Some(at) => self.confirm(at),
@@ -803,7 +800,7 @@ impl SettingsSearch {
         }
     }
 
-    /// Why nothing fits: by the joint that would be furthest over the limit with the least that holds.
+    /// The reason why nothing fits, from the joint furthest over the limit at the lowest threshold that holds.
     fn too_strong(&self) -> NoClaim {
         let slowest = |threshold_g| Contact {
             speed: SLOWEST.into(),
@@ -835,7 +832,7 @@ impl SettingsSearch {
         }
     }
 
-    /// Closes of a setting before it is looked at.
+    /// Closes of a setting before its first judgement.
     const fn here_least(&self) -> usize {
         if self.is_free() {
             HERE_LEAST
@@ -844,7 +841,7 @@ impl SettingsSearch {
         }
     }
 
-    /// Looks at a setting after each of its closes: a claim, something slower, something faster, or one more.
+    /// Judges a setting after each of its closes: claims it, or chooses something slower, something faster, or another close.
     fn confirmed(&mut self) -> Result<(), NoClaim> {
         let SearchPhase::Confirming(confirmation) = &self.phase else {
             return Ok(());
@@ -870,7 +867,7 @@ impl SettingsSearch {
                 None => self.slower(),
             };
         }
-        // By now the contact is known better too, so that even the same speed may be quicker with less before it.
+        // The contact is known better by now, so even the same speed may be quicker with a smaller margin.
         let better = self.better(now, bound);
         match better.filter(|at| self.gain(*at) > WORTH_TEN) {
             Some(at) => self.confirm(at),
@@ -882,7 +879,7 @@ impl SettingsSearch {
         }
     }
 
-    /// What peaks to come stay below, g: the highest bound of all joints.
+    /// Bound of future peaks, g: the highest of all joints.
     fn bound(&self, now: Contact) -> f64 {
         let bounds = self
             .joints
@@ -891,7 +888,7 @@ impl SettingsSearch {
         bounds.fold(0.0, f64::max)
     }
 
-    /// A setting that holds with more.
+    /// Chooses a setting with a stronger hold.
     fn hold_more(&mut self, (dof, holds_g): (Dof, f64)) -> Result<(), NoClaim> {
         let wanted = f64::from(self.goal.hold_g);
         self.hold_more_g = self.hold_more_g.max(wanted) + (wanted - holds_g) + 2.0;
@@ -905,7 +902,7 @@ impl SettingsSearch {
         }
     }
 
-    /// What else is worth confirming, by a setting whose bound is known.
+    /// Another setting worth confirming, given the bound of the current one.
     fn better(&self, now: Contact, bound: f64) -> Option<Contact> {
         let safe = |own: &Self, joint: &JointModel, at: Contact| {
             let is_known = at.speed <= now.speed && at.threshold_g <= now.threshold_g;
@@ -916,7 +913,7 @@ impl SettingsSearch {
             return None;
         };
         if !self.is_free() {
-            // What the bound is of what was expected here, it may be of what is expected elsewhere.
+            // The ratio of bound to expectation here may apply elsewhere too.
             let joints = self.joints.iter();
             let expected = joints.filter_map(|joint| self.expected(joint, now));
             let times = bound / expected.fold(1.0, f64::max) / AIM;
@@ -985,7 +982,7 @@ impl SettingsSearch {
     }
 }
 
-/// The speed of the first close: slow, and slower where even that may be over the limit on a rigid block.
+/// The speed of the first close: slow, and slower still if that may exceed the limit on a rigid block.
 fn gentle(goal: &SearchGoal, setting: TrialSetting) -> Speed {
     let threshold = f64::from(setting.force.get());
     let worst = |speed: Speed| speed.angle_per_s() * STOPS_LATE_S * RIGID_G_PER_COUNT * 2.0;
@@ -996,7 +993,7 @@ fn gentle(goal: &SearchGoal, setting: TrialSetting) -> Speed {
     Speed::nearest(slow)
 }
 
-/// How long a trial took.
+/// Duration of a trial.
 fn took(trial: &Trial) -> Option<Duration> {
     let rows = trial.recording.rows();
     let (first, last) = (rows.first()?, rows.last()?);

@@ -1,23 +1,23 @@
-//! How far above the mean a bound must be, so that it holds for a share of all closes: one-sided tolerance factors. Pure.
+//! One-sided tolerance factors: the distance of a bound from the mean, so that it holds for a share of all closes. Pure.
 
-/// A statement about closes to come.
+/// A statement about future closes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assurance {
     /// Share of all closes that stay within the bound, 0..1.
     pub coverage: f64,
-    /// How sure that is, 0..1.
+    /// Confidence in that share, 0..1.
     pub confidence: f64,
 }
 
 impl Assurance {
-    /// 95 of 100 closes, 95 % sure.
+    /// 95 of 100 closes, with 95 % confidence.
     pub const USUAL: Self = Self {
         coverage: 0.95,
         confidence: 0.95,
     };
 
-    /// What the largest of so many closes says about all of them, whatever their distribution: 59 closes are needed for the
-    /// usual, 22 for 90 of 100 with 90 %. `None` of fewer.
+    /// The statement that the largest of this many closes supports, for any distribution: 59 closes for [`Self::USUAL`], 22 for 90 of
+    /// 100 with 90 %. `None` for fewer.
     pub const fn distribution_free(closes: usize) -> Option<Self> {
         match closes {
             0..FREE_90 => None,
@@ -30,19 +30,19 @@ impl Assurance {
     }
 }
 
-/// Closes that say 90/90 and 95/95 without a distribution: the least n with `1 - coverage^n >= confidence`.
+/// Closes for 90/90 and 95/95 without a distribution: the smallest n with `1 - coverage^n >= confidence`.
 pub const FREE_90: usize = 22;
 pub const FREE_95: usize = 59;
 
-/// Steps of the integral, and of the search.
+/// Steps of the integration, and of the bisection.
 const STEPS: u32 = 400;
 const HALVINGS: u32 = 60;
 
-/// The factor k with which mean + k times the standard deviation of `closes` values is a bound, if they are normally
-/// distributed. `None` of fewer than 2.
+/// The factor k for which the mean plus k standard deviations of `closes` values is a bound, if they are normally distributed.
+/// `None` for fewer than 2.
 ///
-/// The mean of n values scatters as a normal, their standard deviation as the root of a chi-square: k is where the share of samples
-/// whose bound is high enough is the confidence (the non-central t distribution, integrated over the standard deviation).
+/// The mean of n values is normally distributed, their standard deviation as the root of a chi-square: k is chosen so that the share
+/// of samples with a sufficient bound is the confidence (the non-central t distribution, integrated over the standard deviation).
 pub fn tolerance_factor(closes: usize, assurance: Assurance) -> Option<f64> {
     let n = f64::from(u32::try_from(closes).ok().filter(|n| *n >= 2)?);
     let beyond = root(|z| normal_below(z) - assurance.coverage, (-8.0, 8.0));
@@ -50,7 +50,7 @@ pub fn tolerance_factor(closes: usize, assurance: Assurance) -> Option<f64> {
     Some(root(|k| share(k) - assurance.confidence, (0.0, 100.0)))
 }
 
-/// The mean of `within` over the standard deviations that samples of `n` have, in units of the true one.
+/// The mean of `within` over the standard deviations of samples of size `n`, in units of the true one.
 fn share_within(n: f64, within: impl Fn(f64) -> f64) -> f64 {
     let freedom = n - 1.0;
     let half_width = 9.0 / (2.0 * freedom).sqrt();
@@ -59,7 +59,7 @@ fn share_within(n: f64, within: impl Fn(f64) -> f64) -> f64 {
     let (mut whole, mut part) = (0.0, 0.0);
     for at in 0..=STEPS {
         let u = least + step * f64::from(at);
-        // The density without its constant, which falls out.
+        // The density without its constant, which cancels.
         let log = (freedom - 1.0) * u.ln() - freedom * (u * u - 1.0) / 2.0;
         let edge = if at == 0 || at == STEPS { 0.5 } else { 1.0 };
         let density = edge * log.exp();
@@ -69,7 +69,7 @@ fn share_within(n: f64, within: impl Fn(f64) -> f64) -> f64 {
     part / whole
 }
 
-/// Where a rising function is zero.
+/// The root of an increasing function, by bisection.
 fn root(rises: impl Fn(f64) -> f64, within: (f64, f64)) -> f64 {
     let (mut low, mut high) = within;
     for _ in 0..HALVINGS {

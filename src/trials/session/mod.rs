@@ -1,12 +1,12 @@
-//! A series of trials in a folder of its own, readable without this program.
+//! A session: a series of trials in its own folder, readable without this program.
 //!
 //! | file | what |
 //! |---|---|
-//! | `session.toml` | what was planned, the hand, and for each trial its setting and what was measured ([`TrialSessionFile`]) |
-//! | `trial-001.csv` … | what was read, [`crate::trials::recording::csv`]: `time_s` from the closing command, an empty cell where nothing was read |
-//! | `report.html` | all of it for the user, in one file without links ([`crate::trials::report`]) |
+//! | `session.toml` | the plan, the hand, and for each trial its setting and metrics ([`TrialSessionFile`]) |
+//! | `trial-001.csv` … | the readings ([`crate::trials::recording::csv`]): `time_s` from the closing command, empty cells for missing values |
+//! | `report.html` | all of it for the user, in one self-contained file ([`crate::trials::report`]) |
 //!
-//! A value that is not known has no key in TOML. Keys of a later version survive.
+//! An unknown value has no key in TOML. Keys of a later version are preserved.
 
 #[cfg(test)]
 pub(crate) mod session_tests;
@@ -21,47 +21,47 @@ use std::io;
 use std::path::Path;
 use std::time::Duration;
 
-/// What a session says it is.
+/// The `format` value of a session file.
 pub const FORMAT: &str = "handscope-trials";
-/// The version that is written, and the newest that is read.
+/// The version written, and the newest that can be read.
 pub const VERSION: i64 = 1;
-/// A thousand trials of six joints are a tenth of this; anything longer is not ours.
+/// A thousand trials of six joints are a tenth of this; a larger file is not a session.
 const FILE_LEN_MAX: u64 = 64 * 1024 * 1024;
-/// The name of the file that says what a session is.
+/// The main file of a session.
 pub const SESSION_FILE: &str = "session.toml";
 
-/// What is known of a session besides its trials.
+/// All facts of a session except its trials.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SessionHead {
-    /// The endpoint.
+    /// The hand, as an endpoint.
     pub hand: String,
-    /// Whether it is the built-in hand.
+    /// True for the built-in hand.
     pub simulated: bool,
-    /// Day of its beginning, `2026-11-21`, in universal time.
+    /// Date of its start in UTC, `2026-11-21`.
     pub day: String,
-    /// Its beginning, seconds since 1970.
+    /// Its start, seconds since 1970.
     pub begun_unix_s: u64,
-    /// In the words of the user.
+    /// The user's text.
     #[serde(default)]
     pub note: String,
-    /// Words to find it by.
+    /// Search terms.
     #[serde(default)]
     pub tags: Vec<String>,
-    /// Why it ended early.
+    /// Reason for an early end.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aborted: Option<EarlyEnd>,
     pub plan: TrialPlan,
-    /// What was found about the hand.
+    /// Findings about the hand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quirks: Option<QuirkSheet>,
-    /// Keys of a later version, kept as they are.
+    /// Keys of a later version, preserved.
     #[serde(flatten)]
     pub others: toml::Table,
 }
 
 impl SessionHead {
-    /// Of a session that begins now, `now` since 1970, on a hand that is still to be named. Note and tags of the plan are
-    /// the session's; what this version does not know of the plan was not done.
+    /// The head of a session that starts now, `now` since 1970; the hand is filled in later. Note and tags move from the plan to the
+    /// session; keys of the plan that this version does not know are dropped, since they had no effect.
     pub fn begin(mut plan: TrialPlan, now: Duration) -> Self {
         plan.others.clear();
         Self {
@@ -75,17 +75,17 @@ impl SessionHead {
     }
 }
 
-/// `session.toml`.
+/// The content of `session.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialSessionFile {
     /// [`FORMAT`].
     pub format: String,
     /// [`VERSION`].
     pub version: i64,
-    /// All but the trials.
+    /// All fields except the trials.
     #[serde(flatten)]
     pub head: SessionHead,
-    /// The trials in their order.
+    /// The trials in order.
     #[serde(default, rename = "trial", skip_serializing_if = "Vec::is_empty")]
     pub trials: Vec<TrialSummary>,
 }
@@ -93,7 +93,7 @@ pub struct TrialSessionFile {
 /// Reads a session's `session.toml`.
 ///
 /// # Errors
-/// What the system or the reader of the format says; another format, or a later version.
+/// An I/O or parse error; another format, or a later version.
 pub fn load(folder: &Path) -> Result<TrialSessionFile, FileError> {
     let path = folder.join(SESSION_FILE);
     let text = crate::store::read_text(&path, FILE_LEN_MAX)?;
