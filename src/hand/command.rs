@@ -1,16 +1,16 @@
-//! What a hand may be told at any time, and the only way to a register write. No framing, no sending.
+//! Commands that a hand accepts at any time, and the only way to a register write. No framing, no sending.
 
 use crate::hand::dof::{Dof, PerDof};
 use crate::hand::register::{self, Register, Span};
 use crate::hand::units::{Force, Gesture, Speed, Target};
 use arrayvec::ArrayVec;
 
-/// Bytes in the longest write: six shorts.
+/// Bytes in the longest write: six 16-bit values.
 pub const WRITE_LEN_MAX: usize = 12;
-/// Writes in the longest command: alternate joints, each a run of its own, or four IP parts.
+/// Writes in the longest command: alternate joints, each a run of its own, or four IP octets.
 pub const WRITES_MAX: usize = 6;
 
-/// How gestures are started, because the manual gives GESTURE_NO_SET no address (protocol choice 10).
+/// Register used to start gestures, as the manual gives GESTURE_NO_SET no address (protocol choice 10).
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
 )]
@@ -25,8 +25,8 @@ pub enum GestureRoute {
     Off,
 }
 
-/// What a hand may be told at any time: motion, limits, and to clear its errors. What it keeps, and what it does alone, are
-/// [`Setting`](crate::hand::Setting) and [`Trigger`](crate::hand::Trigger).
+/// A command that a hand accepts at any time: motion, limits, clearing errors. Persistent values are
+/// [`Setting`](crate::hand::Setting)s, functions at rest are [`Trigger`](crate::hand::Trigger)s.
 ///
 /// ```
 /// use handscope_core::hand::{Angle, Dof, HandCommand, PerDof, Target};
@@ -41,20 +41,20 @@ pub enum GestureRoute {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(test, derive(strum::VariantNames, strum::IntoStaticStr))]
 pub enum HandCommand {
-    /// Move the joints that are given now (manual 2.6.11). The others keep their target in the hand, where what another
-    /// controller writes can be seen.
+    /// Move the given joints now (manual 2.6.11). The other joints keep their target in the hand, where writes of another
+    /// controller can be seen.
     Angles(PerDof<Option<Target>>),
-    /// Force thresholds of the joints that are given (manual 2.6.12).
+    /// Set the force thresholds of the given joints (manual 2.6.12).
     Forces(PerDof<Option<Force>>),
-    /// Speeds of the joints that are given (manual 2.6.13).
+    /// Set the speeds of the given joints (manual 2.6.13).
     Speeds(PerDof<Option<Speed>>),
-    /// Take a stored pose (manual 2.6.7); no write at all if the route is off.
+    /// Move to a stored pose (manual 2.6.7); no write at all if the route is off.
     Gesture(Gesture, GestureRoute),
-    /// Clear what can be cleared (manual 2.6.3).
+    /// Clear all clearable errors (manual 2.6.3).
     ClearErrors,
 }
 
-/// One write to the hand's memory. Only commands, settings and triggers make one, so none can leave the manual's ranges.
+/// One write to the hand's memory. Only commands, settings and triggers create one, so all values are in the manual's ranges.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RegisterWrite {
     span: Span,
@@ -62,12 +62,12 @@ pub struct RegisterWrite {
 }
 
 impl RegisterWrite {
-    /// The bytes of the hand's memory that it writes.
+    /// Range of the hand's memory that it writes.
     pub const fn span(&self) -> Span {
         self.span
     }
 
-    /// First byte's address.
+    /// Address of the first byte.
     pub const fn address(&self) -> u16 {
         self.span.address
     }
@@ -77,7 +77,7 @@ impl RegisterWrite {
         &self.bytes
     }
 
-    /// True if the hand moves because of it.
+    /// True if the write can move the hand.
     pub fn is_motion(&self) -> bool {
         [
             register::ANGLE_SET,
@@ -89,7 +89,7 @@ impl RegisterWrite {
         .any(|row| row.span().covers(self.span))
     }
 
-    /// What it says of each joint, if it lies within this row of six shorts.
+    /// Value written to each joint, if the write lies within this row of six 16-bit values.
     pub fn shorts(&self, row: &Register) -> PerDof<Option<i16>> {
         let (pairs, _odd) = self.bytes.as_chunks::<2>();
         let first = usize::from(self.span.address.saturating_sub(row.address) / 2);
@@ -113,16 +113,16 @@ impl RegisterWrite {
     }
 }
 
-/// The writes of one command, in the order they must be sent.
+/// Writes of one command, in the order they must be sent.
 pub type Writes = ArrayVec<RegisterWrite, WRITES_MAX>;
 
 impl HandCommand {
-    /// True if the hand moves because of it.
+    /// True if the command can move the hand.
     pub fn is_motion(&self) -> bool {
         self.writes().iter().any(RegisterWrite::is_motion)
     }
 
-    /// The register writes, in order. Joints that are not given are not written.
+    /// Returns the register writes in order. Joints without a value are not written.
     pub fn writes(&self) -> Writes {
         let mut out = Writes::new();
         match self {
@@ -158,7 +158,7 @@ impl HandCommand {
     }
 }
 
-/// One write for each run of neighbouring joints that have a value.
+/// Adds one write for each run of neighbouring joints that have a value.
 pub(super) fn runs(row: &Register, values: PerDof<Option<i16>>, out: &mut Writes) {
     let mut run: Option<(Dof, ArrayVec<u8, WRITE_LEN_MAX>)> = None;
     let flush = |run: &mut Option<(Dof, ArrayVec<u8, WRITE_LEN_MAX>)>, out: &mut Writes| {

@@ -1,4 +1,4 @@
-//! The six degrees of freedom and five fingers, in register order. No values live here.
+//! The six degrees of freedom and five fingers, in register order. Contains no values.
 
 use serde::{Deserialize, Serialize};
 
@@ -51,7 +51,7 @@ impl Dof {
     /// Range of the joint in degrees `(at 0, at 1000)`.
     ///
     /// Manual: §2.6.11 prints only the little finger (20..176). The other figures come from
-    /// the sister manual of the same family, and the map between them is taken as linear.
+    /// the sister manual of the same family; the mapping is assumed to be linear.
     pub const fn degrees(self) -> (f32, f32) {
         match self {
             Self::Little | Self::Ring | Self::Middle | Self::Index => (20.0, 176.0),
@@ -60,7 +60,7 @@ impl Dof {
         }
     }
 
-    /// The fingertip sensor that this joint moves.
+    /// Finger that this joint moves.
     pub const fn finger(self) -> Finger {
         match self {
             Self::Little => Finger::Little,
@@ -133,46 +133,46 @@ macro_rules! per {
         pub struct $name<T>([T; $n]);
 
         impl<T> $name<T> {
-            /// From values in register order.
+            /// Creates it from values in register order.
             pub const fn new(values: [T; $n]) -> Self {
                 Self(values)
             }
 
-            /// One value for each key.
+            /// Calls `make` for each key.
             pub fn from_fn(mut make: impl FnMut($key) -> T) -> Self {
                 Self($key::ALL.map(|key| make(key)))
             }
 
-            /// The values in register order.
+            /// Returns the values in register order.
             pub const fn as_array(&self) -> &[T; $n] {
                 &self.0
             }
 
-            /// Keys and values in register order.
+            /// Iterates over keys and values in register order.
             pub fn iter(&self) -> impl Iterator<Item = ($key, &T)> {
                 $key::ALL.into_iter().zip(self.0.iter())
             }
 
-            /// Keys and mutable values in register order.
+            /// Iterates over keys and mutable values in register order.
             pub fn iter_mut(&mut self) -> impl Iterator<Item = ($key, &mut T)> {
                 $key::ALL.into_iter().zip(self.0.iter_mut())
             }
 
-            /// The same shape with each value turned into another.
+            /// Applies a function to each value.
             pub fn map<U>(self, make: impl FnMut(T) -> U) -> $name<U> {
                 $name(self.0.map(make))
             }
         }
 
         impl<T: Copy> $name<T> {
-            /// The same value everywhere.
+            /// Creates it with the same value for every key.
             pub const fn splat(value: T) -> Self {
                 Self([value; $n])
             }
         }
 
         impl<T> $name<Option<T>> {
-            /// All values, if none is missing.
+            /// Returns all values; `None` if any is missing.
             pub fn all(self) -> Option<$name<T>> {
                 let full: arrayvec::ArrayVec<T, $n> = self.0.into_iter().flatten().collect();
                 full.into_inner().ok().map($name)

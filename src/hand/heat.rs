@@ -1,4 +1,4 @@
-//! How warm a drive may get. The manual names no limit, only a fault that ends by itself (2.6.3); the figures are ours.
+//! Temperature limits of a drive. The manual names no limit, only a fault that ends by itself (2.6.3); these limits are ours.
 
 use crate::hand::dof::Dof;
 use crate::hand::feedback::sample::HandSample;
@@ -6,11 +6,11 @@ use crate::hand::moment::Moment;
 use std::fmt;
 use std::time::Duration;
 
-/// From here on the user is warned, °C.
+/// Temperature from which the user is warned, °C.
 pub const WARM: u8 = 60;
-/// From here on a hand that moves is held, °C.
+/// Temperature from which a moving hand is held, °C.
 pub const HOT: u8 = 70;
-/// A temperature older than this is unknown.
+/// Age beyond which a temperature is unknown.
 pub const MAX_AGE: Duration = Duration::from_secs(5);
 
 /// A drive that is warm, or whose temperature is implausible.
@@ -18,12 +18,12 @@ pub const MAX_AGE: Duration = Duration::from_secs(5);
 pub struct DriveHeat {
     /// Joint whose drive it is.
     pub dof: Dof,
-    /// As it was read, °C: at least [`WARM`], and implausible above 100.
+    /// Reading, °C: at least [`WARM`], and implausible above 100.
     pub celsius: u8,
 }
 
 impl DriveHeat {
-    /// The drive with the highest reading, if that is warm or implausible, by what was read last.
+    /// Returns the drive with the highest reading, if that reading is fresh and warm or implausible.
     pub fn warmest(sample: &HandSample, now: Moment) -> Option<Self> {
         let read = sample.temperature.filter(|read| read.age(now) <= MAX_AGE)?;
         let all = read.value.iter();
@@ -32,12 +32,12 @@ impl DriveHeat {
         (celsius >= WARM).then_some(Self { dof, celsius })
     }
 
-    /// Whether it is too hot to go on, as far as that is known.
+    /// True if the drive is too hot to continue, or its reading is implausible.
     pub const fn is_hot(self) -> bool {
         self.celsius >= HOT
     }
 
-    /// Whether such a temperature is outside the manual's range (2.6.14).
+    /// True if the temperature is outside the manual's range (2.6.14).
     pub const fn is_implausible(self) -> bool {
         self.celsius > 100
     }

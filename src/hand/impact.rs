@@ -1,19 +1,19 @@
-//! How far a drive runs past its force threshold: the measured table. No state.
+//! Measured overshoot of a drive past its force threshold. No state.
 //!
 //! Measured on one hand of the family, index finger on a rigid block. FORCE_SET stops a
-//! drive; it does not regulate force, so a fast finger hits far harder than it was told.
+//! drive; it does not regulate force, so a fast finger hits far harder than its threshold.
 
 use crate::hand::units::{Force, Speed};
 
-/// Stiffness of the block that the table was measured on, g for each position count.
+/// Stiffness of the block used for the table, g per position count.
 pub const RIGID_G_PER_COUNT: f64 = 40.0;
 
-/// The slowest speed that was measured: the cure for an overshoot that is too large.
+/// Lowest measured speed: the remedy for an overshoot that is too large.
 pub const SLOWEST: f64 = 25.0;
 
 /// Thresholds of the table's columns, g.
 const THRESHOLDS: [f64; 5] = [100.0, 250.0, 500.0, 750.0, HIGHEST_G];
-/// The highest threshold that was measured, g: above it the table is flat.
+/// Highest measured threshold, g: above it the table is flat.
 pub const HIGHEST_G: f64 = 1000.0;
 /// Median peak above the threshold in g; rows are speeds 25, 250 and 1000.
 const PEAKS: [[f64; 5]; 3] = [
@@ -21,9 +21,9 @@ const PEAKS: [[f64; 5]; 3] = [
     [36.0, 336.0, 637.0, 1108.0, 1640.0],
     [36.0, 3263.0, 2917.0, 2865.0, 2502.0],
 ];
-/// The same for a fast approach that went on at speed 25 before the contact.
+/// The same for a fast approach that was slowed to speed 25 before the contact.
 const TWO_STAGE: [f64; 5] = [2.0, 25.0, 39.0, 71.0, 92.0];
-/// Speeds and the row they fall on. 100 and 500 were measured at 500 g only, and place the speeds between rows.
+/// Speeds and their row. 100 and 500 were measured at 500 g only; they interpolate between the rows.
 const ROWS: [(f64, f64); 5] = [
     (SLOWEST, 0.0),
     (100.0, 0.24),
@@ -42,13 +42,13 @@ pub fn overshoot_g(speed: f64, threshold_g: f64) -> f64 {
         (2.0, at_row(fast)),
     ];
     let peak = interpolate(rows, interpolate(ROWS, speed));
-    // Below the slowest that was measured, the peak goes to zero with the speed.
+    // Below the lowest measured speed, the peak falls to zero with the speed.
     let slower = (speed / SLOWEST).clamp(0.0, 1.0);
     let lighter = (threshold_g / 100.0).clamp(0.0, 1.0);
     peak * slower * lighter
 }
 
-/// The same where the finger came fast and was slowed down to `speed` before the contact.
+/// The same for a fast approach that was slowed to `speed` before the contact.
 pub fn two_stage_overshoot_g(speed: f64, threshold_g: f64) -> f64 {
     if speed > SLOWEST {
         return overshoot_g(speed, threshold_g);
@@ -58,8 +58,8 @@ pub fn two_stage_overshoot_g(speed: f64, threshold_g: f64) -> f64 {
     peak * (speed / SLOWEST).clamp(0.0, 1.0) * lighter
 }
 
-/// Speeds, and grams past a threshold of 500 on another hand of the family (arXiv 2603.08988, middle finger). It went as far
-/// past smaller thresholds.
+/// Speeds and overshoot in grams at a threshold of 500 g on another hand of the family (arXiv 2603.08988, middle finger). At smaller
+/// thresholds the overshoot was as large.
 const SECOND_HAND: [(f64, f64); 4] = [(0.0, 0.0), (SLOWEST, 24.0), (50.0, 325.0), (1000.0, 1056.0)];
 
 /// Peak above the threshold in g on a second hand, for a contact at `speed`.
@@ -67,25 +67,25 @@ pub fn second_hand_overshoot_g(speed: f64) -> f64 {
     interpolate(SECOND_HAND, speed)
 }
 
-/// An overshoot that the user should know of before it happens: as much again as the gentle threshold.
+/// Overshoot of which the user should know beforehand: as much as the gentle threshold itself.
 pub const NOTABLE_G: f64 = 500.0;
 
-/// The smallest speed at which a contact on a rigid block goes [`NOTABLE_G`] past this threshold, if any does.
+/// Lowest speed at which a contact on a rigid block overshoots this threshold by [`NOTABLE_G`]; `None` if none does.
 pub fn rough_from_speed(threshold: Force) -> Option<Speed> {
     let threshold = f64::from(threshold.get());
     let rough = |speed: i16| overshoot_g(f64::from(speed), threshold) >= NOTABLE_G;
     first(Speed::MAX.get(), rough).and_then(|speed| Speed::new(speed).ok())
 }
 
-/// The smallest threshold that a contact on a rigid block at this speed goes [`NOTABLE_G`] past, if any is.
+/// Smallest threshold that a contact on a rigid block at this speed overshoots by [`NOTABLE_G`]; `None` if there is none.
 pub fn rough_from_threshold(speed: Speed) -> Option<Force> {
     let speed = f64::from(speed.get());
     let rough = |threshold: i16| overshoot_g(speed, f64::from(threshold)) >= NOTABLE_G;
-    // Above 250 g the peaks of the fast rows fall a little; they stay far above the notable.
+    // Above 250 g the peaks of the fast rows fall a little; they stay far above [`NOTABLE_G`].
     first(Force::MAX.get(), rough).and_then(|force| Force::new(force).ok())
 }
 
-/// The first number up to `most` that holds, for what holds from some number on.
+/// Smallest number up to `most` for which `holds` is true, if it is true from some number upwards.
 pub(crate) fn first(most: i16, holds: impl Fn(i16) -> bool) -> Option<i16> {
     let (mut low, mut high) = (0, most);
     if !holds(high) {
@@ -102,7 +102,7 @@ pub(crate) fn first(most: i16, holds: impl Fn(i16) -> bool) -> Option<i16> {
     Some(low)
 }
 
-/// Linear between points in rising order; flat outside them.
+/// Linear interpolation between points in ascending order; constant outside them.
 fn interpolate(points: impl IntoIterator<Item = (f64, f64)>, x: f64) -> f64 {
     let mut before: Option<(f64, f64)> = None;
     for (at, value) in points {

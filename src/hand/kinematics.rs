@@ -1,8 +1,8 @@
-//! Where the segments of the hand are for six driven angles: pure geometry, for pictures and for grips by size ([`crate::hand::gap`]).
+//! Positions of the hand's segments for six driven angles: pure geometry, for rendering and for grips by size ([`crate::hand::gap`]).
 //!
 //! The numbers are those of a public model of the FTP right hand (unitreerobotics/unitree_ros,
-//! `robots/g1_description/inspire_hand/FTP_right_hand.urdf`, BSD-3-Clause, Unitree Robotics): facts only, no shapes.
-//! Millimetres and radians; x towards the little finger, y out of the palm, z towards the fingertips, from the middle of
+//! `robots/g1_description/inspire_hand/FTP_right_hand.urdf`, BSD-3-Clause, Unitree Robotics): numbers only, no meshes.
+//! Millimetres and radians; x towards the little finger, y out of the palm, z towards the fingertips, origin at the centre of
 //! the wrist flange. The left hand is the mirror image in x.
 
 use crate::hand::dof::{Dof, Finger, PerDof};
@@ -14,7 +14,7 @@ use std::f32::consts::FRAC_PI_2;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Side {
-    /// The thumb is at the left of who looks at the back of the hand.
+    /// The thumb is on the left when looking at the back of the hand.
     #[default]
     Right,
     /// Its mirror image.
@@ -22,10 +22,10 @@ pub enum Side {
 }
 
 impl Side {
-    /// Motors of both hands, where they are numbered together as Unitree's messages do.
+    /// Number of motors of both hands, where they are numbered consecutively as in Unitree's messages.
     pub const MOTORS: usize = 2 * Dof::ALL.len();
 
-    /// The first of the motors of this hand: the right hand's come first.
+    /// Index of this hand's first motor: the right hand's come first.
     pub const fn first_motor(self) -> usize {
         match self {
             Self::Right => 0,
@@ -33,7 +33,7 @@ impl Side {
         }
     }
 
-    /// The other one.
+    /// Returns the other side.
     #[must_use]
     pub const fn other(self) -> Self {
         match self {
@@ -42,14 +42,14 @@ impl Side {
         }
     }
 
-    /// The palm's own frame. A left hand's frames are mirrored, so that one shape fits both hands.
+    /// Frame of the palm. A left hand's frames are mirrored, so that one mesh fits both hands.
     pub fn frame(self) -> Affine3 {
         let x = if self == Self::Left { -1.0 } else { 1.0 };
         Affine3::from_scale(Vec3::new(x, 1.0, 1.0))
     }
 }
 
-/// A rigid part of the hand, numbered from the palm or the knuckle on. Each but the palm follows one of the twelve joints.
+/// A rigid part of the hand, numbered from the palm or the knuckle outwards. Each except the palm follows one of the twelve joints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[expect(missing_docs, reason = "the names are the model's")]
 pub enum Segment {
@@ -71,14 +71,14 @@ pub enum Segment {
 use Segment::{Index1, Little1, Middle1, Palm, Ring1, Thumb1, Thumb2, Thumb3};
 
 impl Segment {
-    /// All, each after the one it hangs on.
+    /// All segments, each after its parent.
     #[rustfmt::skip]
     pub const ALL: [Self; 13] = [
         Palm, Little1, Self::Little2, Ring1, Self::Ring2, Middle1, Self::Middle2, Index1, Self::Index2,
         Thumb1, Thumb2, Thumb3, Self::Thumb4,
     ];
 
-    /// The drive that moves this segment against the one it hangs on.
+    /// Drive that moves this segment relative to its parent; `None` for the palm.
     pub const fn dof(self) -> Option<Dof> {
         Some(match self {
             Palm => return None,
@@ -91,12 +91,12 @@ impl Segment {
         })
     }
 
-    /// The finger it belongs to.
+    /// Finger to which it belongs; `None` for the palm.
     pub fn finger(self) -> Option<Finger> {
         self.dof().map(Dof::finger)
     }
 
-    /// The segment that carries the tip of a finger.
+    /// Returns the segment that carries the tip of a finger.
     pub const fn tip(finger: Finger) -> Self {
         match finger {
             Finger::Little => Self::Little2,
@@ -108,10 +108,10 @@ impl Segment {
     }
 }
 
-/// How far each drive turns its joint from open (1000) to bent (0), in radians.
+/// Travel of each drive's own joint from open (1000) to bent (0), radians.
 pub const RANGE: PerDof<f32> = PerDof::new([1.4381, 1.4381, 1.4381, 1.4381, 0.5864, 1.1641]);
 
-/// Where a segment hangs and how it stands there (roll, pitch, yaw), and how it follows its drive, about z.
+/// A segment's joint: parent, position (mm), orientation (roll, pitch, yaw), and rotation about z relative to its drive.
 struct SegmentJoint {
     parent: Segment,
     at: [f32; 3],
@@ -128,7 +128,7 @@ const fn joint(parent: Segment, at: [f32; 3], turned: [f32; 3], ratio: f32) -> S
     }
 }
 
-/// The joints of all segments but the palm, in the order of [`Segment::ALL`].
+/// Joints of all segments except the palm, in the order of [`Segment::ALL`].
 #[rustfmt::skip]
 const JOINTS: [SegmentJoint; 12] = [
     joint(Palm, [25.916, 0.565, 153.65], [1.4661, 0.0, -FRAC_PI_2], 1.0),
@@ -145,20 +145,20 @@ const JOINTS: [SegmentJoint; 12] = [
     joint(Thumb3, [21.903, 12.816, -0.30], [0.0; 3], 0.8024 * 0.9487),
 ];
 
-/// How a segment hangs on the one before it, of the right hand.
+/// Joint between a segment of the right hand and its parent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointPlace {
-    /// What it hangs on.
+    /// Parent segment.
     pub parent: Segment,
-    /// Where, in the frame of that, mm.
+    /// Position in the parent's frame, mm.
     pub at_mm: [f32; 3],
-    /// How it stands there when the hand is open: roll, pitch and yaw, radians.
+    /// Orientation in the parent's frame while the hand is open: roll, pitch and yaw, radians.
     pub turned: [f32; 3],
-    /// How far it turns about its z axis for each radian of its drive; the drive's own joint has 1 or -1.
+    /// Rotation about its z axis per radian of its drive; 1 or -1 for the drive's own joint.
     pub ratio: f32,
 }
 
-/// How a segment hangs on the one before it; nothing of the palm.
+/// Returns the joint of a segment; `None` for the palm.
 pub fn joint_place(segment: Segment) -> Option<JointPlace> {
     let at = (segment as usize).checked_sub(1)?;
     let own = JOINTS.get(at)?;
@@ -170,14 +170,14 @@ pub fn joint_place(segment: Segment) -> Option<JointPlace> {
     })
 }
 
-/// The joints' names in the order of [`Segment::ALL`], after the hand's side: `right_little_1_joint`.
+/// Joint names in the order of [`Segment::ALL`], without side and suffix; in full: `right_little_1_joint`.
 #[rustfmt::skip]
 const JOINT_NAMES: [&str; 12] = [
     "little_1", "little_2", "ring_1", "ring_2", "middle_1", "middle_2", "index_1", "index_2",
     "thumb_1", "thumb_2", "thumb_3", "thumb_4",
 ];
 
-/// The names of the twelve joints as the maker's model has them.
+/// Names of the twelve joints as in the manufacturer's model.
 pub fn joint_names(side: Side) -> Vec<String> {
     let side = match side {
         Side::Right => "right",
@@ -187,7 +187,7 @@ pub fn joint_names(side: Side) -> Vec<String> {
     JOINT_NAMES.iter().map(name).collect()
 }
 
-/// How far each of the twelve joints is turned, in radians, at these angles of the drives, 0..=1000; NaN where one is not known.
+/// Rotations of the twelve joints in radians at these drive angles, 0..=1000; NaN for an unknown angle.
 pub fn joint_radians(angles: &PerDof<Option<i16>>) -> Vec<f64> {
     let turned = |(segment, joint): (Segment, &SegmentJoint)| {
         let dof = segment.dof()?;
@@ -200,10 +200,10 @@ pub fn joint_radians(angles: &PerDof<Option<i16>>) -> Vec<f64> {
         .collect()
 }
 
-/// The second joint of the four fingers.
+/// Position of the second joint of the four fingers, mm.
 const SECOND: [f32; 3] = [-3.426, 32.596, -0.55];
 
-/// The middle of a fingertip's pad, in the frame of [`Segment::tip`]. This hand (capacitive) has no other pads.
+/// Centre of a fingertip's pad in the frame of [`Segment::tip`], mm. This hand (capacitive) has no other pads.
 pub const fn tip_pad(finger: Finger) -> Vec3 {
     match finger {
         Finger::Little => Vec3::new(-6.40, 42.71, -6.12),
@@ -213,12 +213,12 @@ pub const fn tip_pad(finger: Finger) -> Vec3 {
     }
 }
 
-/// Where all segments are: frames as the palm sees them, y along a straight finger, with the joint at the origin.
+/// Frames of all segments in the palm's frame: y along a straight finger, with the joint at the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SegmentFrames([Affine3; 13]);
 
 impl SegmentFrames {
-    /// From the angles of the six drives in radians, 0 = open. Beyond [`RANGE`] the drives do not go.
+    /// Computes the frames from the angles of the six drives in radians, 0 = open. Angles are clamped to [`RANGE`].
     pub fn of_radians(side: Side, angles: &PerDof<f32>) -> Self {
         let mut pose = Self([side.frame(); 13]);
         for (segment, joint) in Segment::ALL.into_iter().skip(1).zip(&JOINTS) {
@@ -237,18 +237,18 @@ impl SegmentFrames {
         pose
     }
 
-    /// From shares of the way from bent (0) to open (1): ANGLE_ACT / 1000 (manual 2.6.11).
+    /// Computes the frames from shares of the travel from bent (0) to open (1): ANGLE_ACT / 1000 (manual 2.6.11).
     pub fn of_shares(side: Side, shares: &PerDof<f32>) -> Self {
         let angles = PerDof::from_fn(|dof| (1.0 - shares[dof]) * RANGE[dof]);
         Self::of_radians(side, &angles)
     }
 
-    /// Where a segment is.
+    /// Frame of a segment.
     pub fn frame(&self, segment: Segment) -> Affine3 {
         self.0.get(segment as usize).copied().unwrap_or_default()
     }
 
-    /// The middle of a fingertip's pad.
+    /// Centre of a fingertip's pad in the palm's frame, mm.
     pub fn tip(&self, finger: Finger) -> Vec3 {
         self.frame(Segment::tip(finger))
             .transform_point3(tip_pad(finger))

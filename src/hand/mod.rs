@@ -1,7 +1,7 @@
-//! What the device is: registers, values, samples, commands. No bytes on a wire, no clock, no egui.
+//! The device model: registers, values, samples, commands. No bytes on a wire, no clock, no egui.
 //!
-//! Everything that reaches a hand is a [`HandCommand`], a [`Setting`] or a [`Trigger`]; everything that comes back
-//! passes [`HandSample`]. Both are built from the one table in [`register`].
+//! Everything sent to a hand is a [`HandCommand`], a [`Setting`] or a [`Trigger`]; everything received
+//! goes into a [`HandSample`]. Both are built from the one table in [`register`].
 #![warn(missing_docs)]
 
 pub mod column;

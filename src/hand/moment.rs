@@ -1,9 +1,9 @@
-//! Points in time as plain numbers, so that everything above can be given one. Reads no clock.
+//! Points in time as plain numbers, so that time is always passed in as an argument. Reads no clock.
 
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Microseconds since the program's own start, from a clock that never goes back.
+/// Microseconds since program start, from a monotonic clock.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
 )]
@@ -11,15 +11,15 @@ use std::time::Duration;
 pub struct Moment(u64);
 
 impl Moment {
-    /// The start of the program's clock.
+    /// Origin of the program's clock.
     pub const ZERO: Self = Self(0);
 
-    /// From microseconds since the start.
+    /// Creates a moment from microseconds since the start.
     pub const fn from_micros(micros: u64) -> Self {
         Self(micros)
     }
 
-    /// From a duration since the start, cut to microseconds.
+    /// Creates a moment from a duration since the start, truncated to microseconds.
     pub fn from_duration(since_start: Duration) -> Self {
         Self(u64::try_from(since_start.as_micros()).unwrap_or(u64::MAX))
     }
@@ -39,21 +39,21 @@ impl Moment {
         Duration::from_micros(self.0.saturating_sub(earlier.0))
     }
 
-    /// This moment moved on by `step`.
+    /// Returns this moment moved forward by `step`.
     #[must_use]
     pub fn plus(self, step: Duration) -> Self {
         Self(self.0.saturating_add(Self::from_duration(step).0))
     }
 }
 
-/// A value with the moments its request left and its reply arrived.
+/// A value with the times of its request and its reply.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timed<T> {
-    /// The value as it was decoded.
+    /// Decoded value.
     pub value: T,
-    /// When the request left: the value cannot be older than this.
+    /// Time at which the request was sent: the value cannot be older than this.
     pub asked: Moment,
-    /// When the whole reply was there.
+    /// Time at which the whole reply had arrived.
     pub received: Moment,
 }
 

@@ -1,19 +1,19 @@
-//! How far one hand runs past its force thresholds, as its own closes showed: it replaces what was measured on another hand of
-//! the family. Counts closes by what was set and by how stiff the object was; guesses nothing beyond what was tried.
+//! Overshoot past the force thresholds as measured in one hand's own closes: it replaces the table measured on another hand of
+//! the family. Counts closes by setting and by the object's stiffness; does not extrapolate.
 
 use crate::hand::impact::{self, NOTABLE_G};
 use crate::hand::{Dof, Force, Speed};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// Kinds of closes that are kept; the oldest make room.
+/// Number of stored kinds of closes; beyond it the oldest is dropped.
 pub const KINDS_MAX: usize = 2000;
-/// What a close goes past its threshold, g; beyond this no sensor reads.
+/// Possible overshoot of a close, g; no sensor reads beyond this.
 const OVERS_G: RangeInclusive<f64> = -100.0..=10_000.0;
-/// What was measured up to a speed tells of speeds this much faster.
+/// A measurement also applies to speeds up to this factor higher.
 const SPEED_FACTOR: f64 = 1.1;
 
-/// How stiff an object was under a finger that pressed it, in g for each unit of ANGLE_ACT.
+/// Stiffness of an object under the pressing finger, in g per unit of ANGLE_ACT.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stiffness {
@@ -23,15 +23,15 @@ pub enum Stiffness {
     Firm,
     /// 20 or more: wood, metal. The published rigid block gave 25.
     Rigid,
-    /// Nothing held that could tell.
+    /// Not determined by any grip.
     Unknown,
 }
 
 impl Stiffness {
-    /// All of them, the softest first.
+    /// All classes, softest first; `Unknown` last.
     pub const ALL: [Self; 4] = [Self::Soft, Self::Firm, Self::Rigid, Self::Unknown];
 
-    /// What so many g for each unit of ANGLE_ACT are.
+    /// Returns the class of a stiffness in g per unit of ANGLE_ACT.
     pub fn of(g_per_angle: Option<f64>) -> Self {
         match g_per_angle {
             Some(g) if g >= 20.0 => Self::Rigid,
@@ -41,7 +41,7 @@ impl Stiffness {
         }
     }
 
-    /// Its name in files.
+    /// Name in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Soft => "soft",
@@ -52,53 +52,53 @@ impl Stiffness {
     }
 }
 
-/// How a close came near.
+/// Stages of an approach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stages {
-    /// At its speed all the way.
+    /// At one speed all the way.
     One,
-    /// Fast, then at its speed before the contact.
+    /// Fast, then at the contact speed before the contact.
     Two,
 }
 
-/// What closes have in common that are counted together.
+/// Properties by which closes are counted together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct CloseKind {
-    /// The joint that closed.
+    /// Joint that closed.
     #[serde(rename = "joint")]
     pub dof: Dof,
-    /// How it came near.
+    /// Stages of its approach.
     pub stages: Stages,
     /// SPEED_SET at the contact.
     pub speed: Speed,
     /// FORCE_SET, g.
     #[serde(rename = "force_threshold_g")]
     pub threshold: Force,
-    /// What it closed on.
+    /// Stiffness of the object.
     pub stiffness: Stiffness,
 }
 
-/// What closes of one kind came to.
+/// Results of the closes of one kind.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeasuredCloses {
     #[serde(flatten)]
-    /// What they have in common.
+    /// Their common properties.
     pub kind: CloseKind,
-    /// How many.
+    /// Number of closes.
     pub closes: u32,
-    /// The highest peak above the threshold, g.
+    /// Highest peak above the threshold, g.
     pub most_over_g: f64,
-    /// The mean of the peaks above the threshold, g.
+    /// Mean of the peaks above the threshold, g.
     pub mean_over_g: f64,
-    /// The day of the first, such as `2026-11-26`.
+    /// Date of the first close, such as `2026-11-26`.
     pub first: String,
-    /// The day of the last.
+    /// Date of the last close.
     pub last: String,
 }
 
 impl MeasuredCloses {
-    /// Whether a hand can have measured it: a threshold that stops a finger is about reached.
+    /// True if the numbers are possible: the peak is near or above the threshold, and the dates are dates.
     fn is_sound(&self) -> bool {
         let can_be = |over: f64| OVERS_G.contains(&over);
         let is_day =
@@ -111,42 +111,42 @@ impl MeasuredCloses {
     }
 }
 
-/// On which hand a figure was measured.
+/// Hand on which a figure was measured.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MeasuredOn {
-    /// On this one, in so many closes, the last of them on this day.
+    /// This hand.
     ThisHand {
-        /// Closes of the speeds and thresholds that it rests on.
+        /// Number of closes at the speeds and thresholds behind the figure.
         closes: u32,
-        /// Such as `2026-11-26`.
+        /// Date of the last of them, such as `2026-11-26`.
         last: String,
     },
-    /// On another of the family: this one was not tried there.
+    /// Another hand of the family: this one has no measurement there.
     AnotherHand,
 }
 
-/// What is to be expected above a threshold at a contact with something rigid.
+/// Expected overshoot at a contact with a rigid object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expected {
-    /// g above the threshold at the peak: of this hand the highest that was seen, of another the median.
+    /// Peak above the threshold, g: the highest measured on this hand, or the median measured on another.
     pub over_g: f64,
-    /// What it rests on.
+    /// Source of the figure.
     pub on: MeasuredOn,
 }
 
-/// What one hand's closes measured.
+/// Overshoot measured in one hand's closes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct OvershootMap(Vec<MeasuredCloses>);
 
 impl OvershootMap {
-    /// Of what was kept. Kinds that stand twice are counted together.
+    /// Builds the map from stored results. Duplicate kinds are merged.
     pub fn of(kept: impl IntoIterator<Item = MeasuredCloses>) -> Self {
         let mut map = Self::default();
         kept.into_iter().for_each(|own| map.merge(own));
         map
     }
 
-    /// What was measured, by kind.
+    /// Results, by kind.
     pub fn kinds(&self) -> &[MeasuredCloses] {
         &self.0
     }
@@ -156,12 +156,12 @@ impl OvershootMap {
         self.0.is_empty()
     }
 
-    /// All closes that it rests on.
+    /// Total number of closes.
     pub fn closes(&self) -> u32 {
         count(self.0.iter())
     }
 
-    /// Takes one close that went so far past its threshold, g, on a day.
+    /// Adds one close that overshot its threshold by `over_g` on a date.
     pub fn add(&mut self, kind: CloseKind, over_g: f64, day: &str) {
         self.merge(MeasuredCloses {
             kind,
@@ -200,8 +200,8 @@ impl OvershootMap {
         }
     }
 
-    /// What to expect of a joint that meets something rigid at a speed, units of SPEED_SET, with a threshold in g. Softer objects
-    /// that this hand closed on make it more, never less.
+    /// Expected overshoot of a joint that hits a rigid object at a speed, units of SPEED_SET, with a threshold in g. This hand's closes
+    /// on softer objects can raise the figure, never lower it.
     pub fn expected(&self, dof: Dof, stages: Stages, speed: f64, threshold_g: f64) -> Expected {
         let published = match stages {
             Stages::One => impact::overshoot_g(speed, threshold_g),
@@ -229,7 +229,7 @@ impl OvershootMap {
         }
     }
 
-    /// The smallest speed at which a contact on something rigid goes [`NOTABLE_G`] past this threshold, if any does.
+    /// Lowest speed at which a contact with a rigid object overshoots this threshold by [`NOTABLE_G`]; `None` if none does.
     pub fn rough_from_speed(&self, dof: Dof, threshold: Force) -> Option<Speed> {
         let threshold_g = f64::from(threshold.get());
         if self.near(dof, Stages::One, threshold_g).next().is_none() {
@@ -242,12 +242,12 @@ impl OvershootMap {
         impact::first(Speed::MAX.get(), is_rough).and_then(|speed| Speed::new(speed).ok())
     }
 
-    /// The smallest threshold that a contact on something rigid at this speed goes [`NOTABLE_G`] past, if any is.
+    /// Smallest threshold that a contact with a rigid object at this speed overshoots by [`NOTABLE_G`]; `None` if there is none.
     pub fn rough_from_threshold(&self, dof: Dof, speed: Speed) -> Option<Force> {
         let published = impact::rough_from_threshold(speed);
         let own = self.0.iter().map(|own| own.kind);
         let own = own.filter(|kind| kind.dof == dof && kind.stages == Stages::One);
-        // What is expected changes where another threshold's closes begin or cease to tell.
+        // The expected value changes where the range of another threshold's closes begins or ends.
         let edges = own.flat_map(|kind| {
             let at = i64::from(kind.threshold.get());
             [(at * 2 + 2) / 3, at * 3 / 2 + 1].map(Force::nearest)
@@ -262,7 +262,7 @@ impl OvershootMap {
             .min()
     }
 
-    /// What was measured of a joint at thresholds that tell of this one: two thirds of it to half as much again.
+    /// Results of a joint at thresholds near this one: it is between two thirds of theirs and one and a half times theirs.
     fn near(
         &self,
         dof: Dof,
@@ -284,21 +284,21 @@ fn count<'a>(closes: impl Iterator<Item = &'a MeasuredCloses>) -> u32 {
     closes.fold(0, |all, own| all.saturating_add(own.closes))
 }
 
-/// How peaks of a joint grew with the speed: linear between the speeds that were tried, from nothing at rest, and never less at a
-/// higher speed.
+/// Peaks of a joint as a function of speed: linear between the measured speeds, zero at rest, and never falling with
+/// speed.
 struct Grown {
     over_g: f64,
-    /// Whether speeds as high were tried.
+    /// True if comparable speeds were measured.
     is_within: bool,
     closes: u32,
     last: String,
 }
 
 impl Grown {
-    /// At a speed; above the highest that was tried it is what it was there. `None` of no closes.
+    /// Value at a speed; constant above the highest measured speed. `None` without closes.
     fn at<'a>(closes: impl Iterator<Item = &'a MeasuredCloses>, speed: f64) -> Option<Self> {
         let mut closes: Vec<&MeasuredCloses> = closes.collect();
-        // Of one speed the highest first.
+        // Within one speed, the highest peak first.
         closes.sort_by(|a, b| {
             let by_speed = a.kind.speed.cmp(&b.kind.speed);
             by_speed.then(b.most_over_g.total_cmp(&a.most_over_g))

@@ -1,4 +1,4 @@
-//! The one table of measured quantities: names, units, digits and scales, as history, plots, tables and text show them.
+//! The table of measured quantities: names, units, digits and scales for history, plots, tables and text.
 
 use crate::hand::dof::PerDof;
 use crate::hand::feedback::group::Group;
@@ -8,7 +8,7 @@ use crate::hand::feedback::reading::{
 use crate::hand::feedback::sample::HandSample;
 use crate::hand::moment::Timed;
 
-/// What is measured of one joint.
+/// A quantity measured at each joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Quantity {
     /// ANGLE_ACT, 0..=1000.
@@ -19,11 +19,11 @@ pub enum Quantity {
     Current,
     /// TEMP, °C.
     Temperature,
-    /// ANGLE_SET as the hand holds it, 0..=1000; a joint that is left alone has none.
+    /// ANGLE_SET as stored in the hand, 0..=1000; none for a joint that is left alone.
     TargetAngle,
 }
 
-/// What is measured at one fingertip.
+/// A quantity measured at each fingertip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Touch {
     /// Normal force, N.
@@ -35,15 +35,15 @@ pub enum Touch {
 /// One row of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuantityRow {
-    /// The stable name in tables.
+    /// Stable name in tables.
     pub name: &'static str,
-    /// The stable name of the six values in the JSON of a sample; empty where a sample does not tell them so.
+    /// Stable name of the six values in the JSON of a sample; empty where a sample does not contain them in this form.
     pub json_name: &'static str,
-    /// The unit in ASCII, as tables and text have it; empty if there is none.
+    /// Unit in ASCII, for tables and text; empty if there is none.
     pub unit: &'static str,
     /// Digits after the decimal point when shown.
     pub decimals: usize,
-    /// The scale of a plot never shows less than this.
+    /// Smallest range of a plot's scale.
     pub least_scale: (f64, f64),
 }
 
@@ -93,7 +93,7 @@ const TANGENTIAL: QuantityRow = QuantityRow {
 };
 
 impl Quantity {
-    /// All, in the order of the variants.
+    /// All quantities, in the order of the variants.
     pub const ALL: [Self; 5] = [
         Self::Angle,
         Self::Force,
@@ -102,10 +102,10 @@ impl Quantity {
         Self::TargetAngle,
     ];
 
-    /// Those that the hand measures.
+    /// Quantities that the hand measures.
     pub const MEASURED: [Self; 4] = [Self::Angle, Self::Force, Self::Current, Self::Temperature];
 
-    /// Its row of the table.
+    /// Row of this quantity in the table.
     pub const fn row(self) -> &'static QuantityRow {
         match self {
             Self::Angle => &ANGLE,
@@ -116,7 +116,7 @@ impl Quantity {
         }
     }
 
-    /// The group of a sample that holds it.
+    /// Group of a sample that holds it.
     pub const fn group(self) -> Group {
         match self {
             Self::Angle => Group::Angle,
@@ -127,7 +127,7 @@ impl Quantity {
         }
     }
 
-    /// The numbers of a sample as the hand sent them; none of targets, which are no measurement.
+    /// Numbers of a sample as the hand sent them; `None` for targets, which are not measured.
     pub fn raw(self, sample: &HandSample) -> Option<Timed<PerDof<i16>>> {
         match self {
             Self::Angle => six(sample.angle, AngleReading::raw),
@@ -138,7 +138,7 @@ impl Quantity {
         }
     }
 
-    /// The numbers of a sample that the manual knows; only these may feed logic.
+    /// Numbers of a sample within the manual's range; only these may feed logic.
     pub fn documented(self, sample: &HandSample) -> Option<Timed<PerDof<Option<i16>>>> {
         match self {
             Self::Angle => six(sample.angle, AngleReading::documented),
@@ -166,10 +166,10 @@ fn six<T, U>(
 }
 
 impl Touch {
-    /// All, in the order of the variants.
+    /// All quantities, in the order of the variants.
     pub const ALL: [Self; 2] = [Self::Normal, Self::Tangential];
 
-    /// Its row of the table.
+    /// Row of this quantity in the table.
     pub const fn row(self) -> &'static QuantityRow {
         match self {
             Self::Normal => &NORMAL,

@@ -1,35 +1,35 @@
-//! Why a hand does not do what it is asked: its own exception (manual 2.4, 2.5), or the rule against unsafe writes.
+//! Reasons for a refused request: the hand's own exception (manual 2.4, 2.5), or the rule against unsafe writes.
 
-/// Why a Modbus server does not do what it was asked, as the standard numbers it. Unknown codes are kept.
+/// Modbus exception with the standard's code. Unknown codes are preserved.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error, serde::Serialize, serde::Deserialize,
 )]
 pub enum ModbusException {
-    /// 1: it does not know this function.
+    /// 1: the function is not supported.
     #[error("Illegal function")]
     IllegalFunction,
-    /// 2: nothing of the kind may be done at this address.
+    /// 2: the address does not allow this operation.
     #[error("Illegal data address")]
     IllegalAddress,
-    /// 3: a value or a count out of its range.
+    /// 3: a value or a count is out of range.
     #[error("Illegal data value")]
     IllegalValue,
-    /// 4: it tried, and failed.
+    /// 4: the operation failed.
     #[error("Server device failure")]
     Failure,
-    /// 5: accepted, and not done yet.
+    /// 5: accepted, but not done yet.
     #[error("Acknowledge")]
     Acknowledge,
-    /// 6: it is at the disposal of somebody else, or has too much to do.
+    /// 6: reserved by another client, or overloaded.
     #[error("Server device busy")]
     Busy,
-    /// 8: its memory does not pass a parity check.
+    /// 8: the memory failed a parity check.
     #[error("Memory parity error")]
     MemoryParity,
-    /// 10: a gateway that has no way to the device now.
+    /// 10: the gateway has no path to the device at present.
     #[error("Gateway path unavailable")]
     NoPath,
-    /// 11: a gateway whose device does not answer.
+    /// 11: the device behind the gateway does not answer.
     #[error("Gateway target device failed to respond")]
     NoAnswer,
     /// A code that the standard does not define; see [`Self::of`].
@@ -38,7 +38,7 @@ pub enum ModbusException {
 }
 
 impl ModbusException {
-    /// The exception with this code.
+    /// Returns the exception with this code.
     pub const fn of(code: u8) -> Self {
         match code {
             1 => Self::IllegalFunction,
@@ -71,19 +71,19 @@ impl ModbusException {
     }
 }
 
-/// What an exception tells of the hand that was asked. It is an answer to a request, never feedback.
+/// Presence of a hand, as shown by an exception. An exception is an answer to a request, never feedback.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Presence {
-    /// The hand itself refused: it is there.
+    /// The hand itself refused: it is present.
     Answers,
-    /// Whoever refused has too much to do. If that lasts, the hand does not answer.
+    /// The device that refused is overloaded. If that persists, the hand counts as not answering.
     Busy,
-    /// A gateway answered for a hand that does not.
+    /// A gateway answered in place of a hand that does not.
     Absent,
 }
 
 impl ModbusException {
-    /// What this exception tells of the hand.
+    /// Presence of the hand, as shown by this exception.
     pub const fn presence(self) -> Presence {
         match self {
             Self::IllegalFunction
@@ -97,13 +97,13 @@ impl ModbusException {
     }
 }
 
-/// Why the hand, or the rule against unsafe writes, said no.
+/// Reason why the hand, or the rule against unsafe writes, refused a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum Refusal {
-    /// The hand's own exception. Only Modbus has any.
+    /// Exception from the hand. Only Modbus has any.
     #[error(transparent)]
     Exception(#[from] ModbusException),
-    /// Nothing was sent: how single bytes stand in the words of this hand is not known.
+    /// Nothing was sent: it is not known how this hand packs single bytes into words.
     #[error(
         "it is not known how this hand puts single bytes into words; 'packing=low' in its address (in the window: Modbus bytes, Connection) says that it is low byte first"
     )]
@@ -113,7 +113,7 @@ pub enum Refusal {
         "this hand does not put single bytes into words low byte first, and writing them is not known to be safe"
     )]
     PackingUnsafe,
-    /// Nothing was sent: too little was read to know that this is a hand of the manual's series.
+    /// Nothing was sent: too little was read to identify this as a hand of the manual's series.
     #[error(
         "it is not known yet whether this is a hand of this series, and nothing is written before"
     )]

@@ -1,41 +1,41 @@
-//! The register map of manual 2.6 as one table. Codec, planner, simulator and reference read it; nothing is decided here.
+//! The register map of manual 2.6 as one table, shared by codec, planner, simulator and reference; it makes no decisions.
 
 use serde::Serialize;
 use std::fmt;
 
-/// A run of bytes in the hand's memory, by byte address.
+/// A range of bytes in the hand's memory, by byte address.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Span {
-    /// First byte.
+    /// Address of the first byte.
     pub address: u16,
     /// Number of bytes, at least 1.
     pub len: u16,
 }
 
 impl Span {
-    /// A run of `len` bytes from `address`.
+    /// Creates a range of `len` bytes from `address`.
     pub const fn new(address: u16, len: u16) -> Self {
         Self { address, len }
     }
 
-    /// One past the last byte.
+    /// Address after the last byte.
     pub const fn end(self) -> u32 {
         self.address as u32 + self.len as u32
     }
 
-    /// True if `inner` lies wholly inside.
+    /// True if `inner` lies entirely inside.
     pub const fn covers(self, inner: Self) -> bool {
         self.address <= inner.address && inner.end() <= self.end()
     }
 
-    /// The part of `bytes`, which hold this run, that holds `inner`.
+    /// Returns the part of `bytes` that covers `inner`; `bytes` are the contents of this range.
     pub fn slice(self, bytes: &[u8], inner: Self) -> Option<&[u8]> {
         let from = usize::from(inner.address.checked_sub(self.address)?);
         bytes.get(from..from + usize::from(inner.len))
     }
 }
 
-/// What one element of a register is.
+/// Type of one element of a register.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Element {
@@ -47,24 +47,24 @@ pub enum Element {
     Tactile,
 }
 
-/// Whether the register is read only or read and written.
+/// Access of a register: read only, or read and write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Access {
-    /// Only read.
+    /// Read only.
     #[serde(rename = "r")]
     Read,
-    /// Read and written.
+    /// Read and write.
     #[serde(rename = "rw")]
     ReadWrite,
 }
 
-/// What happens to a value when the power goes.
+/// Persistence of a value at power-off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Persistence {
     /// Lost at power-off.
     #[serde(rename = "no")]
     Volatile,
-    /// Kept once SAVE was written.
+    /// Persistent after SAVE.
     #[serde(rename = "by SAVE")]
     Saved,
     /// Measured anew with each reading.
@@ -72,56 +72,56 @@ pub enum Persistence {
     Live,
 }
 
-/// Where a register is known from.
+/// Source of the knowledge about a register.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Origin {
     /// The manual's table.
     Manual,
-    /// Other people's drivers; not in the manual's table.
+    /// Third-party drivers; not in the manual's table.
     Field,
 }
 
-/// One row of the map.
+/// One row of the register map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Register {
-    /// As printed in the manual.
+    /// Name as printed in the manual.
     pub name: &'static str,
-    /// First byte.
+    /// Address of the first byte.
     pub address: u16,
     /// Length of the whole register in bytes.
     #[serde(rename = "bytes")]
     pub len: u16,
-    /// Type of one element: byte, short, fingertip block.
+    /// Type of one element: byte, 16-bit value, fingertip block.
     pub element: Element,
-    /// Read, or read and write.
+    /// Access: read, or read and write.
     pub access: Access,
     /// Smallest and largest value of an element; `None` where the manual gives none.
     pub range: Option<(i32, i32)>,
-    /// A value outside the range that is allowed too (-1 = no action).
+    /// Allowed value outside the range (-1 = no action); `None` if there is none.
     pub also: Option<i32>,
-    /// Value at delivery, if the manual gives one.
+    /// Factory value; `None` if the manual gives none.
     pub default: Option<i32>,
-    /// Unit, empty if none.
+    /// Unit; empty if there is none.
     pub unit: &'static str,
-    /// Whether the value survives power-off, and when it is stored.
+    /// Persistence at power-off.
     #[serde(rename = "kept")]
     pub persistence: Persistence,
     /// Section of the manual.
     pub section: &'static str,
-    /// Whether the manual's table lists it, or only programs in the field use it.
+    /// Source: the manual's table, or only programs in the field.
     #[serde(skip)]
     pub origin: Origin,
-    /// What it means, as one sentence for `handscope registers`.
+    /// Meaning in one sentence, for `handscope registers`.
     pub meaning: &'static str,
 }
 
 impl Register {
-    /// The bytes it covers.
+    /// Range of bytes that it covers.
     pub const fn span(&self) -> Span {
         Span::new(self.address, self.len)
     }
 
-    /// Bytes of one element.
+    /// Bytes per element.
     pub const fn element_len(&self) -> u16 {
         match self.element {
             Element::Byte => 1,
@@ -274,7 +274,7 @@ pub const DEFAULT_FORCE_SET: Register = Register {
 pub const USER_DEF_ANGLE: Register = Register {
     len: 27 * 12,
     access: Access::ReadWrite,
-    // Nobody says whether SAVE keeps them; taken as kept, like the other parameters.
+    // The manual does not say whether SAVE stores them; assumed to be persistent, like the other parameters.
     persistence: Persistence::Saved,
     origin: Origin::Field,
     meaning: "Six angles for each of the user's gestures 14 to 40. Address not in the manual's table.",
@@ -307,7 +307,7 @@ pub const FORCE_SET: Register = Register {
 /// SPEED_SET(m).
 pub const SPEED_SET: Register = Register {
     access: Access::ReadWrite,
-    // Manual: 2.6.13 says "can be saved" beside DEFAULT_SPEED_SET; taken as lost at power-off.
+    // Manual: 2.6.13 says "can be saved" beside DEFAULT_SPEED_SET; assumed to be lost at power-off.
     persistence: Persistence::Volatile,
     meaning: "Speeds; 1000 = full stroke in 600 ms without load.",
     ..six("SPEED_SET", 1522, (0, 1000), "2.6.13")
@@ -375,7 +375,7 @@ pub const ACTION_SEQ_RUN: Register = Register {
     ..byte("ACTION_SEQ_RUN", 2322, "2.6.7")
 };
 
-/// The whole map, by address: manual 2.6, and the registers known from the field that this program uses ([`Origin::Field`]).
+/// The whole map, by address: manual 2.6, and the registers known from third-party drivers that this program uses ([`Origin::Field`]).
 pub const REGISTERS: [Register; 32] = [
     HAND_ID,
     REDU_RATIO,
@@ -449,37 +449,37 @@ pub const REGISTERS: [Register; 32] = [
 
 /// All five fingertip blocks.
 pub const TOUCH: Span = Span::new(3000, 290);
-/// Angles to temperatures: the whole live state but the drive positions (manual 2.6.15 to 2.6.20).
+/// Angles to temperatures: the whole live state except the drive positions (manual 2.6.15 to 2.6.20).
 pub const STATE: Span = Span::new(1546, 78);
-/// ANGLE_SET to SPEED_SET: what the hand was told.
+/// ANGLE_SET to SPEED_SET: the setpoints stored in the hand.
 pub const SETPOINTS: Span = Span::new(1486, 48);
 
-/// The row of this name, in any letter case.
+/// Returns the row with this name, ignoring case.
 pub fn by_name(name: &str) -> Option<&'static Register> {
     REGISTERS
         .iter()
         .find(|row| row.name.eq_ignore_ascii_case(name))
 }
 
-/// The row that this byte belongs to.
+/// Returns the row that covers this byte address.
 pub fn by_address(address: u16) -> Option<&'static Register> {
     REGISTERS
         .iter()
         .find(|row| row.span().covers(Span::new(address, 1)))
 }
 
-/// How a hand puts its one-byte groups (ERROR, STATUS, TEMP) into Modbus' words.
+/// Packing of the one-byte groups (ERROR, STATUS, TEMP) into Modbus words.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize,
 )]
 pub enum BytePacking {
-    /// Two a word, the low byte is the lower address.
-    // Manual: silent; most drivers of real hands read it so.
+    /// Two per word, the low byte has the lower address.
+    // Manual: silent; most drivers of real hands assume it.
     #[default]
     LowFirst,
-    /// Two a word, the high byte is the lower address.
+    /// Two per word, the high byte has the lower address.
     HighFirst,
-    /// One a word, in six words.
+    /// One per word, in six words.
     OnePerWord,
 }
 
@@ -487,7 +487,7 @@ impl BytePacking {
     /// All byte packings.
     pub const ALL: [Self; 3] = [Self::LowFirst, Self::HighFirst, Self::OnePerWord];
 
-    /// As the user writes it in an endpoint.
+    /// Name in an endpoint address.
     pub const fn key(self) -> &'static str {
         match self {
             Self::LowFirst => "low",
@@ -496,7 +496,7 @@ impl BytePacking {
         }
     }
 
-    /// The packing that is written so.
+    /// Returns the packing with this name.
     pub fn by_key(key: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|packing| packing.key() == key)
     }

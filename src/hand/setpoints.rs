@@ -1,10 +1,10 @@
-//! Targets and limits for an armed hand: the newest of each joint wins, and none outlives its arming.
+//! Targets and limits for an armed hand: the newest value of each joint wins, and none outlives its arming.
 
 use crate::hand::command::HandCommand;
 use crate::hand::dof::PerDof;
 use crate::hand::units::{Force, Speed, Target};
 
-/// One arming. Setpoints carry it, so that none from an earlier arming can act.
+/// Identifies one arming. Setpoints carry it, so that setpoints of an earlier arming have no effect.
 #[derive(
     Debug,
     Clone,
@@ -20,10 +20,10 @@ use crate::hand::units::{Force, Speed, Target};
 )]
 pub struct ArmEpoch(pub u64);
 
-/// New targets and limits for an armed hand. Joints that are `None` keep what they were told.
+/// New targets and limits for an armed hand. Joints that are `None` keep their previous values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setpoints {
-    /// The arming they belong to; in any other they are dropped.
+    /// Arming to which they belong; in any other they are dropped.
     pub epoch: ArmEpoch,
     /// Target angles; `None` leaves ANGLE_SET of the joint as it is.
     pub angle: PerDof<Option<Target>>,
@@ -34,7 +34,7 @@ pub struct Setpoints {
 }
 
 impl Setpoints {
-    /// Nothing new, for one arming.
+    /// Empty setpoints for one arming.
     pub const fn none(epoch: ArmEpoch) -> Self {
         Self {
             epoch,
@@ -49,7 +49,7 @@ impl Setpoints {
         *self == Self::none(self.epoch)
     }
 
-    /// The commands that send them: speeds before forces before angles, so that no motion starts with older limits.
+    /// Commands that send the setpoints: speeds before forces before angles, so that no motion starts with older limits.
     pub const fn commands(&self) -> [HandCommand; 3] {
         [
             HandCommand::Speeds(self.speed),
@@ -58,7 +58,7 @@ impl Setpoints {
         ]
     }
 
-    /// Puts newer values over older ones, joint by joint. Another arming replaces all.
+    /// Overwrites with newer values, joint by joint. Setpoints of another arming replace all.
     pub fn merge(&mut self, newer: &Self) {
         if self.epoch != newer.epoch {
             *self = *newer;

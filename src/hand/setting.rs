@@ -1,4 +1,4 @@
-//! What a hand keeps once it is saved, as values to be set, one register group each; and what it does alone, at rest. No motion.
+//! Persistent settings, one register group each, and functions that a hand performs on its own, at rest. No motion.
 
 use crate::hand::command::{RegisterWrite, Writes, runs};
 use crate::hand::dof::PerDof;
@@ -9,7 +9,7 @@ use std::net::Ipv4Addr;
 /// The four parts of the IP address (manual 2.6, 1700 to 1703).
 pub const IP_PARTS: Span = Span::new(1700, 4);
 
-/// A kept register group and what it is to hold. Joints that are `None` are left as they are.
+/// A persistent register group and its new values. Joints that are `None` are unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(test, derive(strum::VariantNames, strum::IntoStaticStr))]
 pub enum Setting {
@@ -17,16 +17,16 @@ pub enum Setting {
     DefaultSpeeds(PerDof<Option<Speed>>),
     /// Force thresholds after power-up, grams (manual 2.6.9).
     DefaultForces(PerDof<Option<Force>>),
-    /// The id on the bus (manual 2.6.1).
+    /// Id on the bus (manual 2.6.1).
     Id(HandId),
-    /// The serial speed (manual 2.6.2).
+    /// Serial speed (manual 2.6.2).
     SerialSpeed(SerialSpeed),
-    /// The IP address, which acts from the next power-up (manual 2.6).
+    /// IP address, which takes effect at the next power-up (manual 2.6).
     IpAddress(Ipv4Addr),
 }
 
 impl Setting {
-    /// The register writes, in order. Joints that are not given are not written.
+    /// Returns the register writes in order. Joints without a value are not written.
     pub fn writes(&self) -> Writes {
         let mut out = Writes::new();
         match self {
@@ -49,7 +49,7 @@ impl Setting {
         out
     }
 
-    /// The whole group, to be read back.
+    /// Range of the whole group, for reading back.
     pub const fn span(&self) -> Span {
         match self {
             Self::DefaultSpeeds(_) => register::DEFAULT_SPEED_SET.span(),
@@ -60,7 +60,7 @@ impl Setting {
         }
     }
 
-    /// True if the group's bytes hold what was to be set, wherever something was.
+    /// True if the group's bytes match every value to be set.
     pub fn is_held_by(&self, bytes: &[u8]) -> bool {
         let whole = self.span();
         self.writes()
@@ -69,20 +69,20 @@ impl Setting {
     }
 }
 
-/// What a hand does alone, once, and at rest.
+/// A function that a hand performs on its own, once, and at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(test, derive(strum::VariantNames, strum::IntoStaticStr))]
 pub enum Trigger {
     /// Write the parameters to flash (manual 2.6.4).
     Save,
-    /// Return to the factory's parameters (manual 2.6.5).
+    /// Restore the factory parameters (manual 2.6.5).
     ResetParameters,
     /// Calibrate the force sensors (manual 2.6.6).
     CalibrateForce,
 }
 
 impl Trigger {
-    /// The register write that starts it.
+    /// Returns the register write that starts it.
     pub fn write(self) -> RegisterWrite {
         let row = match self {
             Self::Save => &register::SAVE,

@@ -1,6 +1,6 @@
-//! Values of several readings or trials together.
+//! Statistics over several readings or trials.
 
-/// The middle value; of an even number the mean of the two. `None` of nothing.
+/// Median of the finite values; the mean of the middle two for an even number. `None` for no values.
 pub fn median(values: &[f64]) -> Option<f64> {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
@@ -8,17 +8,17 @@ pub fn median(values: &[f64]) -> Option<f64> {
     Some((sorted.get(low)? + sorted.get(high)?) / 2.0)
 }
 
-/// Their mean; `None` of nothing.
+/// Arithmetic mean; `None` for no values.
 pub fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / count(values))
 }
 
-/// How many there are, to be reckoned with.
+/// Number of values, as a float for calculations.
 pub fn count(values: &[f64]) -> f64 {
     u32::try_from(values.len()).map_or(f64::INFINITY, f64::from)
 }
 
-/// The sum of the squares of how far each is from their mean; 0 of nothing.
+/// Sum of the squared deviations from the mean; 0 for no values.
 pub fn spread(values: &[f64]) -> f64 {
     let mean = mean(values).unwrap_or_default();
     values.iter().map(|value| (value - mean).powi(2)).sum()

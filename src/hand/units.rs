@@ -1,14 +1,14 @@
-//! What may be sent to the hand, as types that cannot leave the manual's ranges. Nothing measured lives here.
+//! Values that may be sent to the hand, as types that cannot leave the manual's ranges. Contains no measured values.
 
 use crate::hand::dof::Dof;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// A number outside the range that the manual prints.
+/// A number outside the manual's range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{got} is outside the manual's range for {what}: {min} to {max}")]
 pub struct OutOfRange {
-    /// The register family, as in the manual.
+    /// Register family, as in the manual.
     pub what: &'static str,
     /// Value that was rejected.
     pub got: i64,
@@ -44,13 +44,13 @@ macro_rules! bounded {
                 }
             }
 
-            /// The nearest value in range, for a slider or a ramp that may run past its end.
+            /// Nearest value in range, for a slider or a ramp that may run past its end.
             pub fn nearest(value: impl Into<i64>) -> Self {
                 let value = value.into().clamp($min, $max);
                 Self::new(value).unwrap_or(Self::MIN)
             }
 
-            /// The number as it stands in the register.
+            /// Number as in the register.
             pub const fn get(self) -> $inner {
                 self.0
             }
@@ -98,23 +98,23 @@ bounded!(
 );
 
 impl Gesture {
-    /// All forty, in their order (manual 2.6.7).
+    /// All forty gestures, in order (manual 2.6.7).
     pub fn all() -> impl Iterator<Item = Self> {
         (Self::MIN.0..=Self::MAX.0).map(Self)
     }
 }
 
 impl HandId {
-    /// All of them, from the lowest.
+    /// All ids, in ascending order.
     pub fn all() -> impl Iterator<Item = Self> {
         (Self::MIN.0..=Self::MAX.0).map(Self)
     }
 }
 
 impl Angle {
-    /// A joint this near to its target, in counts, has arrived.
+    /// Distance from the target, in counts, within which a joint has arrived.
     pub const ARRIVED_TOLERANCE: u16 = 20;
-    /// Degrees of this joint at this angle, by the linear map of [`Dof::degrees`].
+    /// Angle of this joint in degrees, by the linear map of [`Dof::degrees`].
     pub fn degrees(self, dof: Dof) -> f32 {
         let (low, high) = dof.degrees();
         low + (high - low) * f32::from(self.0) / 1000.0
@@ -124,47 +124,47 @@ impl Angle {
 impl Force {
     /// The rated grip of a finger, 20 N (manual 1.2), in grams; more needs the user's consent.
     pub const RATED: Self = Self(2000);
-    /// Where the user starts: gentle.
+    /// Default for the user: gentle.
     pub const GENTLE: Self = Self(500);
 }
 
 impl Speed {
-    /// Where the user starts: slow enough that the threshold means something.
+    /// Default for the user: slow enough for the force threshold to be effective.
     pub const GENTLE: Self = Self(200);
-    /// The slowest at which overshoot was measured ([`crate::hand::impact`]): a few grams.
+    /// Lowest speed at which overshoot was measured ([`crate::hand::impact`]): a few grams.
     pub const SLOWEST_MEASURED: Self = Self(25);
-    /// Counts of ANGLE_ACT a second for each unit without load: half of the 3.04 of POS_ACT that were measured (manual 2.6.13
+    /// Counts of ANGLE_ACT per second for each unit of speed without load: half of the measured 3.04 of POS_ACT (manual 2.6.13
     /// says 1.67).
     pub const ANGLE_PER_UNIT: f64 = 1.52;
 
-    /// Counts of ANGLE_ACT a second without load; of a speed of 0 as of 1.
+    /// Counts of ANGLE_ACT per second without load; speed 0 counts as 1.
     pub fn angle_per_s(self) -> f64 {
         Self::ANGLE_PER_UNIT * f64::from(self.0.max(1))
     }
 
-    /// Time of the whole stroke without load.
+    /// Duration of the full stroke without load.
     pub fn stroke(self) -> Duration {
         Duration::from_secs_f64(f64::from(Angle::MAX.0) / self.angle_per_s())
     }
 }
 
-/// The shortest decimal number that is this one, as people write it.
+/// Converts to `f64` with the shortest decimal representation, so that 0.2 stays 0.2.
 pub fn decimal(number: f32) -> f64 {
     let digits = number.to_string().parse();
     digits.unwrap_or_else(|_never| f64::from(number))
 }
 
-/// What a joint is told to do. There is no default, and "leave alone" is said in words.
+/// Target of a joint. There is no default; leaving the joint alone is explicit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Target {
-    /// Go to this angle at once.
+    /// Move to this angle at once.
     Go(Angle),
     /// No action (the manual's -1, §2.6.11).
     Leave,
 }
 
 impl Target {
-    /// What this number means in ANGLE_SET; `None` outside -1..=1000.
+    /// Decodes a number of ANGLE_SET; `None` outside -1..=1000.
     pub fn from_raw(raw: i16) -> Option<Self> {
         match raw {
             -1 => Some(Self::Leave),
@@ -172,7 +172,7 @@ impl Target {
         }
     }
 
-    /// The number as it stands in ANGLE_SET.
+    /// Number as in ANGLE_SET.
     pub const fn raw(self) -> i16 {
         match self {
             Self::Go(angle) => angle.get(),
@@ -180,7 +180,7 @@ impl Target {
         }
     }
 
-    /// The angle, unless the joint is left alone.
+    /// Target angle; `None` if the joint is left alone.
     pub const fn angle(self) -> Option<Angle> {
         match self {
             Self::Go(angle) => Some(angle),
@@ -213,19 +213,19 @@ impl SerialSpeed {
         Self::Baud921600,
     ];
 
-    /// The number as it stands in REDU_RATIO.
+    /// Code as in REDU_RATIO.
     pub const fn code(self) -> u8 {
         self as u8
     }
 
-    /// The speed of this number in REDU_RATIO, if it is one of the four.
+    /// Speed with this code in REDU_RATIO; `None` if it is not one of the four.
     pub fn of_code(code: i64) -> Option<Self> {
         Self::ALL
             .into_iter()
             .find(|own| i64::from(own.code()) == code)
     }
 
-    /// Bits a second.
+    /// Bits per second.
     pub const fn baud(self) -> u32 {
         match self {
             Self::Baud115200 => 115_200,

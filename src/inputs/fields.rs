@@ -1,13 +1,13 @@
-//! The fields of one JSON object from another program: numbers as its language writes them, each name once. Pure.
+//! Fields of one JSON object from another program: numbers in any language's notation, each name once. Pure.
 
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 use std::fmt;
 
-/// Numbers that differ by no more are the same: what a division in single precision is off.
+/// Tolerance for equal numbers: the error of a division in single precision.
 pub(crate) const ROUNDING: f64 = 1e-6;
 
-/// What is wrong with a field.
+/// Error in a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
 pub enum FieldFault {
     #[error("is there twice")]
@@ -16,23 +16,23 @@ pub enum FieldFault {
     Type,
 }
 
-/// Fields that were not taken yet.
+/// Fields not taken yet.
 #[derive(Debug, Default)]
 pub struct Fields(Vec<(String, Value)>);
 
 impl Fields {
-    /// Reads an object.
+    /// Parses an object.
     ///
     /// # Errors
-    /// As the reader of JSON says it.
+    /// The JSON parser's error.
     pub fn parse(text: &[u8]) -> Result<Self, serde_json::Error> {
         serde_json::from_slice(text)
     }
 
-    /// Takes a field out; `None` where it is absent or `null`.
+    /// Removes a field and returns it; `None` if it is absent or `null`.
     ///
     /// # Errors
-    /// [`FieldFault::Twice`]: nothing tells which of them counts.
+    /// [`FieldFault::Twice`] if the name occurs twice, as it is ambiguous.
     pub fn take(&mut self, name: &str) -> Result<Option<Value>, FieldFault> {
         let mut found = self.0.extract_if(.., |(own, _)| own == name);
         let (first, second) = (found.next(), found.next());
@@ -44,12 +44,12 @@ impl Fields {
             .filter(|value| !value.is_null()))
     }
 
-    /// Whether a field of this name is there.
+    /// True if a field with this name is present.
     pub fn has(&self, name: &str) -> bool {
         self.0.iter().any(|(own, _)| own == name)
     }
 
-    /// A field that was not taken.
+    /// A remaining field, not taken.
     pub fn other(&self) -> Option<&str> {
         self.0.first().map(|(name, _)| name.as_str())
     }
@@ -75,7 +75,7 @@ impl<'de> Deserialize<'de> for Fields {
     }
 }
 
-/// A whole number, also where it is written as a fraction: `17`, `17.0`, `17e0`, `16.9999999`.
+/// Reads a whole number, even in fractional notation: `17`, `17.0`, `17e0`, `16.9999999`.
 ///
 /// # Errors
 /// [`FieldFault::Type`] for everything else.
@@ -92,10 +92,10 @@ pub fn whole(value: &Value) -> Result<i64, FieldFault> {
     Ok(rounded as i64)
 }
 
-/// Whole numbers up to this one are exact as fractions.
+/// Largest whole number up to which `f64` is exact.
 const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
 
-/// Any number.
+/// Reads any number.
 ///
 /// # Errors
 /// [`FieldFault::Type`] for everything else.
@@ -103,7 +103,7 @@ pub fn number(value: &Value) -> Result<f64, FieldFault> {
     value.as_f64().ok_or(FieldFault::Type)
 }
 
-/// A number within a range, or next to it by no more than rounding.
+/// Clamps a number to a range; `None` if it is outside by more than rounding.
 pub(crate) fn within(number: f64, (least, most): (f64, f64)) -> Option<f64> {
     let is_near = (least - ROUNDING..=most + ROUNDING).contains(&number);
     is_near.then(|| number.clamp(least, most))

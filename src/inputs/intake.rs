@@ -1,4 +1,4 @@
-//! Lines of one stream, whoever they come from: one sender at a time, in order, counted. Pure.
+//! Intake of lines of one stream, from any sender: one sender at a time, in order, counted. Pure.
 
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
@@ -8,26 +8,26 @@ use crate::link::rate::EventRate;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
 
-/// What came in over one stream so far.
+/// Statistics of one stream.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct IntakeView {
-    /// Who is listened to, and when a line of theirs came last.
+    /// Current sender, and the time of its last line.
     pub sender: Option<(SocketAddr, Moment)>,
-    /// Lines a second.
+    /// Lines per second.
     pub rate_hz: f64,
-    /// Lines that were taken.
+    /// Accepted lines.
     pub taken: u64,
-    /// Lines that were refused, by reason.
+    /// Refused lines, by reason.
     pub refused: BTreeMap<LineFault, u64>,
-    /// The newest of the reasons, with the field.
+    /// Last refusal, with the field.
     pub last_refused: Option<LineRefusal>,
-    /// Lines that stopped the hand, or let go of the dead-man, although something else in them was wrong.
+    /// Lines that stopped the hand or released the dead-man although something else in them was wrong.
     pub odd_stops: u64,
-    /// The newest of them: its sender, and what was wrong.
+    /// The last of them: its sender, and the error.
     pub last_odd: Option<(SocketAddr, LineRefusal)>,
 }
 
-/// Takes lines in.
+/// Accepts or refuses lines.
 #[derive(Debug)]
 pub struct Intake {
     side: Side,
@@ -37,7 +37,7 @@ pub struct Intake {
 }
 
 impl Intake {
-    /// For the hand of this side.
+    /// Creates the intake for the hand of this side.
     pub fn new(side: Side) -> Self {
         Self {
             side,
@@ -47,10 +47,10 @@ impl Intake {
         }
     }
 
-    /// Takes a line of a sender. A stop passes whoever sends it.
+    /// Accepts or refuses a line of a sender. A stop is accepted from any sender.
     ///
     /// # Errors
-    /// [`LineRefusal`]: why it is refused, which is counted.
+    /// [`LineRefusal`], the reason; it is counted.
     pub fn take(
         &mut self,
         line: &[u8],
@@ -60,10 +60,10 @@ impl Intake {
         self.take_parsed(StreamLine::parse(line, self.side), from, now)
     }
 
-    /// The same of a line that was read already.
+    /// Like [`Self::take`], for a line that is already parsed.
     ///
     /// # Errors
-    /// [`LineRefusal`]: why it is refused, which is counted.
+    /// [`LineRefusal`], the reason; it is counted.
     pub fn take_parsed(
         &mut self,
         line: Result<StreamLine, LineRefusal>,
@@ -112,7 +112,7 @@ impl Intake {
         Ok(())
     }
 
-    /// What came in, as of now.
+    /// Statistics as of `now`.
     pub fn view(&mut self, now: Moment) -> &IntakeView {
         self.view.rate_hz = self.rate.hz(now);
         &self.view

@@ -1,7 +1,7 @@
-//! Lines of JSON that ask a hand to go somewhere: `{"seq":1,"right":[six of 0..1 or null]}`, 0 bent, 1 open, or `{"seq":1,"grip_mm":30}`
+//! JSON lines with targets for a hand: `{"seq":1,"right":[six of 0..1 or null]}`, 0 bent, 1 open, or `{"seq":1,"grip_mm":30}`
 //! (`handscope help stream`).
-//! A line with anything wrong in it is refused whole and counted, never bent into range. A stop is none of these: it is obeyed
-//! whatever else its line says ([`crate::inputs::stop`]).
+//! A line with any error is refused as a whole and counted, never clamped into range. A stop is the exception: it is obeyed
+//! whatever else its line contains ([`crate::inputs::stop`]).
 
 use crate::hand::gap::Gap;
 use crate::hand::kinematics::Side;
@@ -13,27 +13,27 @@ use serde_json::Value;
 use std::fmt;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-/// Version of the lines that are read here.
+/// Supported version of the lines.
 pub const LINE_VERSION: i64 = 1;
 /// Longest line, bytes.
 pub const LINE_MAX: usize = 2048;
 
-/// What one line asks for.
+/// Contents of one line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StreamLine {
-    /// Its number, if the sender counts.
+    /// Sequence number, if the sender counts.
     pub seq: Option<f64>,
-    /// Where the joints should go.
+    /// Targets of the joints.
     pub aims: PerDof<Option<Angle>>,
-    /// The gap that these are the angles of, where one is asked for in place of them.
+    /// Target gap, if the line gives one instead of angles; the aims are then its angles.
     pub gap: Option<Gap>,
-    /// Whether the sender's dead-man is held, if it has one.
+    /// True while the sender's dead-man is held; `None` if it has none.
     pub held: Option<bool>,
-    /// The hand is to be stopped.
+    /// The line requests a stop.
     pub stop: bool,
-    /// The same for targets that are the same to the last bit.
+    /// Equal for bitwise equal targets.
     pub mark: u64,
-    /// What would have been refused, had the line not asked for a stop or let go of the dead-man.
+    /// Reason for which the line would have been refused, had it not requested a stop or released the dead-man.
     pub odd: Option<LineRefusal>,
 }
 
@@ -42,7 +42,7 @@ pub struct StreamLine {
 pub enum LineField {
     Version,
     Seq,
-    /// Six values of a side; a joint, where one of them is meant.
+    /// Six values of a side; with a joint, one of them.
     Values(Side, Option<Dof>),
     Gap,
     Held,
@@ -60,7 +60,7 @@ impl LineField {
         Self::Stop,
     ];
 
-    /// Its name in a line.
+    /// Name in a line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Version => "v",
@@ -78,11 +78,11 @@ impl LineField {
     }
 }
 
-/// Why a line was refused, and for which of its fields.
+/// Reason for refusing a line, with its field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub struct LineRefusal {
     pub fault: LineFault,
-    /// `None` where no field is to blame.
+    /// `None` if it concerns no particular field.
     pub field: Option<LineField>,
 }
 
@@ -105,7 +105,7 @@ impl From<LineFault> for LineRefusal {
     }
 }
 
-/// Why a line was refused.
+/// Reason for refusing a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
 pub enum LineFault {
     #[error("longer than {LINE_MAX} bytes")]
@@ -113,48 +113,48 @@ pub enum LineFault {
     /// A number is NaN or infinite.
     #[error("a number is NaN or infinite: send null to leave a joint alone")]
     NotFinite,
-    /// It is no object of this kind.
+    /// Not an object of this kind.
     #[error("not a line of JSON as 'handscope help stream' has it")]
     Malformed,
-    /// A field has another type.
+    /// A field has the wrong type.
     #[error("not of the type that 'handscope help stream' has")]
     Type,
-    /// A field is there twice.
+    /// A field occurs twice.
     #[error("there twice")]
     Twice,
-    /// It has another version.
+    /// Unsupported version.
     #[error("its version is not {LINE_VERSION}")]
     Version,
-    /// It says nothing of this hand.
+    /// The line has nothing for this hand's side.
     #[error("nothing in it is for this hand's side")]
     OtherSide,
     /// Not six values.
     #[error("a hand has six joints")]
     Length,
-    /// A value that is not from 0 to 1.
+    /// A value is outside 0 to 1.
     #[error("a value is not from 0 (bent) to 1 (open)")]
     Range,
-    /// A gap that the path of thumb and index does not have.
+    /// A gap outside the range of the path of thumb and index.
     #[error("not from {} to {} mm", Gap::MIN.mm(), Gap::MAX.mm())]
     Gap,
-    /// A gap and values.
+    /// Both a gap and values are given.
     #[error("grip_mm stands beside six values: send one of them")]
     Both,
-    /// Its number is not above the one before.
+    /// The sequence number is not above the previous one.
     #[error("late or doubled: not above the one before")]
     Late,
-    /// Another sender is followed.
+    /// Another sender is being followed.
     #[error("another sender is followed until it is silent")]
     OtherSender,
 }
 
 impl LineFault {
-    /// True for what is no message at all: who sends that speaks another language, as a web page does that sends a form.
+    /// True if the text is no message at all: its sender uses another protocol, such as a web page that sends a form.
     pub const fn is_no_message(self) -> bool {
         matches!(self, Self::TooLong | Self::Malformed)
     }
 
-    /// The word for it in JSON.
+    /// Name in JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::TooLong => "too_long",
@@ -173,7 +173,7 @@ impl LineFault {
         }
     }
 
-    /// The same, of a field.
+    /// Adds the field.
     pub(crate) const fn of(self, field: LineField) -> LineRefusal {
         LineRefusal {
             fault: self,
@@ -183,10 +183,10 @@ impl LineFault {
 }
 
 impl StreamLine {
-    /// Reads one line for the hand of this side. One that asks for a stop is never refused, nor one that lets go of the dead-man.
+    /// Parses one line for the hand of this side. A line that requests a stop or releases the dead-man is never refused.
     ///
     /// # Errors
-    /// [`LineRefusal`]: why it is refused whole.
+    /// [`LineRefusal`]; the line is refused as a whole.
     pub fn parse(line: &[u8], side: Side) -> Result<Self, LineRefusal> {
         let stops = stop::is_stop(line, TextEnd::Whole);
         let read = Self::read(line, side);
@@ -254,13 +254,13 @@ impl StreamLine {
     }
 }
 
-/// Whether a line may be a message, by its first byte.
+/// True if a line may be a message, by its first byte.
 pub(crate) fn begins_message(line: &[u8]) -> bool {
     let first = scan::unmarked(line).first();
     first.is_none_or(|byte| *byte == b'{')
 }
 
-/// Takes a field out of a line.
+/// Takes a field from a line and converts it.
 fn take<T>(
     fields: &mut Fields,
     field: LineField,
@@ -284,7 +284,7 @@ fn flag(fields: &mut Fields, field: LineField) -> Result<Option<bool>, LineRefus
     })
 }
 
-/// Six values of a side, if they are there.
+/// Six values of a side; `None` if absent.
 fn values(fields: &mut Fields, side: Side) -> Result<Option<PerDof<Option<f64>>>, LineRefusal> {
     let whole = LineField::Values(side, None);
     let list = take(fields, whole, |value| {
@@ -323,7 +323,7 @@ fn gap(mm: f64) -> Result<Gap, LineRefusal> {
     Gap::new(mm as f32).map_err(|_out| wrong())
 }
 
-/// The angle of a share of the way from bent to open.
+/// Angle for a share of the travel from bent (0) to open (1); `None` outside 0..=1.
 pub(crate) fn angle_of(share: f64) -> Option<Angle> {
     let share = fields::within(share, (0.0, 1.0))?;
     #[expect(clippy::cast_possible_truncation, reason = "from 0 to 1000")]
@@ -335,7 +335,7 @@ fn angle(share: f64, field: LineField) -> Result<Angle, LineRefusal> {
     angle_of(share).ok_or_else(|| LineFault::Range.of(field))
 }
 
-/// JSON has no word for what is no finite number; many senders write one anyway, or a number that is too large to be one.
+/// JSON has no notation for numbers that are not finite; many senders write one anyway, or a number too large for a float.
 fn unreadable(line: &[u8]) -> LineRefusal {
     match scan::not_finite_at(line).filter(|_| begins_message(line)) {
         Some(name) => LineRefusal {

@@ -1,45 +1,45 @@
-//! Lines out of a stream of bytes. A stop is told before the line feed came, and in a line that is too long. Pure.
+//! Splits a byte stream into lines. A stop is reported before its line feed arrives, and even in a line that is too long. Pure.
 
 use crate::inputs::line::begins_message;
 use crate::inputs::scan::{Token, pieces, unmarked};
 use crate::inputs::stop::{TextEnd, is_stop};
 
-/// Longest line that is kept whole: a stop may be anywhere in it.
+/// Longest line that is buffered as a whole: a stop may be anywhere in it.
 pub const LONGEST: usize = 64 * 1024;
-/// Up to here a line that is not whole yet is looked through whenever more of it came, and an object may go over several lines.
-/// Of longer ones this would cost more than they are worth: whoever sends them byte by byte must not keep the hand waiting.
+/// Up to this length an incomplete line is scanned whenever more of it arrives, and an object may span several lines.
+/// For longer lines this would cost too much: a sender that sends them byte by byte must not delay the hand.
 const SHORT: usize = 2048;
-/// So many new bytes a longer line is looked through again for, and so many of one that is too long are kept, to find a stop that comes in two pieces.
+/// New bytes after which a longer line is scanned again; also the tail of an overlong line in which a split stop is still found.
 const KEPT: usize = 256;
 
-/// What came in.
+/// Output of the cutter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Cut {
-    /// A line without its line feed, or the beginning of one that is longer than they may be. An object whose first line is `{` alone
-    /// is one line, however many it is written on.
+    /// A line without its line feed, or the beginning of one that exceeds the limit. An object whose first line is `{` alone
+    /// is one line, no matter on how many it is written.
     Line {
         text: Vec<u8>,
-        /// It was told as [`Self::Stop`] before.
+        /// It was reported as [`Self::Stop`] before.
         has_stopped: bool,
     },
-    /// The line that is not whole yet, or was too long, asks for a stop.
+    /// A stop in a line that is incomplete or was too long.
     Stop,
 }
 
-/// Cuts bytes into lines.
+/// Splits bytes into lines.
 #[derive(Debug)]
 pub struct LineCutter {
     longest: usize,
     rest: Vec<u8>,
     has_stopped: bool,
-    /// So many bytes of it were looked through.
+    /// Number of bytes scanned so far.
     looked: usize,
-    /// The rest of a line that was too long is passed over.
+    /// Skips the rest of a line that was too long.
     skips: bool,
 }
 
 impl LineCutter {
-    /// For lines of at most so many bytes.
+    /// Creates a cutter for lines of at most `longest` bytes.
     pub const fn new(longest: usize) -> Self {
         Self {
             longest,
@@ -50,20 +50,20 @@ impl LineCutter {
         }
     }
 
-    /// What these bytes complete, in order.
+    /// Adds bytes and returns the cuts that they complete, in order.
     pub fn push(&mut self, bytes: &[u8]) -> Vec<Cut> {
         let mut cuts = Vec::new();
         for piece in bytes.split_inclusive(|byte| *byte == b'\n') {
             let is_whole = piece.ends_with(b"\n");
             if self.rest.ends_with(b"\n") && piece.starts_with(b"{") {
                 let cut = self.cut();
-                // A brace alone says nothing that could be wrong.
+                // A brace alone cannot be wrong.
                 let is_brace = matches!(&cut, Cut::Line { text, .. } if unmarked(text) == b"{");
                 cuts.extend((!is_brace).then_some(cut));
             }
             self.rest.extend_from_slice(piece);
             if self.skips {
-                // Where it begins in the middle of a text, no quote tells anything.
+                // The scan may start in the middle of a string, where quotes mean nothing.
                 self.find_stop(TextEnd::Whole, &mut cuts);
                 let old = self.rest.len().saturating_sub(KEPT);
                 self.rest.drain(..old);
@@ -88,12 +88,12 @@ impl LineCutter {
         cuts
     }
 
-    /// The line that is not whole yet.
+    /// The incomplete line.
     pub(crate) fn unfinished(&self) -> &[u8] {
         if self.skips { &[] } else { &self.rest }
     }
 
-    /// Nothing more comes: a stop counts without the end of its line.
+    /// Ends the stream: a stop counts without the end of its line.
     pub fn end(mut self) -> Option<Cut> {
         is_stop(self.unfinished(), TextEnd::Whole).then(|| self.cut())
     }
@@ -117,7 +117,7 @@ impl LineCutter {
         }
     }
 
-    /// Whether this is the beginning of an object as programs write it for people: its first line is a brace, and others follow.
+    /// True at the beginning of a pretty-printed object: its first line is a brace, and others follow.
     fn is_open_object(&self) -> bool {
         let first = self.rest.split(|byte| *byte == b'\n').next();
         if self.rest.len() > SHORT || first.map(unmarked) != Some(b"{") {

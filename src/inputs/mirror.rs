@@ -1,5 +1,5 @@
-//! Another hand as a source that a hand can follow: each time that it says where its joints are, these are the targets, scaled.
-//! That hand is read and never written. Left and right have the same six joints in the same order, so one follows the other as is.
+//! Another hand as a source for a hand to follow: each reading of its joint angles gives the targets, scaled.
+//! That hand is read and never written. Left and right have the same six joints in the same order, so one can follow the other directly.
 
 use crate::hand::{Angle, AngleReading, Group, HandSample, Moment, PerDof};
 use crate::inputs::follow::is_fresh;
@@ -10,35 +10,35 @@ use crate::record::Record;
 use tokio::sync::{mpsc, watch};
 use tokio_util::task::AbortOnDropHandle;
 
-/// Which share of each bend of the other hand is followed.
+/// Share of each bend of the other hand that is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MirrorScale(f32);
 
 impl MirrorScale {
     /// Smallest and largest share.
     pub const RANGE: (f32, f32) = (0.2, 1.0);
-    /// The same in percent.
+    /// Smallest and largest share, percent.
     pub const PERCENT: [u8; 2] = [20, 100];
-    /// As the other hand is.
+    /// The full bend of the other hand.
     pub const WHOLE: Self = Self(1.0);
 
-    /// A share within [`Self::RANGE`].
+    /// Creates a share within [`Self::RANGE`]; `None` outside.
     pub fn new(share: f32) -> Option<Self> {
         let (least, most) = Self::RANGE;
         (least..=most).contains(&share).then_some(Self(share))
     }
 
-    /// A share of so many percent within [`Self::PERCENT`].
+    /// Creates a share from percent within [`Self::PERCENT`]; `None` outside.
     pub fn of_percent(percent: u8) -> Option<Self> {
         Self::new(f32::from(percent) / 100.0)
     }
 
-    /// This share in percent.
+    /// Share in percent.
     pub fn percent(self) -> f32 {
         (self.0 * 100.0).round()
     }
 
-    /// Where a joint goes while the same joint of the other hand is here: its way from open, times the share.
+    /// Target of a joint for this angle of the other hand's joint: its travel from open, times the share.
     pub fn aim(self, leader: Angle) -> Angle {
         let bent = f32::from(Angle::MAX.get()) - f32::from(leader.get());
         let aim = f32::from(Angle::MAX.get()) - self.0 * bent;
@@ -47,23 +47,23 @@ impl MirrorScale {
     }
 }
 
-/// What is known of the other hand now.
+/// State of the other hand.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MirrorView {
-    /// When it said last where its joints are.
+    /// Time of the last reading of its joint angles.
     pub heard: Option<Moment>,
-    /// How often it said so in the second before.
+    /// Readings in the last second.
     pub rate_hz: f64,
 }
 
 impl MirrorView {
-    /// As whom it would move the hand at `now`; `None` while it is not known where that hand is.
+    /// Owner as which it would control the hand at `now`; `None` without a fresh reading.
     pub fn owner(&self, now: Moment) -> Option<Owner> {
         is_fresh(self.heard?, now).then_some(Owner::Mirror)
     }
 }
 
-/// Another hand that is watched; its link is not kept open by that. Dropped, it is watched no more.
+/// Observes another hand until dropped; does not keep its link open.
 #[derive(Debug)]
 pub struct MirrorSource {
     view: watch::Receiver<MirrorView>,
@@ -72,7 +72,7 @@ pub struct MirrorSource {
 }
 
 impl MirrorSource {
-    /// Watches from now on. The links of both hands must count from the same clock. Must be called within a tokio runtime.
+    /// Observes from now on. The links of both hands must use the same clock. Must be called within a tokio runtime.
     pub fn open(leader: Records, scale: MirrorScale) -> Self {
         let (told, view) = watch::channel(MirrorView::default());
         let outlet = OfferOutlet::default();
@@ -84,17 +84,17 @@ impl MirrorSource {
         }
     }
 
-    /// What is known of it.
+    /// Current state.
     pub fn view(&self) -> MirrorView {
         *self.view.borrow()
     }
 
-    /// True once its link was closed: nothing is heard of it any more.
+    /// True once its link was closed and no further readings come.
     pub fn is_over(&self) -> bool {
         self.task.is_finished()
     }
 
-    /// Its angles as targets from now on, for whoever follows; whoever did before does no more.
+    /// Receives its angles as targets from now on; replaces the previous follower.
     pub fn follow(&self) -> mpsc::Receiver<Offer> {
         self.outlet.follow()
     }
@@ -123,7 +123,7 @@ async fn watch(
     }
 }
 
-/// The targets of a reading; `None` if no joint is known. A joint that is not is left alone.
+/// Targets of a reading; `None` if no joint is known. An unknown joint is left alone.
 fn offer(sample: &HandSample, scale: MirrorScale) -> Option<Offer> {
     let angle = sample.angle?;
     let aims = PerDof::from_fn(|dof| AngleReading::hold(angle.value[dof]).map(|at| scale.aim(at)));
@@ -133,7 +133,7 @@ fn offer(sample: &HandSample, scale: MirrorScale) -> Option<Offer> {
         gap: None,
         limits: OfferLimits::NONE,
         held: None,
-        // A hand at rest rightly says the same for long: that it answered is what proves that it is there.
+        // A hand at rest legitimately repeats its angles: its answers prove that it is alive.
         mark: None,
     })
 }

@@ -1,4 +1,4 @@
-//! Where motion comes from besides the window: what a source asks of a hand, how it is checked, and how the hand follows it.
+//! Motion from sources other than the window: their targets, the checks on them, and following them with the hand.
 
 pub mod dds;
 pub mod fields;

@@ -1,4 +1,4 @@
-//! What a source asks of a hand at a moment, and the way from a source to whoever follows it.
+//! Targets that a source offers to a hand, and the channel from a source to its follower.
 
 use crate::hand::gap::Gap;
 use crate::hand::{Angle, Force, Moment, PerDof, Speed};
@@ -7,28 +7,28 @@ use std::sync::Arc;
 use tokio::sync::mpsc::error::TrySendError;
 use tokio::sync::{mpsc, watch};
 
-/// Offers that may wait to be followed: one follows faster than this fills.
+/// Capacity of the queue: a follower is faster than a source can fill it.
 const OFFERS_MAX: usize = 64;
 
-/// Where a source wants the joints, each time that it says so. No default: absent is not zero.
+/// Targets of a source at one time. No default: absent is not zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Offer {
-    /// When it came in, by the program's clock.
+    /// Receive time, by the program's clock.
     pub at: Moment,
-    /// Where each joint should go; `None` leaves it alone.
+    /// Target of each joint; `None` leaves the joint alone.
     pub aims: PerDof<Option<Angle>>,
-    /// A gap between the pads of thumb and index that is wanted: the aims are its angles, and the hand goes there along the path on
+    /// Target gap between the pads of thumb and index: the aims are its angles, and the hand moves there along the path on
     /// which the pads meet.
     pub gap: Option<Gap>,
-    /// How fast and how firmly.
+    /// Requested speeds and forces.
     pub limits: OfferLimits,
-    /// Whether its dead-man is held; `None` for a source without one.
+    /// True while the dead-man is held; `None` for a source without one.
     pub held: Option<bool>,
-    /// The same for targets that are the same to the last bit; `None` for a source that may rightly stand still.
+    /// Equal for bitwise equal targets; `None` for a source that may legitimately repeat the same target.
     pub mark: Option<u64>,
 }
 
-/// The speeds and force thresholds that a source asks for; `None` keeps what the joint has.
+/// Speeds and force thresholds requested by a source; `None` leaves the joint's value unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OfferLimits {
     /// Force thresholds.
@@ -37,13 +37,13 @@ pub struct OfferLimits {
 }
 
 impl OfferLimits {
-    /// Asks for none.
+    /// No limits.
     pub const NONE: Self = Self {
         force: PerDof::splat(None),
         speed: PerDof::splat(None),
     };
 
-    /// Whether no joint goes faster or firmer than the user allowed.
+    /// True if no joint exceeds the speeds and forces that the user allowed.
     pub fn within(&self, allowed: &ArmRequest) -> bool {
         let mut forces = self.force.iter();
         let mut speeds = self.speed.iter();
@@ -51,14 +51,14 @@ impl OfferLimits {
             && speeds.all(|(dof, speed)| speed.is_none_or(|speed| speed <= allowed.speed[dof]))
     }
 
-    /// Puts newer ones over older ones, joint by joint.
+    /// Overwrites with newer values, joint by joint.
     pub fn merge(&mut self, newer: &Self) {
         self.force = PerDof::from_fn(|dof| newer.force[dof].or(self.force[dof]));
         self.speed = PerDof::from_fn(|dof| newer.speed[dof].or(self.speed[dof]));
     }
 }
 
-/// Where the offers of a source go: to whoever follows it, if anybody does. Copies are the same place.
+/// Output of a source: delivers offers to the current follower, if there is one. Clones share the same follower.
 #[derive(Debug, Clone)]
 pub(crate) struct OfferOutlet(Arc<watch::Sender<Option<mpsc::Sender<Offer>>>>);
 
@@ -69,14 +69,14 @@ impl Default for OfferOutlet {
 }
 
 impl OfferOutlet {
-    /// All offers from now on; whoever followed before does no more.
+    /// Returns a receiver for all offers from now on; it replaces the previous follower.
     pub(crate) fn follow(&self) -> mpsc::Receiver<Offer> {
         let (offers, followed) = mpsc::channel(OFFERS_MAX);
         self.0.send_replace(Some(offers));
         followed
     }
 
-    /// Gives an offer away; false if nobody follows. A follower that is not fast enough takes the next one.
+    /// Delivers an offer; false if there is no follower. An offer is dropped if the follower's queue is full.
     pub(crate) fn offer(&self, offer: Offer) -> bool {
         let followed = self.0.borrow();
         followed

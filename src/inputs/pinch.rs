@@ -1,51 +1,51 @@
-//! The next small step of a hand that is to go to a gap: open first, until thumb and index cannot meet, then to the path on
-//! which their pads do and along it.
+//! The next small step of a hand moving to a gap: open first, until thumb and index cannot collide, then to the path on
+//! which their pads meet, and along it.
 
 use crate::hand::gap::{Gap, is_open_for_pinch, pad_distance};
 use crate::hand::{Angle, Dof, PerDof};
 use crate::poses::way::{Targets, way};
 
-/// Targets nearer to the path than this, in counts, are on it; a part of it that is nearer is done.
+/// Distance from the path, in counts, within which targets are on it, and within which a leg of it is completed.
 const NEAR: f32 = 1.5;
 
-/// A gap that is gone to, and the joints that may move.
+/// Target gap and the joints that may move.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PinchAim {
     pub(super) gap: Gap,
     pub(super) moves: PerDof<bool>,
 }
 
-/// Where the joints go next.
+/// Next motion of the joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum PinchStep {
-    /// Thumb and index could meet still: these joints, each by itself.
+    /// Thumb and index could still collide: these joints, each independently.
     Open(Targets),
-    /// Along the path: thumb and index together, in a straight line to here; the others by themselves.
+    /// Along the path: thumb and index together, in a straight line to here; the other joints independently.
     Along(PerDof<Angle>),
 }
 
-/// How far a target may go at once.
+/// Limits of one step of a target.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reach {
-    /// Counts at this step.
+    /// Counts in this step.
     pub(super) step: f32,
-    /// Counts ahead of the joint.
+    /// Counts ahead of the joint's actual position.
     pub(super) lead: f32,
 }
 
-/// Whether thumb and index can go to any gap from where they are; `None` where that is not known.
+/// True if thumb and index can move to any gap from this pose; `None` if their position is not known.
 pub(super) fn is_open(pose: &Targets) -> Option<bool> {
     Some(is_open_for_pinch(&pinching(pose)?))
 }
 
-/// The way to where they can, from where the joints are; its first part.
+/// First leg from the actual pose to one from which they can.
 pub(super) fn opening(pose: &Targets) -> PinchStep {
     let from = pose.map(|at| at.map(Angle::get));
     let open = way(&from, &Gap::MAX.angles().map(Some));
     PinchStep::Open(open.first().copied().unwrap_or(PerDof::splat(None)))
 }
 
-/// The next part of the path from where the joints were sent.
+/// Next leg of the path from the last targets.
 pub(super) fn along(sent: &PerDof<f32>, to: Gap) -> PinchStep {
     let near = Gap::nearest(pad_distance(sent));
     let is_far = |angles: &PerDof<Angle>| distance(sent, angles) > NEAR;
@@ -56,7 +56,7 @@ pub(super) fn along(sent: &PerDof<f32>, to: Gap) -> PinchStep {
     PinchStep::Along(parts.clone().find(is_far).unwrap_or_else(|| to.angles()))
 }
 
-/// How much of the straight line to `to` thumb and index may go at once, 0 to 1.
+/// Share of the straight line to `to` that thumb and index may move in one step, 0 to 1.
 pub(super) fn share(sent: &PerDof<f32>, to: &PerDof<Angle>, at: &PerDof<f32>, reach: Reach) -> f32 {
     let share = |dof: Dof| {
         let way = f32::from(to[dof].get()) - sent[dof];
@@ -67,7 +67,7 @@ pub(super) fn share(sent: &PerDof<f32>, to: &PerDof<Angle>, at: &PerDof<f32>, re
     Gap::JOINTS.into_iter().map(share).fold(1.0, f32::min)
 }
 
-/// Counts of all joints, where those that pinch are known; the others count as open.
+/// Counts of all joints if the pinching ones are known; the others count as open.
 fn pinching(pose: &Targets) -> Option<PerDof<f32>> {
     let known = PerDof::from_fn(|dof| match Gap::JOINTS.contains(&dof) {
         true => pose[dof],

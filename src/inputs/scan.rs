@@ -1,10 +1,10 @@
-//! A text that may be JSON, or was meant to be, in pieces: for what has to be found in it although no reader of JSON takes it. Pure.
+//! Tokenizer for text that may be JSON or nearly so: finds content that a JSON parser would reject. Pure.
 
 use serde_json::Value;
 use std::borrow::Cow;
 use std::iter::from_fn;
 
-/// A piece of a text that may be JSON.
+/// A token of a text that may be JSON.
 pub(crate) enum Token<'a> {
     /// A string, a number, a word.
     Text(TextToken<'a>),
@@ -15,12 +15,12 @@ pub(crate) enum Token<'a> {
 pub(crate) struct TextToken<'a> {
     text: &'a [u8],
     is_quoted: bool,
-    /// Something stands behind it.
+    /// Something follows it.
     pub(crate) is_ended: bool,
 }
 
 impl TextToken<'_> {
-    /// In lower case, without blanks around it.
+    /// Lower case, trimmed.
     pub(crate) fn lower(&self) -> String {
         self.plain().trim().to_ascii_lowercase()
     }
@@ -40,12 +40,12 @@ impl TextToken<'_> {
     }
 }
 
-/// The pieces of a text.
+/// Splits a text into tokens.
 pub(crate) fn pieces(text: &[u8]) -> Vec<Token<'_>> {
     tokens(unmarked(text)).collect()
 }
 
-/// The outermost name under which a number is NaN or infinite, which JSON cannot say.
+/// The outermost name whose number is NaN or infinite, which JSON cannot express.
 pub(crate) fn not_finite_at(text: &[u8]) -> Option<Option<String>> {
     let all = pieces(text);
     let (mut depth, mut outer) = (0_usize, None);
@@ -65,7 +65,7 @@ pub(crate) fn not_finite_at(text: &[u8]) -> Option<Option<String>> {
     None
 }
 
-/// The number or the string that the outermost object has under a name, as far as it can be told; else `null`.
+/// The number or string under a name of the outermost object, as far as it can be read; else `null`.
 pub fn value_at(text: &[u8], name: &str) -> Value {
     let all = pieces(text);
     let mut depth = 0_usize;
@@ -87,7 +87,7 @@ pub fn value_at(text: &[u8], name: &str) -> Value {
     Value::Null
 }
 
-/// A text without what some systems put before it: a mark of its encoding, blanks, bytes of zero.
+/// Strips leading and trailing extras that some systems add: byte order mark, whitespace, zero bytes.
 pub fn unmarked(text: &[u8]) -> &[u8] {
     let is_before =
         |byte: &u8| byte.is_ascii_whitespace() || b"\0\xef\xbb\xbf\xff\xfe".contains(byte);
@@ -100,7 +100,7 @@ pub fn unmarked(text: &[u8]) -> &[u8] {
     end.and_then(|end| text.get(..=end)).unwrap_or_default()
 }
 
-/// Text of two bytes a character has zeros in between.
+/// Removes zero bytes, as UTF-16 text has them in between.
 pub(crate) fn without_zeros(text: &[u8]) -> Cow<'_, [u8]> {
     if text.contains(&0) {
         text.iter().copied().filter(|byte| *byte != 0).collect()
@@ -152,7 +152,7 @@ fn tokens(text: &[u8]) -> impl Iterator<Item = Token<'_>> {
     })
 }
 
-/// Bytes before the quote that ends a string; a quote behind a backslash does not.
+/// Length of a string up to its closing quote; a quote after a backslash does not close it.
 fn string_len(text: &[u8], quote: u8) -> usize {
     let mut is_escaped = false;
     let end = text.iter().position(|byte| {

@@ -1,54 +1,54 @@
-//! A stop in a text message, however the rest of the message is written. The scan needs no valid JSON and no known version: a
-//! stop is obeyed first, and what was odd about its message is reported afterwards. Pure.
+//! Detects a stop in a text message, however the rest of the message is written. The scan needs no valid JSON and no known version:
+//! a stop is obeyed first, and errors in its message are reported afterwards. Pure.
 //!
-//! A message is a stop if a name `stop`, at any depth, has another value than `false`, `0`, `null` and their like, if a name `do`
-//! has the value `stop`, or if the word `stop` is all there is. Upper case, single quotes, missing quotes, bytes of
-//! zero, text before or after it and a text that ends too early change nothing. In a text that is no JSON quotes count for nothing:
-//! one too many would hide a stop. A name `stop` within a string is one there, too.
+//! A message is a stop if a name `stop`, at any depth, has a value other than `false`, `0`, `null` and their like, if a name `do`
+//! has the value `stop`, or if the word `stop` is all there is. Upper case, single quotes, missing quotes, zero bytes, text
+//! before or after it and a truncated text change nothing. In a text that is not JSON quotes are ignored:
+//! a surplus one would hide a stop. A name `stop` within a string counts there, too.
 
 use crate::inputs::scan::{Token, pieces, unmarked, without_zeros};
 use serde::de::IgnoredAny;
 
-/// Values of `stop` that ask for none. Numbers that are zero are of these, too.
+/// Values of `stop` that request none. Zero numbers request none either.
 const NO: [&str; 8] = ["false", "null", "none", "nil", "undefined", "no", "off", ""];
 
-/// What ends a motion, the strongest last.
+/// A request that ends a motion, the strongest last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum EndWord {
-    /// The sender gives up its right to move the hand.
+    /// The sender gives up control of the hand.
     Disarm,
     /// The same, and the hand stops unless another sender moves it.
     Release,
-    /// The hand stops, whoever moves it.
+    /// The hand stops, no matter which sender moves it.
     Stop,
 }
 
-/// Whether more of a text may follow.
+/// Completeness of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextEnd {
-    /// This is all of it.
+    /// The text is complete.
     Whole,
-    /// A value at its end may be only the beginning of one.
+    /// More text may follow, so a value at the end may be incomplete.
     MayGoOn,
 }
 
-/// Whether a message asks for a stop.
+/// True if a message requests a stop.
 pub(crate) fn is_stop(text: &[u8], end: TextEnd) -> bool {
     end_word(text, end) == Some(EndWord::Stop)
 }
 
-/// The strongest word of a message that ends a motion.
+/// Returns the strongest request of a message that ends a motion.
 pub fn end_word(text: &[u8], end: TextEnd) -> Option<EndWord> {
     let text = without_zeros(text);
     let found = word_in(&text, end);
-    // A quote too many turns what is a name into part of a string. In JSON that is whole there is none.
+    // A surplus quote makes a name part of a string. Complete JSON has none.
     if end == TextEnd::MayGoOn || serde_json::from_slice::<IgnoredAny>(unmarked(&text)).is_ok() {
         return found;
     }
     found.max(word_in(&unquoted(&text), end))
 }
 
-/// A text of which no quote and no backslash is left.
+/// Returns the text without quotes and backslashes.
 fn unquoted(text: &[u8]) -> Vec<u8> {
     let text = String::from_utf8_lossy(text);
     text.replace(['"', '\'', '\\', '\u{201c}', '\u{201d}'], " ")
@@ -61,7 +61,7 @@ fn word_in(text: &[u8], end: TextEnd) -> Option<EndWord> {
         return (end == TextEnd::Whole && only.lower() == "stop").then_some(EndWord::Stop);
     }
     let mut found = None;
-    // Cut off behind its name.
+    // Truncated after its name.
     if end == TextEnd::Whole
         && let [.., Token::Mark(b'{' | b','), Token::Text(name)] = all.as_slice()
         && name.is_ended
@@ -84,7 +84,7 @@ fn word_in(text: &[u8], end: TextEnd) -> Option<EndWord> {
     found
 }
 
-/// Whether a dead-man is let go by a message, whatever else is wrong with it.
+/// True if a message releases the dead-man, whatever else is wrong with it.
 pub fn lets_go(text: &[u8]) -> bool {
     let text = without_zeros(text);
     let all = pieces(&text);
@@ -95,14 +95,14 @@ pub fn lets_go(text: &[u8]) -> bool {
             Token::Text(value),
         ] if name.lower() == "held" => {
             let value_is = value.lower();
-            // The whole word, at which the text was cut off, is one too; of a number more may be missing.
+            // A complete word at the truncation counts, too; a truncated number does not.
             is_no(&value_is) && (value.is_ended || value_is == "false")
         }
         _ => false,
     })
 }
 
-/// Whether the value of `stop` asks for one. A value that is missing does.
+/// True if the value of `stop` requests one. A missing value does.
 fn is_yes(value: Option<&Token<'_>>, end: TextEnd) -> bool {
     match (value, end) {
         (None, end) => end == TextEnd::Whole,

@@ -1,5 +1,4 @@
-//! Listens for lines of JSON, over UDP or TCP, and hands on what they ask for. Nothing listens before it is opened, nor after it
-//! is dropped.
+//! Listens for JSON lines over UDP or TCP and forwards their targets. Listens only while open.
 
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
@@ -21,66 +20,66 @@ use tokio::task::JoinSet;
 use tokio::time::{interval, timeout};
 use tokio_util::task::AbortOnDropHandle;
 
-/// Connections whose lines are looked at.
+/// Connections whose lines are followed.
 const CONNECTIONS_MAX: usize = 8;
-/// Further ones, which may only stop the hand: the first other line closes them. More are closed at once.
+/// Further connections, which may only stop the hand: the first other line closes them. Connections beyond these are closed at once.
 const STOPPERS_MAX: usize = 24;
-/// A connection that sends no whole line for so long is closed.
+/// Time without a complete line after which a connection is closed.
 const LINE_TIMEOUT: Duration = Duration::from_secs(10);
-/// How often it is told what came in.
+/// Interval at which the statistics are published.
 const REPORT_INTERVAL: Duration = Duration::from_millis(50);
-/// Lines that may wait to be looked at.
+/// Capacity of the queue of lines.
 const LINES_MAX: usize = 64;
-/// Longest datagram that the network carries: one that is too long for a line may still say stop.
+/// Longest datagram that the network carries: one that is too long for a line may still contain a stop.
 const DATAGRAM_MAX: usize = 65_535;
 
-/// Where lines come in.
+/// Transport and address of a stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StreamPlace {
-    /// One line a datagram.
+    /// One line per datagram.
     Udp(SocketAddr),
-    /// Lines that end with a line feed.
+    /// Lines terminated by a line feed.
     Tcp(SocketAddr),
 }
 
-/// What a stream is opened with.
+/// Configuration of a stream.
 #[derive(Clone)]
 pub struct StreamConfig {
-    /// Where to listen.
+    /// Transport and address.
     pub place: StreamPlace,
-    /// Which hand the lines are for.
+    /// Side of the hand for which the lines are.
     pub side: Side,
     /// The program's clock.
     pub clock: Clock,
-    /// Stops the hand. Called for each line that says so, whoever sent it.
+    /// Stops the hand. Called for each line that requests it, from any sender.
     pub stop: Arc<dyn Fn() + Send + Sync>,
-    /// Called when there is news. Must return at once.
+    /// Called when the view changed. Must return at once.
     pub wake: Wake,
 }
 
-/// What is known of a stream now.
+/// Current state of a stream.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StreamView {
-    /// What came in.
+    /// Statistics of the lines.
     pub intake: IntakeView,
     /// The newest target.
     pub newest: Option<Offer>,
-    /// Targets that nobody followed, as no user granted it.
+    /// Targets without a follower, because the user has not granted control.
     pub not_granted: u64,
-    /// Connections at once, of TCP.
+    /// Open TCP connections.
     pub connections: usize,
 }
 
 impl StreamView {
-    /// As whom it would move the hand at `now`; `None` while nobody sends.
+    /// Owner as which it would control the hand at `now`; `None` without a current sender.
     pub fn owner(&self, now: Moment) -> Option<Owner> {
         let (sender, last) = self.intake.sender?;
         is_fresh(last, now).then_some(Owner::Stream(sender))
     }
 }
 
-/// An open stream. Dropped, it is closed.
+/// An open stream. Dropping it closes it.
 #[derive(Debug)]
 pub struct StreamSource {
     local: SocketAddr,
@@ -93,7 +92,7 @@ impl StreamSource {
     /// Listens from now on.
     ///
     /// # Errors
-    /// The system's, if it does not let anybody listen there.
+    /// The system's error if the address cannot be bound.
     pub fn open(config: StreamConfig, runtime: &tokio::runtime::Handle) -> std::io::Result<Self> {
         let _entered = runtime.enter();
         let (told, view) = watch::channel(StreamView::default());
@@ -130,26 +129,26 @@ impl StreamSource {
         })
     }
 
-    /// Where it listens, with the port that the system chose where none was asked for.
+    /// Listen address, with the port chosen by the system if none was given.
     pub const fn local(&self) -> SocketAddr {
         self.local
     }
 
-    /// What is known of it.
+    /// Current state.
     pub fn view(&self) -> StreamView {
         self.view.borrow().clone()
     }
 
-    /// Its targets from now on, for whoever follows; whoever did before does no more.
+    /// Receives its targets from now on; replaces the previous follower.
     pub fn follow(&self) -> mpsc::Receiver<Offer> {
         self.outlet.follow()
     }
 }
 
-/// A line, or why it is none.
+/// A parsed line, or the reason for refusing it.
 type ReadLine = Result<StreamLine, LineRefusal>;
 
-/// Reads lines. One that asks for a stop stops the hand before anything else of it is looked at.
+/// Reads lines. A stop is carried out before the rest of its line is parsed.
 #[derive(Clone)]
 struct LineDoor {
     side: Side,
@@ -189,7 +188,7 @@ impl Listening {
         loop {
             tokio::select! {
                 received = socket.recv_from(&mut datagram) => {
-                    // An error is that of an earlier answer; nothing is answered here.
+                    // An error belongs to an earlier reply; nothing is sent here.
                     let Ok((len, from)) = received else { continue };
                     let line = datagram.get(..len).unwrap_or_default();
                     self.take(door.read(line), from);
@@ -216,7 +215,7 @@ impl Listening {
                         readers.spawn(reader.run(stream));
                     }
                     Ok(_too_many) => {}
-                    // The system is out of something: it may have it again soon.
+                    // A resource of the system is exhausted: it may be available again soon.
                     Err(_error) => tokio::time::sleep(REPORT_INTERVAL).await,
                 },
                 Some(_ended) = readers.join_next() => {}
@@ -253,7 +252,7 @@ impl Listening {
 
     fn tell(&mut self) {
         let intake = self.intake.view(self.config.clock.now());
-        // The rate sinks with time alone.
+        // The rate decreases with time alone.
         if !self.is_news && intake.rate_hz.to_bits() == self.view.intake.rate_hz.to_bits() {
             return;
         }
@@ -268,13 +267,13 @@ impl Listening {
 struct LineReader {
     from: SocketAddr,
     door: LineDoor,
-    /// Where its lines go; `None` for one too many, which may only stop the hand.
+    /// Receiver of its lines; `None` for a surplus connection, which may only stop the hand.
     lines: Option<mpsc::Sender<(ReadLine, SocketAddr)>>,
 }
 
 impl LineReader {
-    /// Reads lines until the other side closes, is silent, or sends one that is no message. What it sent behind that one is not
-    /// looked at: a page in a browser can send a form whose text has messages on further lines, but never one that begins with
+    /// Reads lines until the other side closes, is silent, or sends a line that is no message. Anything after such a line is
+    /// ignored: a web page in a browser can send a form whose text has messages on further lines, but never one that begins with
     /// a message.
     async fn run(self, mut stream: TcpStream) {
         let mut cutter = LineCutter::new(LONGEST);
@@ -300,7 +299,7 @@ impl LineReader {
         }
     }
 
-    /// Reads a line and hands it on; false if none is to follow.
+    /// Reads a line and forwards it; returns false if the connection must end.
     async fn takes(&self, cut: Cut) -> bool {
         let (text, read) = match cut {
             Cut::Stop => {

@@ -1,5 +1,5 @@
-//! A hand told over DDS: to Unitree's programs as their driver does it, and to ROS 2. What was not read is not told, and nothing is
-//! told twice.
+//! Publishes a hand over DDS: to Unitree's programs in the format of their driver, and to ROS 2. Values that were not read are not
+//! published, and nothing is published twice.
 
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment};
@@ -18,12 +18,12 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use tokio::sync::{mpsc, watch};
 use tokio_util::task::AbortOnDropHandle;
 
-/// No part of a state is older: the slowest part is read twice a second.
+/// Largest age of any part of a state: the slowest part is read twice a second.
 pub const OLDEST: Duration = Duration::from_secs(1);
-/// States of both hands that wait to be looked at: the newest counts.
+/// Queue of received states of both hands: only the newest counts.
 const MOTORS_KEPT: u16 = 8;
 
-/// Unitree's state of a hand, `inspire::inspire_hand_state`: numbers as the hand has them, in the order of its registers.
+/// Unitree's state of a hand, `inspire::inspire_hand_state`: raw numbers of the hand, in register order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct InspireState {
     shorts: [[i16; Dof::ALL.len()]; 4],
@@ -31,11 +31,11 @@ pub struct InspireState {
 }
 
 impl InspireState {
-    /// The lists of the type in their order.
+    /// Lists of the type, in order.
     const SHORTS: [Group; 4] = [Group::Position, Group::Angle, Group::Force, Group::Current];
     const BYTES: [Group; 3] = [Group::Faults, Group::Status, Group::Temperature];
 
-    /// What is known at this moment; `None` unless all of it was read, and not long ago.
+    /// State at this moment; `None` unless all parts were read recently.
     pub fn of(sample: &HandSample, now: Moment) -> Option<Self> {
         let memory = |group: Group| {
             let (asked, _) = sample.times(group)?;
@@ -69,7 +69,7 @@ impl InspireState {
         celsius
     }
 
-    /// The message in CDR with its head.
+    /// Encodes the message in CDR with its header.
     pub fn message(&self) -> Vec<u8> {
         /// Slices, as the type has sequences and no arrays.
         #[derive(Serialize)]
@@ -96,17 +96,17 @@ impl InspireState {
     }
 }
 
-/// What was told so far.
+/// Counts of published messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct DdsTold {
     pub states: u64,
-    /// States that were not told, as a part of them was never read or is old.
+    /// States that were not published because a part was never read or is too old.
     pub incomplete: u64,
-    /// Messages that could not go out in time: a reader of them does not take them.
+    /// Messages that could not be sent in time because a reader does not accept them.
     pub lost: u64,
 }
 
-/// Tells everything of one hand. Dropped, it tells nothing any more.
+/// Publishes everything about one hand until dropped.
 #[derive(Debug)]
 pub struct DdsPublisher {
     told: watch::Receiver<DdsTold>,
@@ -114,7 +114,7 @@ pub struct DdsPublisher {
 }
 
 impl DdsPublisher {
-    /// Tells from now on, for as long as the link is open; it does not keep it open. Must be called within a tokio runtime.
+    /// Publishes while the link is open; does not keep it open. Must be called within a tokio runtime.
     pub fn open(node: &DdsNode, link: &LinkHandle, side: Side) -> Self {
         let writers = Writers::open(node, side);
         let others = OtherHands {
@@ -138,23 +138,23 @@ impl DdsPublisher {
         }
     }
 
-    /// What was told so far.
+    /// Counts so far.
     pub fn told(&self) -> DdsTold {
         *self.told.borrow()
     }
 }
 
-/// A hand that is on DDS: told there, and to the lists of other Handscopes. Dropped, it is not any more.
+/// A hand that is shared on DDS: published there, and announced to the lists of other Handscopes, until dropped.
 #[derive(Debug)]
 pub struct SharedOnDds {
-    /// For what else is read or told there.
+    /// DDS participant, for other readers and writers.
     pub node: DdsNode,
     publisher: DdsPublisher,
     teller: FleetTeller,
 }
 
 impl SharedOnDds {
-    /// Tells of this hand there from now on. Must be called within a tokio runtime.
+    /// Publishes this hand from now on. Must be called within a tokio runtime.
     pub fn open(node: DdsNode, link: &LinkHandle, card: FleetCard) -> Self {
         Self {
             publisher: DdsPublisher::open(&node, link, card.side),
@@ -163,18 +163,18 @@ impl SharedOnDds {
         }
     }
 
-    /// What was told so far.
+    /// Counts so far.
     pub fn told(&self) -> DdsTold {
         self.publisher.told()
     }
 
-    /// Says this of the hand to lists from now on.
+    /// Announces the hand with this card from now on.
     pub fn say(&self, card: FleetCard) {
         self.teller.say(card);
     }
 }
 
-/// What others tell of both hands of a robot.
+/// States of both hands of a robot from other participants.
 struct OtherHands {
     told: mpsc::Receiver<DdsMessage>,
     node: DdsNode,
@@ -186,7 +186,7 @@ struct Writers {
     joints: DdsWriter,
     touch: [DdsWriter; Finger::ALL.len()],
     grip: DdsWriter,
-    /// Keeps the model for those that come later.
+    /// Keeps the model available for late joiners.
     _model: DdsWriter,
 }
 
@@ -202,7 +202,7 @@ impl Writers {
             name: "rt/robot_description".into(),
             type_name: "std_msgs::msg::dds_::String_".into(),
         });
-        // Kept for those that come; nobody reads it yet who could be too slow.
+        // Stored for late joiners; no reader exists yet that could be too slow.
         let _kept = model.send(cdr::encode(&urdf(side)));
         Self {
             _model: model,
@@ -218,7 +218,7 @@ impl Writers {
     }
 }
 
-/// A topic of ROS 2 and its type, as ROS 2 names them in DDS.
+/// Topic and type of ROS 2, with their DDS names.
 fn ros_topic(topic: Topic) -> DdsTopic {
     let (package, name) = topic.schema().name.split_once("/msg/").unwrap_or_default();
     DdsTopic {
@@ -260,7 +260,7 @@ impl Publishing {
     }
 
     fn state(&self, sample: &HandSample, fresh: Groups) {
-        // Each look at the angles is one state; what came along is a part of it.
+        // Each reading of the angles makes one state; groups read with it are part of it.
         if !fresh.contains(Group::Angle) {
             return;
         }

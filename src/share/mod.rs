@@ -1,4 +1,4 @@
-//! One hand for several programs: what is given to them, and what they may write.
+//! Shares one hand with several programs: publishing to them, and the writes allowed to them.
 
 pub mod dds;
 pub mod fleet;

@@ -1,6 +1,6 @@
-//! Unitree's state of both hands of a robot as twelve motors, `unitree_go::msg::dds_::MotorStates_`, as its DFX service tells it: motors
-//! 0 to 5 are the right hand's joints, 6 to 11 the left one's. A hand that is not known is told as no number, and what another Handscope
-//! tells of it is passed on: who reads the topic gets both hands in each message.
+//! Unitree's state of both hands of a robot as twelve motors, `unitree_go::msg::dds_::MotorStates_`, as its DFX service publishes it:
+//! motors 0 to 5 are the right hand's joints, 6 to 11 the left hand's. An unknown hand is published as NaN, and the state of it that
+//! another Handscope publishes is forwarded, so that each message contains both hands.
 
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Moment};
@@ -10,14 +10,14 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 const JOINTS: usize = Dof::ALL.len();
-/// The other hand is unknown if nothing was heard of it for so long: some twenty states.
+/// Age from which the other hand's state is unknown: some twenty states.
 const OTHER_MAX_AGE: Duration = Duration::from_millis(250);
-/// While another program tells both hands there, this one does not.
+/// Time after a message from another program that publishes both hands during which this one does not.
 const DRIVER_MAX_AGE: Duration = Duration::from_secs(2);
-/// In the spare words of a motor that its sender has measured, and not passed on.
+/// Marker in a motor's spare words: measured by the sender, not forwarded.
 const MEASURED: u32 = 0x4853_0001;
 
-/// Where both hands are told.
+/// Topic for the state of both hands.
 pub(crate) fn topic() -> DdsTopic {
     DdsTopic {
         name: "rt/inspire/state".into(),
@@ -25,7 +25,7 @@ pub(crate) fn topic() -> DdsTopic {
     }
 }
 
-/// The type, field by field. Unitree's service fills no more than `q`; the others stay 0.
+/// The type, field by field. Unitree's service fills only `q`; the others stay 0.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Motor {
     mode: u8,
@@ -42,7 +42,7 @@ struct Motors {
 }
 
 impl Motor {
-    /// Not known: no number, and lost.
+    /// Unknown: NaN, and lost.
     const UNKNOWN: Self = Self {
         mode: 0,
         q: f32::NAN,
@@ -63,17 +63,17 @@ impl Motor {
     }
 }
 
-/// Both hands, as far as they are known here.
+/// Known states of both hands.
 #[derive(Debug)]
 pub(crate) struct MotorPair {
     side: Side,
     other: Option<([Motor; JOINTS], Moment)>,
-    /// When another program told both hands last.
+    /// Time of the last message from another program that publishes both hands.
     driver: Option<Moment>,
 }
 
 impl MotorPair {
-    /// Of which this program has the hand of this side.
+    /// Creates a pair of which this program has the hand of this side.
     pub(crate) const fn new(side: Side) -> Self {
         Self {
             side,
@@ -82,7 +82,7 @@ impl MotorPair {
         }
     }
 
-    /// Another participant told this.
+    /// Handles a message from another participant.
     pub(crate) fn heard(&mut self, bytes: &[u8], now: Moment) {
         let Some(Motors { states }) = cdr::decode(bytes) else {
             return;
@@ -106,7 +106,7 @@ impl MotorPair {
         }
     }
 
-    /// The message in CDR with its head; `None` while another program tells both hands.
+    /// Encodes the message in CDR with its header; `None` while another program publishes both hands.
     pub(crate) fn message(
         &self,
         angles: &[i16; JOINTS],

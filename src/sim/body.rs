@@ -5,7 +5,7 @@ use crate::sim::body_params::BodyParams;
 use crate::sim::drive::{Drive, DriveSettings};
 use crate::sim::object::Object;
 
-/// How often the sensors' noise is drawn anew, ms.
+/// Interval at which the sensors' noise is redrawn, ms.
 const NOISE_MS: u64 = 10;
 
 /// The whole mechanism.
@@ -18,9 +18,9 @@ pub struct Body {
 }
 
 impl Body {
-    /// An open hand around `object`, in a room between 25 and 30 °C.
+    /// Creates an open hand around `object`, at an ambient temperature between 25 and 30 °C.
     pub fn new(object: &Object, params: &BodyParams, rng: &mut fastrand::Rng) -> Self {
-        // What scatters has numbers of its own, so that a body that does not is as it always was.
+        // Scatter has its own random numbers, so that a body without scatter behaves as before.
         let mut seeds = rng.clone();
         let drive = |dof| {
             let ambient = 25.0 + 5.0 * rng.f64();
@@ -45,17 +45,17 @@ impl Body {
         }
     }
 
-    /// One drive.
+    /// All drives.
     pub const fn drives(&self) -> &PerDof<Drive> {
         &self.drives
     }
 
-    /// One drive, to command it.
+    /// One drive, for commands.
     pub fn drive_mut(&mut self, dof: Dof) -> &mut Drive {
         &mut self.drives[dof]
     }
 
-    /// One millisecond for all drives.
+    /// Advances all drives by one millisecond.
     pub fn step(&mut self, now_ms: u64, settings: &PerDof<DriveSettings>, rng: &mut fastrand::Rng) {
         let slower = self.slower();
         for (dof, drive) in self.drives.iter_mut() {
@@ -70,29 +70,29 @@ impl Body {
         }
     }
 
-    /// Share of their speed that a weak supply leaves the joints.
+    /// Share of full speed that the joints reach with a weak supply.
     fn slower(&self) -> f64 {
         let moving = self.drives.iter().filter(|(_, drive)| drive.is_moving());
         let others: f64 = moving.skip(1).map(|_| 1.0).sum();
         1.0 - self.params.supply.sag * others / 5.0
     }
 
-    /// What the force sensor says, g.
+    /// Reading of the force sensor, g.
     pub fn force_g(&self, dof: Dof) -> f64 {
         self.drives[dof].load_g() + self.offset_g(dof)
     }
 
-    /// What it says without any load, g.
+    /// Reading of the force sensor without any load, g.
     pub fn offset_g(&self, dof: Dof) -> f64 {
         self.rest_g[dof] + self.noise_g[dof]
     }
 
-    /// Force on a fingertip, g, as it is.
+    /// True force on a fingertip, g.
     pub fn fingertip_g(&self, finger: Finger) -> f64 {
         self.drives[finger.bend()].load_g()
     }
 
-    /// Takes what the sensors say now as zero (manual 2.6.6); with an object in the hand the zero is wrong from then on.
+    /// Zeroes the force sensors at their present reading (manual 2.6.6); with an object in the hand the zero is wrong from then on.
     pub fn calibrate_force(&mut self) {
         for dof in Dof::ALL {
             self.rest_g[dof] -= self.drives[dof].load_g() + self.rest_g[dof];

@@ -10,56 +10,56 @@ use arrayvec::ArrayVec;
 
 /// Length of a step, s.
 pub const STEP_S: f64 = 0.001;
-/// How fast a drive gains and loses speed, counts/s²: a short ramp of 10 ms to full speed.
+/// Acceleration of a drive, counts/s²: a short ramp of 10 ms to full speed.
 const RAMP: f64 = 330_000.0;
-/// Commands under way within the dead time: one a millisecond is more than any wire can carry.
+/// Commands pending within the dead time: one per millisecond is more than any wire can carry.
 const PENDING_MAX: usize = 64;
-/// Current for each gram of load, mA.
+/// Current per gram of load, mA.
 const MA_PER_G: f64 = 0.75;
 /// Current of a drive that pushes and cannot move, mA.
 const STALL_MA: f64 = 950.0;
 /// Current at which a drive protects itself, and the largest that its register shows, mA.
 const LIMIT_MA: f64 = 2000.0;
-/// How long the current must stay at its limit, ms; an impact is shorter.
+/// Time at the current limit before the drive stops, ms; an impact is shorter.
 const OVER_CURRENT_MS: u32 = 50;
-/// How long a drive pushes before it calls itself stalled, ms.
+/// Time of pushing before a drive reports a stall, ms.
 const STALL_MS: u32 = 800;
 /// Temperature that stops a drive, °C.
 const HOT: f64 = 85.0;
 /// Temperature at which the fault ends by itself, °C.
 const COOL: f64 = 70.0;
-/// How long a drive stays where the impact took it, ms: the peaks of the table were read about 100 times a second.
+/// Time for which a drive stays at the peak of an impact, ms: the peaks of the table were read about 100 times a second.
 const PEAK_MS: u32 = 30;
-/// Time constant of a grip's relaxing after that, s.
+/// Time constant of the grip's relaxation after that, s.
 const RELAX_S: f64 = 0.15;
-/// A finger that was so many times faster than it is at the contact was slowed down for it.
+/// A finger that was faster than at the contact by this factor had slowed down for it.
 const FAST_APPROACH: f64 = 2.0;
-/// A finger that rested so long begins anew, ms: halting between two stages takes less.
+/// Rest after which a finger starts a new approach, ms: a halt between two stages is shorter.
 const BEGINS_ANEW_MS: u32 = 400;
-/// Half a unit of ANGLE_ACT.
+/// Half a unit of ANGLE_ACT, in position counts.
 const SAME_ANGLE: f64 = 1.0;
-/// What relaxing leaves of the threshold, and what of it counts as still held.
+/// Share of the threshold left after relaxation, and the share from which the object counts as still held.
 const RELAXED_PART: f64 = 0.92;
 const HELD_PART: f64 = 0.9;
-/// A joint this near to its open end makes room for another object, counts.
+/// Distance from the open end within which a joint makes room for a new object, counts.
 const OPEN_TOLERANCE: f64 = 20.0;
 
-/// What a joint is told.
+/// Goal of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DriveGoal {
-    /// Go to this position, counts.
+    /// Move to this position, counts.
     Position(f64),
-    /// Stop where it is.
+    /// Stop at the present position.
     Freeze,
 }
 
-/// The settings that act at once.
+/// Settings with immediate effect.
 #[derive(Debug, Clone, Copy)]
 pub struct DriveSettings {
     /// Units of SPEED_SET.
     pub speed: f64,
-    /// The load that stops it, g: FORCE_SET, less what its sensor reads without any where it counts that. Below zero it does not
-    /// close at all.
+    /// Load that stops the drive, g: FORCE_SET, less the sensor's reading without load where the drive includes that. A drive with a
+    /// negative value does not close at all.
     pub threshold_g: f64,
 }
 
@@ -72,7 +72,7 @@ enum DrivePhase {
     Relaxing { to: f64 },
 }
 
-/// One drive and what is in its way.
+/// One drive and the obstacle in its way.
 #[derive(Debug, Clone)]
 pub struct Drive {
     position: f64,
@@ -83,14 +83,14 @@ pub struct Drive {
     faults: Faults,
     current_ma: f64,
     temperature: f64,
-    /// What its sensor reads all the same, °C.
+    /// Fixed reading of a broken temperature sensor, °C.
     sensor_reads: Option<u8>,
     ambient: f64,
     pushing_ms: u32,
     over_current_ms: u32,
     contact: Option<Contact>,
     broken: bool,
-    /// The fastest since it closes, counts/s.
+    /// Highest speed since it started closing, counts/s.
     fastest: f64,
     rested_ms: u32,
     jam: Option<f64>,
@@ -99,26 +99,26 @@ pub struct Drive {
     heating_factor: f64,
     body: JointBody,
     rng: fastrand::Rng,
-    /// What this close's contact and latency differ from the usual by, in standard deviations.
+    /// Deviation of this close's contact from the mean, in standard deviations.
     contact_draw: f64,
-    /// Whether it opened since the contact was drawn.
+    /// True if the drive opened since the contact was drawn.
     opened: bool,
-    /// Counts that the drive is ahead of the joint by: half of its backlash at most.
+    /// Counts by which the drive is ahead of the joint, at most half of its backlash.
     lead: f64,
 }
 
-/// Position counts at an angle: the register pairs run against each other (manual 2.6.10, 2.6.11).
+/// Position counts at an angle: the two registers run in opposite directions (manual 2.6.10, 2.6.11).
 pub fn position_of(angle: f64) -> f64 {
     (1000.0 - angle) * 2.0
 }
 
 impl Drive {
-    /// An open drive of the default body in a room of `ambient` °C.
+    /// Creates an open drive of the default body at `ambient` °C.
     pub fn new(ambient: f64) -> Self {
         Self::of(JointBody::default(), ambient, 0)
     }
 
-    /// An open drive of this body in a room of `ambient` °C; the seed is that of what scatters.
+    /// Creates an open drive of this body at `ambient` °C; `seed` determines its scatter.
     pub fn of(body: JointBody, ambient: f64, seed: u64) -> Self {
         let ambient = ambient + body.warmer_by_c;
         let mut rng = fastrand::Rng::with_seed(seed);
@@ -151,12 +151,12 @@ impl Drive {
         }
     }
 
-    /// Counts, 0 open to 2000 bent.
+    /// Position in counts, 0 open to 2000 bent.
     pub const fn position(&self) -> f64 {
         self.position
     }
 
-    /// What the drive's own counter says, counts: it turns on a little before the joint follows.
+    /// Reading of the drive's own counter, counts: it turns slightly further before the joint follows.
     pub fn motor_position(&self) -> f64 {
         (self.position + self.lead).clamp(0.0, STROKE)
     }
@@ -166,12 +166,12 @@ impl Drive {
         1000.0 - self.position / 2.0
     }
 
-    /// Force on the fingertip, g, without any sensor's error.
+    /// True force on the fingertip, g, without sensor errors.
     pub fn load_g(&self) -> f64 {
         self.load_at(self.position)
     }
 
-    /// What is in its way, unless it broke.
+    /// The obstacle in its way, unless it is broken.
     fn whole_contact(&self) -> Option<Contact> {
         let contact = self.contact.filter(|_| !self.broken)?;
         let later = self.body.contact_offset + self.body.contact_scatter * self.contact_draw;
@@ -194,28 +194,28 @@ impl Drive {
             .map(|contact| (position_of(contact.angle) - self.position).max(0.0))
     }
 
-    /// mA.
+    /// Motor current, mA.
     pub const fn current_ma(&self) -> f64 {
         self.current_ma.min(LIMIT_MA)
     }
 
-    /// °C.
+    /// True temperature, °C.
     pub const fn temperature(&self) -> f64 {
         self.temperature
     }
 
-    /// What it says its temperature is, °C.
+    /// Reading of the temperature sensor, °C.
     pub fn read_temperature(&self) -> u8 {
         let read = || number::byte(self.temperature);
         self.sensor_reads.unwrap_or_else(read)
     }
 
-    /// Its sensor reads this from now on, whatever the temperature is.
+    /// Makes the sensor read this from now on, regardless of the temperature.
     pub const fn break_sensor(&mut self, celsius: u8) {
         self.sensor_reads = Some(celsius);
     }
 
-    /// What it says it does.
+    /// Status that the drive reports.
     pub const fn status(&self) -> Status {
         self.status
     }
@@ -225,46 +225,46 @@ impl Drive {
         self.faults
     }
 
-    /// Puts something in its way, or takes it away.
+    /// Puts an obstacle in its way, or removes it.
     pub const fn set_contact(&mut self, contact: Option<Contact>) {
         self.contact = contact;
         self.broken = false;
     }
 
-    /// Blocks the linkage at an angle; the fingertip's sensor feels nothing of it.
+    /// Blocks the linkage at an angle; the fingertip's sensor does not feel it.
     pub const fn set_jam(&mut self, angle: Option<f64>) {
         self.jam = angle;
     }
 
-    /// Lets it obey nothing any more, and go on saying what it says.
+    /// Makes the drive ignore all commands and keep reporting its state.
     pub const fn set_dead(&mut self, dead: bool) {
         self.dead = dead;
     }
 
-    /// How much of the contact force is there, 1 = all; a slip takes some away.
+    /// Sets the share of the contact force that is present, 1 = all; a slip reduces it.
     pub const fn set_grip(&mut self, grip: f64) {
         self.grip = grip;
     }
 
-    /// Lets its current heat it so many times as much as usual.
+    /// Multiplies the heating by its current by this factor.
     pub fn heat_more(&mut self, times: f64) {
         self.heating_factor = times;
     }
 
-    /// Makes it this warm, °C.
+    /// Sets its temperature, °C.
     pub const fn warm(&mut self, celsius: f64) {
         self.temperature = celsius;
     }
 
-    /// Shows a status until the next motion; for scripts.
+    /// Reports a status until the next motion; for scripts.
     pub const fn pretend(&mut self, status: Status) {
         self.status = status;
     }
 
-    /// Switches a fault on.
+    /// Raises a fault.
     pub fn inject(&mut self, fault: Fault) {
         if fault == Fault::OverTemperature {
-            // Without the heat it would end at once.
+            // Without the heat the fault would end at once.
             self.temperature = self.temperature.max(HOT);
         }
         self.raise(fault);
@@ -276,7 +276,7 @@ impl Drive {
         self.stop(status);
     }
 
-    /// Clears what can be cleared (manual 2.6.3). The drive stays where it is.
+    /// Clears the clearable faults (manual 2.6.3). The drive stays where it is.
     pub fn clear_errors(&mut self) {
         if self.faults.is_empty() {
             return;
@@ -290,13 +290,13 @@ impl Drive {
         self.stop(status);
     }
 
-    /// Loses its commands and faults, as without power. Position and heat remain.
+    /// Drops its commands and faults, as at a power loss. Position and temperature remain.
     pub fn power_cycle(&mut self) {
         self.faults = Faults::default();
         self.stop(Status::PositionReached);
     }
 
-    /// Takes a command that acts after the dead time.
+    /// Queues a command that takes effect after the dead time.
     pub fn command(&mut self, goal: DriveGoal, now_ms: u64) {
         // Commands do not overtake one another.
         let last = self.pending.last().map_or(0, |(due, _)| *due);
@@ -317,7 +317,7 @@ impl Drive {
         matches!(self.phase, DrivePhase::Moving { .. })
     }
 
-    /// One millisecond.
+    /// Advances by one millisecond.
     pub fn step(&mut self, now_ms: u64, setting: DriveSettings) {
         while let Some((due, goal)) = self.pending.first().copied() {
             if due > now_ms {
@@ -362,7 +362,7 @@ impl Drive {
         }
     }
 
-    /// What was pressed too hard is broken until the joint is open again.
+    /// An object pressed too hard stays broken until the joint is open again.
     fn watch_object(&mut self) {
         if self.position < OPEN_TOLERANCE {
             self.broken = false;
@@ -399,20 +399,20 @@ impl Drive {
         }
     }
 
-    /// True if it rests where it is told to go, as far as ANGLE_ACT tells.
+    /// True if the drive rests at its target, within the resolution of ANGLE_ACT.
     fn is_there(&self, to: f64) -> bool {
         let is_near = (to - self.position).abs() < SAME_ANGLE;
         is_near && self.phase == DrivePhase::Rest && self.faults.is_empty()
     }
 
-    /// True if its threshold stopped it and the grip is still there: told to close again, it does not push (manual 2.6.12).
+    /// True if its threshold stopped it and the grip still holds: a new close command does not make it push (manual 2.6.12).
     fn holds(&self, to: f64, setting: DriveSettings) -> bool {
         let closes = self.status == Status::ForceReached && to > self.position;
         closes && self.load_g() >= HELD_PART * setting.threshold_g.max(1.0)
     }
 
-    /// A drive that stalled or drew too much may still open; any other fault keeps it still.
-    // Manual: not said. The manual's advice to free the finger needs a way to open it.
+    /// A drive that stalled or drew too much current may still open; any other fault keeps it from moving.
+    // Manual: silent. Its advice to free the finger requires a way to open it.
     fn may_move(&self, to: f64) -> bool {
         let only_opens =
             self.faults.contains(Fault::Stall) || self.faults.contains(Fault::OverCurrent);
@@ -425,7 +425,7 @@ impl Drive {
     fn move_on(&mut self, to: f64, setting: DriveSettings) {
         let way = to - self.position;
         let top = setting.speed * self.body.counts_per_speed;
-        // The last counts are taken slowly enough to end on the target.
+        // The last counts are travelled slowly enough to end on the target.
         let wanted = way.signum() * top.min((2.0 * RAMP * way.abs()).sqrt());
         let change = (wanted - self.velocity).clamp(-RAMP * STEP_S, RAMP * STEP_S);
         self.velocity += change;
@@ -438,7 +438,7 @@ impl Drive {
         let load = self.load_g();
         self.current_ma = self.free_ma(way) + MA_PER_G * load;
         let step = self.take_up(self.velocity * STEP_S);
-        // A fast drive passes its threshold within one step, so the step is looked at before it is made.
+        // A fast drive passes its threshold within one step, so the step is checked before it is made.
         let met = self.load_at(self.position + step);
         let may_stop = met > 0.0 || setting.threshold_g < 0.0;
         if way > 0.0 && may_stop && met >= setting.threshold_g {
@@ -473,7 +473,7 @@ impl Drive {
         constant + body.friction_ma_per_speed * speed
     }
 
-    /// What is left of a step of the motor for the joint once its backlash is taken up.
+    /// Returns the part of a motor step that reaches the joint once the backlash is taken up.
     fn take_up(&mut self, step: f64) -> f64 {
         let half = self.body.backlash / 2.0;
         let lead = (self.lead + step).clamp(-half, half);
@@ -505,7 +505,7 @@ impl Drive {
         }
     }
 
-    /// The force met its threshold. The drive runs on by the distance that the table gives.
+    /// Stops at the force threshold. The drive runs on by the distance that the table gives.
     fn force_stop(&mut self, threshold_g: f64) {
         let contact = self.whole_contact().filter(|_| threshold_g >= 0.0);
         let Some(contact) = contact else {
@@ -574,14 +574,14 @@ impl Drive {
         self.status = status;
     }
 
-    /// Stops and forgets what it was told.
+    /// Stops and drops the pending commands.
     fn stop(&mut self, status: Status) {
         self.pending.clear();
         self.stop_moving(status);
     }
 }
 
-/// A number of the standard normal distribution.
+/// A random number of the standard normal distribution.
 fn normal(rng: &mut fastrand::Rng) -> f64 {
     let radius = (-2.0 * (1.0 - rng.f64()).ln()).sqrt();
     radius * (std::f64::consts::TAU * rng.f64()).cos()

@@ -1,10 +1,10 @@
-//! Values that no hand should send, laid over the memory in the `extremes` scenario. Changes nothing else.
+//! Values that no hand should send, written over the memory in the `extremes` scenario. Changes nothing else.
 
 use crate::hand::register::{ANGLE_ACT, CURRENT, ERROR, FORCE_ACT, POS_ACT, STATUS, TEMP};
 use crate::hand::{Finger, Group, TactileBlock};
 use crate::sim::memory::Memory;
 
-/// How long a set of values stays before it moves to the next finger, ms.
+/// Time for which a set of values stays before it moves to the next finger, ms.
 const STAY_MS: u64 = 1000;
 
 /// Overwrites the live values with impossible ones.
@@ -76,7 +76,7 @@ fn block(finger: Finger) -> [u8; 58] {
         Finger::Thumb => plain,
     };
     let mut bytes = odd.encode();
-    // The ring finger's check does not fit its bytes.
+    // The ring finger's check word does not match its bytes.
     if let (Finger::Ring, Some(check)) = (finger, bytes.get_mut(54)) {
         *check ^= 0x5A;
     }

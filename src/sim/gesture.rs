@@ -2,7 +2,7 @@
 
 use crate::hand::PerDof;
 
-/// ANGLE_SET of a stored pose; `None` for those that are taught (14 to 40) and for those outside 1 to 40.
+/// ANGLE_SET of a stored pose; `None` for user gestures (14 to 40) and for numbers outside 1 to 40.
 // Manual: 2.6.7 names "open, two-finger pinch, fist" among 1 to 13, without numbers.
 pub fn pose(number: u8) -> Option<PerDof<i16>> {
     let angles = match number {

@@ -1,4 +1,4 @@
-//! The simulated hand: memory, body, fingertips and script put together. It is given the time; it owns no clock and no wire.
+//! The simulated hand: combines memory, body, fingertips and script. Time is passed in; it owns no clock and no wire.
 
 use crate::hand::register::{ANGLE_ACT, FORCE_SET, HAND_ID, REDU_RATIO, Register, SPEED_SET, Span};
 use crate::hand::{Dof, Fault, Finger, Group, Moment, PerDof, PerFinger};
@@ -21,36 +21,36 @@ use crate::sim::touch::{SENSOR_MS, TouchSensors};
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// What a sensor's own header adds to its sum: 55 AA, 56 bytes, a command, a number, 8 channels.
+/// Contribution of a sensor's own header to its check sum: 55 AA, 56 bytes, a command, a number, 8 channels.
 // Manual: silent; the sensor maker's own frame has this header before the same 54 bytes.
 const SENSOR_HEADER_SUM: u16 = 0x55 + 0xAA + 56 + 3 + 1 + 8;
-/// Where the check stands in a fingertip's block (manual 2.6.21).
+/// Offset of the check word in a fingertip's block (manual 2.6.21).
 const CHECK_AT: u16 = 54;
-/// One answer in so many comes twice, or late, on hands that do so.
+/// On hands that do so, one reply in this many comes twice, or late.
 const DOUBLE_ONE_IN: u32 = 16;
 const RARE_ONE_IN: u32 = 256;
 const RARE_TURNAROUND: Duration = Duration::from_millis(500);
-/// Speed that a creeping hand takes SPEED_SET 0 for.
+/// Speed at which a creeping hand moves with SPEED_SET 0.
 const CREEP: f64 = 5.0;
-/// Writes that the journal keeps; twice as many are held before the older half goes.
+/// Writes that remain in the journal; the older half is dropped when twice as many have accumulated.
 pub const JOURNAL_KEEPS: usize = 8192;
-/// Way of a joint, counts of its stroke, after which feedback freezes in that scenario.
+/// Travel of a joint, in counts of its stroke, after which feedback freezes in that scenario.
 const FREEZE_TRAVEL: f64 = 100.0;
-/// Where the time of a read stands when the personality stamps it.
+/// Location of the read's time stamp, if the personality writes one.
 const STAMP: Span = Span::new(GAP.address, 8);
 
-/// What a simulated hand is made of.
+/// Configuration of a simulated hand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SimConfig {
-    /// Seed of everything random in it.
+    /// Seed of all its random numbers.
     pub seed: u64,
     /// Id on the bus, 1..=254.
     pub id: u8,
-    /// What it does by itself.
+    /// Behaviour without commands.
     pub scenario: Scenario,
-    /// How it reads the manual's gaps.
+    /// Choices where the manual leaves gaps.
     pub personality: Personality,
-    /// How it differs from other hands.
+    /// Mechanical differences from other hands.
     pub body: BodyParams,
 }
 
@@ -66,23 +66,23 @@ impl Default for SimConfig {
     }
 }
 
-/// What a write did.
+/// Result of a write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WriteEffect {
-    /// The id in the acknowledgement: the new one, if the write changed it.
+    /// Id in the acknowledgement: the new one, if the write changed it.
     pub ack_id: u8,
-    /// Whether there is an acknowledgement at all.
+    /// True if the write is acknowledged.
     pub is_acked: bool,
-    /// Elements that the hand took; the others were dropped without a word.
+    /// Number of elements that the hand accepted; the others were dropped silently.
     pub taken: usize,
 }
 
-/// How an answer is sent.
+/// Timing of a reply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReplyTiming {
-    /// From the end of the request.
+    /// Delay from the end of the request.
     pub after: Duration,
-    /// How often it comes, 1 or 2.
+    /// Number of times that it is sent, 1 or 2.
     pub copies: usize,
 }
 
@@ -91,21 +91,20 @@ pub struct ReplyTiming {
 pub struct SaveFrame {
     /// Command byte, 0x11 or 0x12.
     pub command: u8,
-    /// Whether the parameters are in flash.
+    /// True if the parameters were written to flash.
     pub ok: bool,
 }
 
-/// One write that reached the hand, taken or not.
+/// One write that reached the hand, accepted or not.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JournalEntry {
     pub at: Moment,
-    /// First byte's address.
+    /// Address of the first byte.
     pub address: u16,
-    /// The bytes.
     pub bytes: Vec<u8>,
 }
 
-/// A hand that answers bytes.
+/// A simulated hand at byte level.
 #[derive(Debug, Clone)]
 pub struct SimHand {
     pub(crate) config: SimConfig,
@@ -116,39 +115,39 @@ pub struct SimHand {
     rng: fastrand::Rng,
     pub(crate) now_ms: u64,
     published_ms: Option<u64>,
-    /// Fingertips that were published then, too.
+    /// Fingertips that were also published then.
     published_tips: PerFinger<bool>,
     pub(crate) calibration_due_ms: Option<u64>,
-    /// When the SAVE under way is in flash, on a hand that takes its time.
+    /// Time at which the pending SAVE is in flash, on a hand that needs time for it.
     pub(crate) flash_due_ms: Option<u64>,
     pub(crate) saves: VecDeque<(Moment, SaveFrame)>,
-    /// When a serial line with the maker's framing hears that a calibration is finished.
+    /// Time at which a serial line with the maker's framing reports the end of a calibration.
     pub(crate) calibration_end: Option<Moment>,
-    /// False while a write comes over a wire that has no frames later than the reply.
+    /// False while handling a write from a wire that has no frames after the reply.
     pub(crate) sends_late_frames: bool,
     pub(crate) id: u8,
     pub(crate) baud_code: u8,
-    /// Chance of what is not the body's: how answers are sent.
+    /// Random numbers independent of the body: timing of replies.
     chance: fastrand::Rng,
     journal: Vec<JournalEntry>,
-    /// What somebody presses each fingertip with, g.
+    /// External force on each fingertip, g.
     pressed_g: PerFinger<f64>,
-    /// What the hand's own script ordered last; a setpoint from outside ends it.
+    /// Last order of the hand's own script; a setpoint from outside ends it.
     pub(crate) order: Option<Order>,
-    /// What it tells stands still; the joints go on.
+    /// The feedback is frozen; the joints continue.
     frozen: bool,
-    /// ANGLE_ACT of the joints whose angle alone is unchanged, whatever they do.
+    /// ANGLE_ACT of the joints whose angle alone is frozen.
     frozen_angles: PerDof<Option<i16>>,
-    /// Where the joints were when it was switched on.
+    /// Positions of the joints at power-up.
     began_at: PerDof<f64>,
-    /// It says what was recorded: no body, no script, and writes change nothing.
+    /// It replays a recording: no body, no script, and writes change nothing.
     follows_recording: bool,
-    /// How its object is pulled, or is about to be.
+    /// Current or scheduled pull on its object.
     pull: Option<Pull>,
 }
 
 impl SimHand {
-    /// A hand that was switched on at [`Moment::ZERO`], open.
+    /// Creates a hand that was switched on at [`Moment::ZERO`], open.
     pub fn new(config: SimConfig) -> Self {
         let mut rng = fastrand::Rng::with_seed(config.seed);
         let body = Body::new(&Object::of(config.scenario), &config.body, &mut rng);
@@ -185,7 +184,7 @@ impl SimHand {
         hand
     }
 
-    /// Lives on until `now`, in steps of one millisecond, so that the result does not depend on who asks how often.
+    /// Simulates up to `now` in steps of one millisecond, so that the result does not depend on the calling pattern.
     pub fn advance_to(&mut self, now: Moment) {
         let end = now.micros() / 1000;
         if self.follows_recording {
@@ -197,10 +196,10 @@ impl SimHand {
         }
     }
 
-    /// The bytes of a run as they are at `now`.
+    /// Reads a range of bytes at `now`.
     ///
     /// # Errors
-    /// [`AccessError`] for runs that leave the memory, or cross the gap on a hand that does not answer there.
+    /// [`AccessError`] for ranges that leave the memory, or cross the gap on a hand that does not answer there.
     pub fn read(&mut self, span: Span, now: Moment) -> Result<Vec<u8>, AccessError> {
         self.advance_to(now);
         if self.supply.is_off(self.now_ms) {
@@ -219,10 +218,10 @@ impl SimHand {
         }
     }
 
-    /// A write from outside, over a serial line with the maker's framing, where late frames follow.
+    /// Applies a write from outside over a serial line with the maker's framing, where late frames may follow.
     ///
     /// # Errors
-    /// [`AccessError`] for runs that leave the memory. A value that the hand does not take is no error: it is dropped.
+    /// [`AccessError`] for ranges that leave the memory. A value that the hand does not accept is no error: it is dropped.
     pub fn write(
         &mut self,
         address: u16,
@@ -266,7 +265,7 @@ impl SimHand {
         })
     }
 
-    /// How the next answer is sent.
+    /// Timing of the next reply.
     pub fn manner(&mut self) -> ReplyTiming {
         let personality = self.config.personality;
         let usual = Duration::from_micros(self.chance.u64(3_000..=15_000));
@@ -283,7 +282,7 @@ impl SimHand {
         }
     }
 
-    /// The result of a SAVE, if one is due. Each is given once.
+    /// Returns the result of a SAVE, if one is due, once each.
     pub fn late_save_result(&mut self, now: Moment) -> Option<SaveFrame> {
         if self.next_save_result()? > now {
             return None;
@@ -291,22 +290,22 @@ impl SimHand {
         self.saves.pop_front().map(|(_, frame)| frame)
     }
 
-    /// When the next result of a SAVE is due.
+    /// Time at which the next result of a SAVE is due.
     pub fn next_save_result(&self) -> Option<Moment> {
         self.saves.front().map(|(due, _)| *due)
     }
 
-    /// When the end of a calibration is to be told.
+    /// Time at which the end of a calibration is due to be reported.
     pub const fn next_calibration_end(&self) -> Option<Moment> {
         self.calibration_end
     }
 
-    /// True if the end of a calibration is to be told now; once.
+    /// True, once, if the end of a calibration is due to be reported.
     pub fn late_calibration_end(&mut self, now: Moment) -> bool {
         self.calibration_end.take_if(|due| *due <= now).is_some()
     }
 
-    /// Switches the hand off. The joints stay where they are, and nothing is answered.
+    /// Switches the hand off. The joints stay where they are, and the hand does not answer.
     pub fn switch_off(&mut self, now: Moment) {
         self.advance_to(now);
         self.supply.switch_off();
@@ -336,22 +335,22 @@ impl SimHand {
         self.target_actual();
     }
 
-    /// The id that the hand answers to.
+    /// Current id on the bus.
     pub const fn id(&self) -> u8 {
         self.id
     }
 
-    /// The serial speed's code in effect, by default that of the last power-up.
+    /// Code of the serial speed in effect, by default that of the last power-up.
     pub const fn baud_code(&self) -> u8 {
         self.baud_code
     }
 
-    /// How this hand reads the manual's gaps.
+    /// Choices where the manual leaves gaps.
     pub const fn personality(&self) -> &Personality {
         &self.config.personality
     }
 
-    /// How it differs from other hands.
+    /// Mechanical differences from other hands.
     pub const fn body(&self) -> &BodyParams {
         &self.config.body
     }
@@ -367,49 +366,49 @@ impl SimHand {
         self.published_ms = None;
     }
 
-    /// Lets somebody pull at its object, or leave it alone.
+    /// Starts or ends a pull on its object.
     pub fn set_pull(&mut self, pull: Option<Pull>) {
         self.pull = pull;
         self.published_ms = None;
     }
 
-    /// Force of the object on each fingertip, g, whatever the hand tells.
+    /// True force of the object on each fingertip, g, independent of the feedback.
     pub fn true_loads(&self) -> PerFinger<f64> {
         PerFinger::from_fn(|finger| self.body.fingertip_g(finger))
     }
 
-    /// Whether its object slides now, whatever the hand tells.
+    /// True if its object slides now, independent of the feedback.
     pub fn object_slides(&self) -> bool {
         let phase = self.pull.map(|pull| pull.phase(self.now_ms));
         matches!(phase, Some(PullPhase::Slides(_)))
     }
 
-    /// Presses a fingertip with so many grams, or lets it go with 0.
+    /// Presses a fingertip with this force, g; 0 releases it.
     pub fn press_tip(&mut self, finger: Finger, grams: f64) {
         self.pressed_g[finger] = grams;
         self.published_ms = None;
     }
 
-    /// Switches a fault on.
+    /// Raises a fault.
     pub fn inject_fault(&mut self, dof: Dof, fault: Fault) {
         self.body.drive_mut(dof).inject(fault);
         self.published_ms = None;
     }
 
-    /// Makes a drive this warm, °C.
+    /// Sets a drive's temperature, °C.
     pub fn warm(&mut self, dof: Dof, celsius: f64) {
         self.body.drive_mut(dof).warm(celsius);
         self.published_ms = None;
     }
 
-    /// A temperature sensor reads this from now on, °C, whatever the drive has.
+    /// Fixes the reading of a temperature sensor, °C, regardless of the drive's temperature.
     pub fn break_temperature_sensor(&mut self, dof: Dof, celsius: u8) {
         self.body.drive_mut(dof).break_sensor(celsius);
         self.published_ms = None;
     }
 
-    /// Lets everything that the hand tells of its joints and fingertips stand still from now on, or live again. The joints go on,
-    /// setpoints are taken and read back, and every frame is valid. A power cycle ends it.
+    /// Freezes or unfreezes all feedback of joints and fingertips. The joints continue, setpoints are accepted and read back,
+    /// and every frame is valid. A power cycle ends it.
     pub fn freeze_feedback(&mut self, frozen: bool, now: Moment) {
         self.advance_to(now);
         self.publish(|_| true);
@@ -417,8 +416,8 @@ impl SimHand {
         self.published_ms = None;
     }
 
-    /// Lets the angles of these joints alone stand still from now on, and those of the others live: current, force, touch and status of
-    /// all joints live on. A power cycle ends it.
+    /// Freezes only the angles of these joints; the other angles, and the current, force, touch and status of all joints stay live.
+    /// A power cycle ends it.
     pub fn freeze_angles(&mut self, frozen: PerDof<bool>, now: Moment) {
         self.advance_to(now);
         self.publish(|_| false);
@@ -429,12 +428,12 @@ impl SimHand {
         self.published_ms = None;
     }
 
-    /// True while what the hand tells stands still.
+    /// True while all feedback is frozen.
     pub const fn is_frozen(&self) -> bool {
         self.frozen
     }
 
-    /// Where the joints are, counts of ANGLE_ACT, whatever the hand tells.
+    /// True angles of the joints, counts of ANGLE_ACT, independent of the feedback.
     pub fn true_angles(&self) -> PerDof<f64> {
         PerDof::from_fn(|dof| self.body.drives()[dof].angle())
     }
@@ -444,22 +443,22 @@ impl SimHand {
         self.body.drive_mut(dof).set_jam(angle);
     }
 
-    /// Lets a drive obey nothing any more: its joint stays, and its status with it.
+    /// Makes a drive ignore all commands: its joint stays, and its status with it.
     pub fn set_dead(&mut self, dof: Dof, dead: bool) {
         self.body.drive_mut(dof).set_dead(dead);
     }
 
-    /// From now on it says what it is given, as it was recorded of another hand. Writes are acknowledged and change nothing.
+    /// Makes it replay recorded data of another hand. Writes are acknowledged and change nothing.
     pub const fn follow_recording(&mut self) {
         self.follows_recording = true;
     }
 
-    /// What a recorded hand held from here on.
+    /// Sets recorded memory contents, valid from now on.
     pub fn put_recorded(&mut self, address: u16, bytes: &[u8]) {
         self.memory.put(address, bytes);
     }
 
-    /// Whether a recorded hand answers.
+    /// Sets whether a recorded hand answers.
     pub const fn put_silent(&mut self, silent: bool) {
         if silent {
             self.supply.switch_off()
@@ -538,7 +537,7 @@ impl SimHand {
         }
     }
 
-    /// The load at which this FORCE_SET stops a drive, g.
+    /// Load at which this FORCE_SET stops a drive, g.
     fn stops_at_g(&self, dof: Dof, threshold: i16) -> f64 {
         let offset_g = match self.config.personality.force_compared {
             ForceCompared::AsRead => self.body.offset_g(dof),
@@ -571,7 +570,7 @@ impl SimHand {
         }
     }
 
-    /// How the object slid on the fingertips when they measured.
+    /// Slip of the object on the fingertips at the time of measurement.
     fn slip(&self, measured_ms: u64) -> Slip {
         match self.pull {
             Some(pull) => pull.slip(measured_ms),
@@ -600,8 +599,8 @@ impl SimHand {
         }
     }
 
-    /// Moves as an action stored in the hand would. The setpoint registers stay what a controller wrote: a change there
-    /// would be another controller's.
+    /// Moves as an action stored in the hand would. The setpoint registers keep a controller's last values: a change there
+    /// would look like another controller.
     fn obey(&mut self, order: &Order) {
         for dof in Dof::ALL {
             self.go_to_angle(dof, order.angles[dof]);
@@ -614,7 +613,7 @@ impl SimHand {
         self.body.drive_mut(dof).command(goal, self.now_ms);
     }
 
-    /// ANGLE_SET says where the joints are; nothing is to be moved.
+    /// Sets ANGLE_SET to the actual positions; nothing moves.
     fn target_actual(&mut self) {
         for (dof, drive) in self.body.drives().iter() {
             self.memory
@@ -623,7 +622,7 @@ impl SimHand {
         self.published_ms = None;
     }
 
-    /// The check of the fingertip's block at `at`, as this hand reckons it.
+    /// Writes the check word of the fingertip's block at `at`, computed as this hand does.
     fn put_check(&mut self, at: u16) {
         let check = at + CHECK_AT;
         let sum = u16::from_le_bytes([self.memory.byte(check), self.memory.byte(check + 1)]);
@@ -635,7 +634,7 @@ impl SimHand {
         self.memory.put(check, &sum.to_le_bytes());
     }
 
-    /// Puts the live values of this millisecond into the memory; of the fingertips, those whose blocks are wanted.
+    /// Writes the live values of this millisecond to the memory; for fingertips, only the blocks that `wants` selects.
     fn publish(&mut self, wants: impl Fn(Span) -> bool) {
         if self.follows_recording || self.frozen {
             return;

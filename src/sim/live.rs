@@ -1,4 +1,4 @@
-//! From the body to the live registers (manual 2.6.14 to 2.6.20). Decides nothing.
+//! Copies the body's state to the live registers (manual 2.6.14 to 2.6.20). Decides nothing.
 
 use crate::hand::register::{ANGLE_ACT, CURRENT, ERROR, FORCE_ACT, POS_ACT, STATUS, TEMP};
 use crate::hand::{Dof, Finger};
@@ -7,15 +7,15 @@ use crate::sim::memory::Memory;
 use crate::sim::number;
 use crate::sim::touch::Press;
 
-/// Largest force that the sensor shows either way, g (manual 2.6.16).
+/// Largest force that the sensor reports in either direction, g (manual 2.6.16).
 const FORCE_SHOWN_G: f64 = 4000.0;
 
-/// The joint's place in a register group.
+/// Index of the joint within a register group.
 pub(crate) fn element(dof: Dof) -> u16 {
     u16::try_from(dof.index()).unwrap_or_default()
 }
 
-/// Puts position, angle, force, current, faults, status and temperature of all drives into the memory.
+/// Writes position, angle, force, current, faults, status and temperature of all drives to the memory.
 pub(crate) fn publish_drives(memory: &mut Memory, body: &Body) {
     for (dof, drive) in body.drives().iter() {
         let at = element(dof);
@@ -30,7 +30,7 @@ pub(crate) fn publish_drives(memory: &mut Memory, body: &Body) {
     }
 }
 
-/// What a fingertip meets.
+/// Force on a fingertip and its distance from the object.
 pub(crate) fn press(body: &Body, finger: Finger) -> Press {
     Press {
         force_g: body.fingertip_g(finger),

@@ -1,4 +1,4 @@
-//! Register memory by byte address, with access rules, ranges and a flash copy. Nothing moves here.
+//! Register memory by byte address, with access rules, ranges and a flash copy. No motion.
 
 use crate::hand::register::{
     ACTION_SEQ_RUN, ANGLE_SET, Access, CLEAR_ERROR, DEFAULT_FORCE_SET, DEFAULT_SPEED_SET, Element,
@@ -7,18 +7,18 @@ use crate::hand::register::{
 };
 use crate::sim::personality::OutOfRangeWrite;
 
-/// Addresses of the hand: twelve bits, as CAN ids have room for.
+/// Size of the hand's address space: twelve bits, as in CAN ids.
 pub const MEMORY_LEN: usize = 4096;
 /// The unused bytes between ANGLE_ACT and FORCE_ACT.
 pub const GAP: Span = Span::new(1558, 24);
-/// Speeds and force thresholds after power-up, as delivered.
+/// Factory value of the speeds and force thresholds after power-up.
 // Manual: 2.6.8 and 2.6.9 print no value.
 const DEFAULT_SETTING: i16 = 1000;
 
-/// Why the hand does not answer a request.
+/// Reason why the hand does not answer a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum AccessError {
-    /// The run leaves the memory.
+    /// The range leaves the memory.
     #[error("addresses {address} to {last} leave the memory")]
     Unmapped {
         /// First byte.
@@ -26,25 +26,25 @@ pub enum AccessError {
         /// Last byte.
         last: u32,
     },
-    /// This hand does not let the unused bytes be read.
+    /// This hand does not allow reads of the unused bytes.
     #[error("this hand does not answer reads of the unused bytes 1558 to 1581")]
     Gap,
-    /// A value outside its range, on a hand that says so.
+    /// A value is out of range, on a hand that reports it.
     #[error("a value at {address} is out of range")]
     OutOfRange {
         /// First byte of the write.
         address: u16,
     },
-    /// A register that can only be read, on a hand that says so.
+    /// The register is read-only, on a hand that reports it.
     #[error("{address} can only be read")]
     ReadOnly {
         /// First byte of the write.
         address: u16,
     },
-    /// This hand says nothing at all.
+    /// This hand does not answer at all.
     #[error("the hand is silent")]
     Silent,
-    /// A run without a byte.
+    /// The range is empty.
     #[error("a run of no bytes at {address}")]
     Empty {
         /// First byte.
@@ -57,7 +57,7 @@ pub enum AccessError {
 pub struct Change {
     /// The row.
     pub register: &'static Register,
-    /// Which element, 0 the first.
+    /// Index of the element, from 0.
     pub element: u16,
     /// Its new value.
     pub value: i32,
@@ -71,7 +71,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// As delivered, with this id.
+    /// Creates the memory in factory state with this id.
     pub fn new(id: u8) -> Self {
         let mut memory = Self {
             ram: vec![0; MEMORY_LEN],
@@ -89,7 +89,7 @@ impl Memory {
     fn put_default(&mut self, row: &Register) {
         let value = match (row.address, row.default) {
             (1032 | 1044, _) => i32::from(DEFAULT_SETTING),
-            // A gesture that nobody has taught moves no joint.
+            // A gesture that was not taught moves no joint.
             (1066, _) => -1,
             (_, Some(value)) => value,
             (_, None) => 0,
@@ -112,10 +112,10 @@ impl Memory {
         }
     }
 
-    /// The bytes of a run, which must lie in the memory.
+    /// Returns the bytes of a range, which must lie in the memory.
     ///
     /// # Errors
-    /// [`AccessError::Unmapped`] beyond 4095, [`AccessError::Empty`] without a byte.
+    /// [`AccessError::Unmapped`] beyond 4095, [`AccessError::Empty`] for an empty range.
     pub fn read(&self, span: Span) -> Result<&[u8], AccessError> {
         check(span, MEMORY_LEN)?;
         let from = usize::from(span.address);
@@ -127,10 +127,10 @@ impl Memory {
             })
     }
 
-    /// As [`Self::read`], with zeros for what lies beyond the memory, up to address 65535.
+    /// Like [`Self::read`], with zeros beyond the memory, up to address 65535.
     ///
     /// # Errors
-    /// [`AccessError::Unmapped`] beyond 65535, [`AccessError::Empty`] without a byte.
+    /// [`AccessError::Unmapped`] beyond 65535, [`AccessError::Empty`] for an empty range.
     pub fn read_on(&self, span: Span) -> Result<Vec<u8>, AccessError> {
         check(span, usize::from(u16::MAX) + 1)?;
         let inside = self.ram.iter().skip(usize::from(span.address)).copied();
@@ -138,7 +138,7 @@ impl Memory {
         Ok(all.take(usize::from(span.len)).collect())
     }
 
-    /// One byte; zero outside.
+    /// Returns one byte; zero outside the memory.
     pub fn byte(&self, address: u16) -> u8 {
         self.ram
             .get(usize::from(address))
@@ -146,37 +146,37 @@ impl Memory {
             .unwrap_or_default()
     }
 
-    /// One element of a row of shorts.
+    /// Returns one element of a row of 16-bit values.
     pub fn short(&self, row: &Register, element: u16) -> i16 {
         let at = row.address + 2 * element;
         i16::from_le_bytes([self.byte(at), self.byte(at + 1)])
     }
 
-    /// Puts a byte, past all rules: what the hand itself does.
+    /// Writes a byte without access checks, for the hand itself.
     pub fn put_byte(&mut self, address: u16, value: u8) {
         if let Some(byte) = self.ram.get_mut(usize::from(address)) {
             *byte = value;
         }
     }
 
-    /// Puts one element of a row of shorts, past all rules.
+    /// Writes one element of a row of 16-bit values without access checks.
     pub fn put_short(&mut self, row: &Register, element: u16, value: i16) {
         self.put(row.address + 2 * element, &value.to_le_bytes());
     }
 
-    /// Puts bytes, past all rules.
+    /// Writes bytes without access checks.
     pub fn put(&mut self, address: u16, bytes: &[u8]) {
         for (at, byte) in (address..).zip(bytes) {
             self.put_byte(at, *byte);
         }
     }
 
-    /// A write from outside: keeps what access and range allow, and says what it kept.
+    /// Applies a write from outside: stores the elements that access and range allow, and returns them.
     ///
-    /// Manual: it has no answer that says no. A refused element is acknowledged and has no effect.
+    /// Manual: there is no negative acknowledgement. A refused element is acknowledged and has no effect.
     ///
     /// # Errors
-    /// [`AccessError::Unmapped`] beyond 4095, [`AccessError::Empty`] without a byte.
+    /// [`AccessError::Unmapped`] beyond 4095, [`AccessError::Empty`] for an empty range.
     pub fn write(
         &mut self,
         address: u16,
@@ -226,7 +226,7 @@ impl Memory {
         copy_saved(&self.ram, &mut self.flash);
     }
 
-    /// Returns the saved parameters to the factory's (manual 2.6.5), in memory and in flash.
+    /// Restores the factory values of the saved parameters (manual 2.6.5), in memory and in flash.
     pub fn reset_parameters(&mut self) {
         for row in REGISTERS.iter().filter(|row| is_saved(row)) {
             self.put_default(row);
@@ -234,7 +234,7 @@ impl Memory {
         self.save();
     }
 
-    /// Loses what is not in flash, and loads the speeds and thresholds for power-up.
+    /// Drops values that are not in flash, and loads the speeds and thresholds for power-up.
     pub fn power_cycle(&mut self) {
         for row in REGISTERS.iter().filter(|row| !is_saved(row)) {
             self.put_default(row);
@@ -243,7 +243,7 @@ impl Memory {
         self.load_power_up_settings();
     }
 
-    /// Puts back the registers that only trigger something.
+    /// Resets the registers that only trigger something.
     pub fn rearm_triggers(&mut self) {
         for row in [
             CLEAR_ERROR,
@@ -256,13 +256,13 @@ impl Memory {
         }
     }
 
-    /// Sets ANGLE_SET to where a joint is, as at power-up.
+    /// Sets ANGLE_SET to a joint's actual angle, as at power-up.
     pub fn put_angle_set(&mut self, element: u16, angle: i16) {
         self.put_short(&ANGLE_SET, element, angle);
     }
 }
 
-/// The whole elements of writable registers among these bytes, with their addresses and values.
+/// Extracts the whole elements of writable registers among these bytes, with their addresses and values.
 fn elements(address: u16, bytes: &[u8]) -> Vec<(u16, &'static Register, i32)> {
     let (mut at, mut rest) = (address, bytes);
     let mut elements = Vec::new();

@@ -1,4 +1,4 @@
-//! A hand that answers bytes: memory, body, fingertips, scripts, servers. Knows no link and no window.
+//! A simulated hand at byte level: memory, body, fingertips, scripts, servers. Knows no link and no window.
 
 pub mod body;
 pub mod body_params;

@@ -1,6 +1,6 @@
-//! The few roundings from the body's numbers to registers. Nothing else casts.
+//! The few conversions from the body's numbers to register values. No casts elsewhere.
 
-/// Rounds to a short; runs past the ends stay at the ends.
+/// Rounds to a signed 16-bit value; saturates.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "a float cast saturates, which is what is wanted"
@@ -9,7 +9,7 @@ pub(crate) fn short(value: f64) -> i16 {
     value.round() as i16
 }
 
-/// Rounds to a byte; runs past the ends stay at the ends.
+/// Rounds to a byte; saturates.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -19,7 +19,7 @@ pub(crate) fn byte(value: f64) -> u8 {
     value.round() as u8
 }
 
-/// Rounds to 32-bit counts; runs past the ends stay at the ends.
+/// Rounds to 32-bit counts; saturates.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "a float cast saturates, which is what is wanted"
@@ -28,7 +28,7 @@ pub(crate) fn counts(value: f64) -> i32 {
     value.round() as i32
 }
 
-/// Rounds to an unsigned word; runs past the ends stay at the ends.
+/// Rounds to an unsigned 16-bit value; saturates.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -38,7 +38,7 @@ pub(crate) fn word(value: f64) -> u16 {
     value.round() as u16
 }
 
-/// The nearest single-precision number.
+/// Converts to the nearest single-precision number.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "a sensor sends single precision"
@@ -47,13 +47,13 @@ pub(crate) fn single(value: f64) -> f32 {
     value as f32
 }
 
-/// Milliseconds as seconds; exact for any time that a program runs.
+/// Converts milliseconds to seconds; exact for any realistic run time.
 #[expect(clippy::cast_precision_loss, reason = "exact below 2^53 milliseconds")]
 pub(crate) fn seconds(ms: u64) -> f64 {
     ms as f64 / 1000.0
 }
 
-/// Rounds to whole milliseconds; what is negative is none.
+/// Rounds to whole milliseconds; negative values become 0.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

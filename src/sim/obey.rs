@@ -1,4 +1,4 @@
-//! What a write sets off in the simulated hand: targets, triggers, codes, SAVE. Takes no byte and knows no wire.
+//! Effects of a write on the simulated hand: targets, triggers, codes, SAVE. Receives no bytes and knows no wire.
 
 use crate::hand::register::{
     ACTION_SEQ_INDEX, ACTION_SEQ_RUN, ANGLE_SET, Access, CLEAR_ERROR, DEFAULT_FORCE_SET,
@@ -17,21 +17,21 @@ use crate::sim::personality::{
 };
 use std::time::Duration;
 
-/// From SAVE to its result (manual 2.2.2: about one second).
+/// Time from SAVE to its result (manual 2.2.2: about one second).
 const SAVE_TAKES: Duration = Duration::from_secs(1);
-/// From SAVE to its result on a hand that is slow with it.
+/// Time from SAVE to its result on a hand that is slow with it.
 const SAVE_TAKES_LATE: Duration = Duration::from_secs(5);
-/// From the result of a SAVE to its double.
+/// Time from the result of a SAVE to its duplicate.
 const SAVE_AGAIN: Duration = Duration::from_millis(100);
-/// From SAVE to the last byte in flash, on a hand that takes its time.
+/// Time from SAVE to the last byte in flash, on a hand that needs time for it.
 const FLASH_TAKES_MS: u64 = 1000;
-/// What a hand that clamps takes for defaults at most.
+/// Largest default value that a clamping hand accepts.
 const CLAMPS_TO: i16 = 500;
-/// SAVE results under way: one second holds no more of them on any wire we have.
+/// Capacity for pending SAVE results: no wire that we have carries more in one second.
 const SAVES_MAX: usize = 64;
 
 impl SimHand {
-    /// As [`Self::write`], over a wire that has no late frames: what a SAVE or a calibration came to is told nowhere.
+    /// Like [`Self::write`], over a wire that has no late frames: the result of a SAVE or a calibration is not reported.
     ///
     /// # Errors
     /// As [`Self::write`].
@@ -56,7 +56,7 @@ impl SimHand {
         }
     }
 
-    /// What one changed element sets off. `speeds` are those before the write.
+    /// Applies the effect of one changed element. `speeds` are those before the write.
     pub(crate) fn apply(&mut self, change: &Change, speeds: &PerDof<i16>, now: Moment) {
         let on = change.value == 1;
         if (ANGLE_SET.address..=SPEED_SET.address).contains(&change.register.address) {
@@ -87,7 +87,7 @@ impl SimHand {
         }
     }
 
-    /// Begins a calibration. Its end is told to whoever asked for one over a wire that can tell it.
+    /// Begins a calibration. Its end is reported only over a wire that has a frame for it.
     fn calibrate(&mut self, now: Moment) {
         // Manual: 2.6.6 names no time. Reports of hands in use say 2 to 6 s, the sister hand's older manual about 6.
         let takes_ms = match self.config.personality.calibration {
@@ -100,7 +100,7 @@ impl SimHand {
         }
     }
 
-    /// Lets id and serial speed act as they stand in the memory.
+    /// Applies the id and serial speed stored in the memory.
     fn take_codes(&mut self, id: bool, baud: bool) {
         if id {
             self.id = self.memory.byte(HAND_ID.address);
@@ -170,7 +170,7 @@ impl SimHand {
         }
     }
 
-    /// The saved parameters are in flash from now on.
+    /// Copies the saved parameters to flash and applies codes that take effect then.
     pub(crate) fn write_flash(&mut self) {
         self.memory.save();
         self.take_codes(
@@ -179,7 +179,7 @@ impl SimHand {
         );
     }
 
-    /// The bytes of a write as this hand takes them; none if it drops them.
+    /// Returns the bytes of a write as this hand accepts them, out of range throughout if it drops them.
     pub(crate) fn as_taken(&self, address: u16, bytes: &[u8]) -> Result<Vec<u8>, AccessError> {
         let is_default = (DEFAULT_SPEED_SET.address
             ..DEFAULT_FORCE_SET.address + DEFAULT_FORCE_SET.len)
@@ -187,7 +187,7 @@ impl SimHand {
         let (pairs, rest) = bytes.as_chunks::<2>();
         match self.config.personality.defaults {
             DefaultsWrite::Exception if is_default => Err(AccessError::OutOfRange { address }),
-            // -1 is outside every range there, and what is outside is dropped.
+            // -1 is outside every range there, and values out of range are dropped.
             DefaultsWrite::Drop if is_default => Ok(vec![u8::MAX; bytes.len()]),
             DefaultsWrite::Clamp if is_default => {
                 let clamped = pairs.iter().flat_map(|pair| {

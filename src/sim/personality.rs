@@ -1,39 +1,39 @@
-//! What the manual leaves open, as switches. Only the simulated hand has them.
+//! Choices that the manual leaves open, as switches. Only the simulated hand has them.
 
 use std::time::Duration;
 
-/// One switch as the user spells it.
+/// Description of one switch, for the user.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Switch {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// What it is about.
+    /// Description.
     pub about: &'static str,
-    /// Its positions; the first is that of a hand without quirks.
+    /// Values; the first is that of a hand without quirks.
     pub values: &'static [&'static str],
 }
 
-/// A switch or a position that there is not.
+/// Error for an unknown switch or value.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoSwitch {
     /// No switch has this name.
     #[error("there is no quirk '{name}'")]
     Name {
-        /// What was given.
+        /// Name that was given.
         name: String,
     },
-    /// The switch has no such position.
+    /// The switch has no such value.
     #[error("'{value}' is not a value of the quirk '{name}': choose {known}")]
     Value {
         /// The switch.
         name: &'static str,
-        /// What was given.
+        /// Value that was given.
         value: String,
         known: String,
     },
 }
 
-/// Declares each switch once: its type, its spelling, and its place in [`Personality`] and [`SWITCHES`].
+/// Declares each switch once: its type, its names, and its field in [`Personality`] and entry in [`SWITCHES`].
 macro_rules! switches {
     ($($about:literal $field:ident $spelled:literal $Type:ident {
         $first_about:literal $First:ident $first:literal,
@@ -54,21 +54,21 @@ macro_rules! switches {
             $(Switch { name: $spelled, about: $about, values: &[$first, $($value),+] },)+
         ];
 
-        /// One reading of everything the manual leaves open.
+        /// One choice for each point that the manual leaves open.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
         pub struct Personality {
             $(#[doc = $about] pub $field: $Type,)+
-            /// Whether 1558 to 1565 hold the moment of the read in microseconds, low byte first; for tests.
+            /// If true, 1558 to 1565 hold the time of the read in microseconds, low byte first; for tests.
             pub stamp_gap: bool,
-            /// From the end of a request to the reply, beside what [`Turnaround`] adds.
+            /// Delay from the end of a request to the reply, in addition to [`Turnaround`].
             pub turnaround: Duration,
         }
 
         impl Personality {
-            /// Puts one switch into a position, both as spelled in [`SWITCHES`].
+            /// Sets one switch to a value, both as named in [`SWITCHES`].
             ///
             /// # Errors
-            /// No such switch, or no such position.
+            /// [`NoSwitch`] if there is no such switch or no such value.
             pub fn set(&mut self, name: &str, value: &str) -> Result<(), NoSwitch> {
                 match (name, value) {
                     $(

@@ -1,53 +1,53 @@
-//! An object that is pulled out of the grip at a moment. Only decides; the hand carries out.
+//! An object that is pulled out of the grip at a given time. Only computes; the hand applies the result.
 
 use crate::sim::number;
 use crate::sim::scenario::Slip;
 
-/// How an object is pulled. All fingers feel it alike.
+/// Parameters of a pull. All fingers feel it alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pull {
-    /// When it begins, ms of the hand's own time.
+    /// Start, ms of the hand's own time.
     pub at_ms: u64,
-    /// How long the object sticks while the pull grows, ms.
+    /// Time for which the object sticks while the pull grows, ms.
     pub sticks_ms: u64,
-    /// How long it slides then, ms.
+    /// Time for which it slides afterwards, ms.
     pub slides_ms: u64,
-    /// What the pull adds to the share of the normal force that is tangential, at the end of sticking.
+    /// Increase of the ratio of tangential to normal force at the end of sticking.
     pub friction: f64,
-    /// How far it turns the tangential force, degrees.
+    /// Turn of the tangential force, degrees.
     pub turn_deg: f64,
-    /// Share of the contact force that is left at the end of sliding.
+    /// Share of the contact force left at the end of sliding.
     pub grip: f64,
-    /// What it ends with.
+    /// Outcome.
     pub end: PullEnd,
 }
 
-/// What a pull ends with.
+/// Outcome of a pull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PullEnd {
     /// The object is out of the hand.
     Lost,
-    /// It rests in another place, with the whole force.
+    /// It rests in another place, at full force.
     Held,
-    /// The pull ends before anything slides; there is no sliding then.
+    /// The pull ends before anything slides; there is no sliding.
     LetGo,
 }
 
-/// Where a pull stands.
+/// Phase of a pull.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PullPhase {
-    /// It did not begin.
+    /// Not started.
     Before,
     /// The object still sticks; share of the time, 0 to 1.
     Sticks(f64),
-    /// It slides; share of the way, 0 to 1.
+    /// The object slides; share of the travel, 0 to 1.
     Slides(f64),
-    /// It is over.
+    /// Finished.
     Over,
 }
 
 impl Pull {
-    /// Where it stands in this millisecond.
+    /// Phase in this millisecond.
     pub fn phase(&self, now_ms: u64) -> PullPhase {
         let Some(since) = now_ms.checked_sub(self.at_ms) else {
             return PullPhase::Before;
@@ -63,11 +63,11 @@ impl Pull {
         PullPhase::Over
     }
 
-    /// What the fingertips feel of it.
+    /// Effect of the pull on the fingertips.
     pub fn slip(&self, now_ms: u64) -> Slip {
         /// Sliding friction as a share of sticking friction.
         const SLIDING: f64 = 0.85;
-        /// Way of the contact on the fingertip, mm.
+        /// Travel of the contact on the fingertip, mm.
         const WAY_MM: f64 = 6.0;
         match self.phase(now_ms) {
             PullPhase::Before => Slip::default(),
@@ -91,7 +91,7 @@ impl Pull {
         }
     }
 
-    /// Whether the object is out of the hand.
+    /// True if the object is out of the hand.
     pub fn is_lost(&self, now_ms: u64) -> bool {
         self.end == PullEnd::Lost && self.phase(now_ms) == PullPhase::Over
     }

@@ -1,45 +1,45 @@
-//! Scripts: what the simulated hand does by itself. Only decides; the hand carries out.
+//! Scripts: autonomous behaviour of the simulated hand. Only computes; the hand applies the result.
 
 use crate::hand::{Dof, Fault, Finger, PerDof, Status};
 use crate::sim::number;
 use std::str::FromStr;
 
-/// What the hand does by itself.
+/// Autonomous behaviour of the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Scenario {
-    /// Nothing; a soft ball waits between the fingers.
+    /// No motion; a soft ball lies between the fingers.
     #[default]
     Idle,
-    /// Nothing, and nothing between the fingers.
+    /// No motion; nothing lies between the fingers.
     Free,
-    /// Nothing; a block waits as hard as the one that the overshoot was measured on.
+    /// No motion; a block lies between the fingers, as hard as the one used for the overshoot table.
     Rigid,
-    /// Nothing; a cup waits that breaks if it is pressed too hard, and is replaced when the hand opens.
+    /// No motion; a cup lies between the fingers. It breaks if pressed too hard, and is replaced when the hand opens.
     Fragile,
-    /// As if another controller grasped the ball again and again.
+    /// Simulates another controller that repeatedly grasps the ball.
     Grasp,
-    /// Nothing, with nothing in reach; somebody presses its fingertips, one after the other.
+    /// No motion and nothing in reach; an external force presses the fingertips in turn.
     Touched,
     /// Every status code and every fault bit, in turn.
     Faults,
-    /// Values that the manual does not allow.
+    /// Values outside the manual's ranges.
     Extremes,
-    /// Nothing, until a joint has moved a little: then what the hand tells stands still, while its joints go on.
+    /// Feedback freezes once a joint has moved a little, while the joints continue.
     Frozen,
 }
 
-/// A scenario's name that does not exist.
+/// Error for an unknown scenario name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "'{got}' is not a scenario: choose idle, free, rigid, fragile, grasp, touched, faults, extremes or frozen"
 )]
 pub struct UnknownScenario {
-    /// What was given.
+    /// Name that was given.
     pub got: String,
 }
 
 impl Scenario {
-    /// All, with the quiet one first.
+    /// All scenarios, the quiet one first.
     pub const ALL: [Self; 9] = [
         Self::Idle,
         Self::Free,
@@ -79,7 +79,7 @@ impl FromStr for Scenario {
     }
 }
 
-/// Six settings as the hand's own action has them.
+/// Setpoints of the hand's own action.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Order {
     /// ANGLE_SET.
@@ -92,20 +92,20 @@ pub struct Order {
 
 /// Length of one grasp, ms.
 const GRASP_MS: u64 = 8000;
-/// Force thresholds of the grasp: each finger its own, so that they can be told apart.
+/// Force thresholds of the grasp, different for each finger to distinguish them.
 const GRASP_FORCES: PerDof<i16> = PerDof::new([330, 470, 600, 560, 640, 500]);
-/// When the object slips, s into the grasp, and for how long.
+/// Start, s into the grasp, and duration of the slip.
 const SLIP_AT_S: f64 = 2.5;
 const SLIP_LASTS_S: f64 = 0.4;
-/// When the hand opens, s into the grasp.
+/// Time at which the hand opens, s into the grasp.
 const RELEASE_AT_S: f64 = 5.0;
 
-/// What the grasp's action orders in this millisecond.
+/// Order of the grasp's action that begins in this millisecond.
 pub fn grasp_order(now_ms: u64) -> Option<Order> {
     let (angles, more, speed) = match now_ms % GRASP_MS {
-        // The dead time makes it move at 0.4 s.
+        // Because of the dead time, motion starts at 0.4 s.
         336 => ([120, 120, 120, 120, 200, 320], 0, 400),
-        // It tightens slowly, as one does that felt the slip.
+        // The hand tightens slowly, as in response to the slip.
         2760 => ([100, 100, 100, 100, 180, 320], 260, 5),
         5000 => ([1000; 6], 0, 400),
         _ => return None,
@@ -117,16 +117,16 @@ pub fn grasp_order(now_ms: u64) -> Option<Order> {
     })
 }
 
-/// How the object slides on the fingertips.
+/// Motion of the object on the fingertips.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slip {
     /// Share of the contact force that remains, 1 = all.
     pub grip: f64,
-    /// Added to the friction share.
+    /// Increase of the friction ratio.
     pub friction: f64,
     /// Turn of the tangential force, degrees.
     pub turn_deg: f64,
-    /// Way of the contact on the fingertip, mm.
+    /// Travel of the contact on the fingertip, mm.
     pub slide_mm: f64,
 }
 
@@ -141,7 +141,7 @@ impl Default for Slip {
     }
 }
 
-/// The slip at this moment; none outside the grasp.
+/// Slip at this time; none outside the grasp.
 pub fn slip(scenario: Scenario, now_ms: u64) -> Slip {
     if scenario != Scenario::Grasp {
         return Slip::default();
@@ -161,13 +161,13 @@ pub fn slip(scenario: Scenario, now_ms: u64) -> Slip {
     }
 }
 
-/// How long each fingertip's turn is in `touched`, and how much of that it is pressed, ms.
+/// Length of each fingertip's turn in `touched`, and the pressed part of it, ms.
 const TOUCH_TURN_MS: u64 = 2000;
 const TOUCH_MS: u64 = 1200;
-/// How hard, g.
+/// Pressing force, g.
 const TOUCH_G: f64 = 300.0;
 
-/// How hard somebody presses this fingertip at this moment, g; a hand is left in peace for its first turn.
+/// Pressing force on this fingertip at this time, g; in the first turn no fingertip is pressed.
 pub fn touched_g(scenario: Scenario, finger: Finger, now_ms: u64) -> f64 {
     let fingers = u64::try_from(Finger::ALL.len()).unwrap_or(1);
     let turn = now_ms / TOUCH_TURN_MS;
@@ -178,19 +178,19 @@ pub fn touched_g(scenario: Scenario, finger: Finger, now_ms: u64) -> f64 {
     }
 }
 
-/// How long each picture of `faults` stays, ms.
+/// Duration of each phase of `faults`, ms.
 pub const FAULT_PHASE_MS: u64 = 1500;
 
-/// What one drive of the `faults` script shows.
+/// Condition that one drive of the `faults` script shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ailment {
     /// A status without a fault.
     Says(Status),
-    /// A fault; over-temperature comes with the heat.
+    /// A fault; over-temperature includes the heat.
     Has(Fault),
 }
 
-/// The pictures of `faults`, one after another.
+/// Phases of `faults`, in order.
 const FAULT_PHASES: [&[(Dof, Ailment)]; 8] = [
     &[],
     &[
@@ -216,7 +216,7 @@ const FAULT_PHASES: [&[(Dof, Ailment)]; 8] = [
     ],
 ];
 
-/// The picture that begins in this millisecond.
+/// Returns the phase that begins in this millisecond.
 pub fn fault_phase(now_ms: u64) -> Option<&'static [(Dof, Ailment)]> {
     if !now_ms.is_multiple_of(FAULT_PHASE_MS) {
         return None;

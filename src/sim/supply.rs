@@ -1,12 +1,12 @@
-//! The 24 V supply of the simulated hand: switched on and off, or failing by itself. Holds no state of the hand.
+//! The 24 V supply of the simulated hand: switched on and off, or failing on its own. Holds no state of the hand.
 
 use crate::sim::personality::Power;
 use std::ops::Range;
 
-/// When a supply that fails does so, and for how long.
+/// Period in which a failing supply is off.
 const FAILS_MS: Range<u64> = 3000..3500;
 
-/// What gives the hand its power.
+/// Power supply of the hand.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Supply {
     kind: Power,
@@ -14,7 +14,7 @@ pub(crate) struct Supply {
 }
 
 impl Supply {
-    /// Switched on.
+    /// Creates a supply that is switched on.
     pub(crate) const fn new(kind: Power) -> Self {
         Self {
             kind,
@@ -35,7 +35,7 @@ impl Supply {
         self.switched_off || self.kind == Power::Cut && FAILS_MS.contains(&now_ms)
     }
 
-    /// True in the one millisecond in which a supply that fails does so.
+    /// True in the first millisecond of a failing supply's outage.
     pub(crate) fn fails(self, now_ms: u64) -> bool {
         self.kind == Power::Cut && now_ms == FAILS_MS.start
     }

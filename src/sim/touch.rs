@@ -1,29 +1,29 @@
-//! Fingertip blocks: what eight channels, force and proximity say about a contact (manual 2.6.21). Moves nothing.
+//! Fingertip blocks: eight channels, force and proximity of a contact (manual 2.6.21). Moves nothing.
 
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::sim::body_params::{BodyParams, FingertipBody};
 use crate::sim::number;
 use crate::sim::scenario::Slip;
 
-/// Newtons for each gram.
+/// Newtons per gram-force.
 const N_PER_G: f64 = 0.0098;
-/// Force from which the sensor calls it a contact, N.
+/// Force from which the sensor reports contact, N.
 const CONTACT_N: f64 = 0.05;
-/// Noise of a channel, counts either way.
+/// Noise amplitude of a channel, counts.
 const CHANNEL_NOISE: f64 = 350.0;
-/// Counts that one newton adds to a channel right under the contact.
+/// Counts that one newton adds to a channel directly under the contact.
 const COUNTS_PER_N: f64 = 42_000.0;
 /// Width of the pressed spot, mm.
 const SPOT_MM: f64 = 4.2;
-/// Proximity counts when the fingertip is about to touch.
+/// Proximity counts just before the fingertip touches.
 const PROXIMITY_NEAR: f64 = 240_000.0;
 /// Position counts over which proximity falls to a third.
 const PROXIMITY_RANGE: f64 = 130.0;
-/// Noise of the proximity, counts either way.
+/// Noise amplitude of the proximity, counts.
 const PROXIMITY_NOISE: f64 = 120.0;
-/// How often the sensor board measures, ms: 50 Hz.
+/// Measuring interval of the sensor board, ms: 50 Hz.
 pub const SENSOR_MS: u64 = 20;
-/// Pad centres in mm, x right, y to the tip. The eighth channel has no place: it is taken as the reference.
+/// Pad centres in mm, x right, y to the tip. The eighth channel has no position: it is assumed to be the reference.
 // Manual: 2.6.21 gives no layout; these come from the sensor maker's model, pad i = channel i - 1.
 const PADS: [(f64, f64); 7] = [
     (-4.6, 1.2),
@@ -35,12 +35,12 @@ const PADS: [(f64, f64); 7] = [
     (0.1, 9.1),
 ];
 
-/// What one fingertip meets at this moment.
+/// Load on one fingertip, and its distance from the object.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Press {
     /// Force, g.
     pub force_g: f64,
-    /// Position counts to the object; `None` = nothing there.
+    /// Position counts to the object; `None` = no object.
     pub gap: Option<f64>,
 }
 
@@ -62,7 +62,7 @@ pub struct TouchSensors {
 }
 
 impl TouchSensors {
-    /// Sensors with their own rest counts, drawn from `rng`.
+    /// Creates sensors with random rest counts drawn from `rng`.
     pub fn new(body: &BodyParams, rng: &mut fastrand::Rng) -> Self {
         let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
         Self {
@@ -78,7 +78,7 @@ impl TouchSensors {
         }
     }
 
-    /// Draws the noise of the next measurement; call it each [`SENSOR_MS`].
+    /// Draws the noise of the next measurement; called every [`SENSOR_MS`].
     pub fn measure(&mut self, rng: &mut fastrand::Rng) {
         let mut around = |width: f64| (2.0 * rng.f64() - 1.0) * width;
         for (_, tip) in self.tips.iter_mut() {
@@ -87,7 +87,7 @@ impl TouchSensors {
         }
     }
 
-    /// The block of one fingertip at `t_s` seconds.
+    /// Returns the block of one fingertip at `t_s` seconds.
     pub fn block(&self, finger: Finger, press: Press, slip: Slip, t_s: f64) -> TactileBlock {
         let tip = &self.tips[finger];
         let newtons = press.force_g * N_PER_G;
@@ -128,7 +128,7 @@ impl TouchSensors {
 }
 
 impl TipModel {
-    /// Where the object presses, mm: it wanders a little, and slides in a slip.
+    /// Position of the contact, mm: it drifts slightly, and slides in a slip.
     fn spot(&self, slip: Slip, t_s: f64) -> (f64, f64) {
         let x = 1.6 * (0.31 * t_s + self.phase).sin();
         let y = 0.5 + 2.0 * (0.23 * t_s + 2.0 * self.phase).cos() - slip.slide_mm;
@@ -141,7 +141,7 @@ impl TipModel {
         number::word(degrees) % 360
     }
 
-    /// Rises before the contact, because the field reaches into the air.
+    /// Rises before the contact, because the field extends into the air.
     fn proximity(&self, press: Press) -> f64 {
         let near = press
             .gap

@@ -1,4 +1,4 @@
-//! ERROR bits in words (manual 2.6.18). Unknown bits are kept.
+//! ERROR bits as text (manual 2.6.18). Unknown bits are preserved.
 
 use crate::hand::feedback::status::Words;
 
@@ -58,7 +58,7 @@ impl Fault {
         }
     }
 
-    /// Whether CLEAR_ERROR can clear it (manual 2.6.3); unknown bits: not said.
+    /// Returns whether CLEAR_ERROR can clear the fault (manual 2.6.3); `None` for unknown bits.
     pub const fn clearable(self) -> Option<bool> {
         match self {
             Self::OverTemperature => Some(false),
@@ -67,7 +67,7 @@ impl Fault {
         }
     }
 
-    /// What it means and what to do, in English.
+    /// English text: meaning and advice.
     pub const fn words(self) -> Words {
         match self {
             Self::Stall => Words::new(
@@ -113,7 +113,7 @@ impl Fault {
 pub struct Faults(u8);
 
 impl Faults {
-    /// Keeps the register's byte.
+    /// Wraps the register's byte.
     pub const fn from_raw(raw: u8) -> Self {
         Self(raw)
     }
@@ -133,7 +133,7 @@ impl Faults {
         self.0 >> fault.bit() & 1 == 1
     }
 
-    /// The faults that are set, lowest bit first.
+    /// Iterates over the faults that are set, lowest bit first.
     pub fn iter(self) -> impl Iterator<Item = Fault> {
         (0..8)
             .map(Fault::from_bit)

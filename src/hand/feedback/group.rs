@@ -1,9 +1,9 @@
-//! The one table of reading groups: what is read as a whole, where it lies, how often it is wanted, what files call it.
+//! The table of reading groups: registers read together, their address, poll rate and name in files.
 
 use crate::hand::dof::Finger;
 use crate::hand::register::{self, Register, Span};
 
-/// One group of registers that is read as a whole.
+/// A group of registers that are read together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::VariantNames)]
 pub enum Group {
     /// ANGLE_SET.
@@ -30,7 +30,7 @@ pub enum Group {
     Tactile(Finger),
 }
 
-/// What is read at one rate.
+/// Groups that share one poll rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RateClass {
     /// Angles and forces.
@@ -41,12 +41,12 @@ pub enum RateClass {
     Temperature,
     /// All five fingertips.
     Tactile,
-    /// The setpoints that the hand holds, and the drives' positions.
+    /// The setpoints stored in the hand, and the drives' positions.
     Settings,
 }
 
 impl RateClass {
-    /// All, in the order in which they are shown.
+    /// All classes, in display order.
     pub const ALL: [Self; 5] = [
         Self::Motion,
         Self::Drives,
@@ -58,18 +58,18 @@ impl RateClass {
 
 /// One row of the table.
 struct Row {
-    /// Its bit in a set.
+    /// Bit in [`Groups`].
     bit: u32,
     span: Span,
     rate: RateClass,
     name: &'static str,
 }
 
-/// Bytes of one fingertip.
+/// Size of one fingertip's block, bytes.
 pub const TIP_BYTES: u16 = 58;
 
 impl Group {
-    /// All, joints first, in the order of their bits.
+    /// All groups, joints first, in the order of their bits.
     pub const ALL: [Self; 15] = [
         Self::AngleSet,
         Self::ForceSet,
@@ -88,7 +88,7 @@ impl Group {
         Self::Tactile(Finger::Thumb),
     ];
 
-    /// The table.
+    /// Row of this group in the table.
     const fn row(self) -> Row {
         use RateClass::{Drives, Motion, Settings, Tactile, Temperature};
         match self {
@@ -114,17 +114,17 @@ impl Group {
         }
     }
 
-    /// Where it stands in the hand's memory (manual 2.6).
+    /// Range in the hand's memory (manual 2.6).
     pub const fn span(self) -> Span {
         self.row().span
     }
 
-    /// How often it is wanted.
+    /// Poll rate class.
     pub const fn rate(self) -> RateClass {
         self.row().rate
     }
 
-    /// What files call it; all fingertips have one name.
+    /// Name in files; all fingertips share one name.
     pub const fn name(self) -> &'static str {
         self.row().name
     }
@@ -141,7 +141,7 @@ impl Row {
     }
 }
 
-/// The groups of a sample, as a set.
+/// A set of groups.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct Groups(u16);
 
@@ -167,7 +167,7 @@ impl Groups {
         self.0 & (1 << group.row().bit) != 0
     }
 
-    /// The groups of both.
+    /// Returns the union of both sets.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)

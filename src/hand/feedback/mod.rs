@@ -1,4 +1,4 @@
-//! What a hand reports: registers of one read as a sample, the readings, words and blocks in it.
+//! Feedback of a hand: registers that are read together form a sample of readings, status words and tactile blocks.
 
 pub mod fault;
 pub mod group;

@@ -1,22 +1,22 @@
-//! What the hand says of itself: measured numbers, kept raw, with the manual's range beside them.
+//! Measured values as the hand reports them: raw numbers together with the manual's range.
 
 use crate::hand::dof::Dof;
 use crate::hand::feedback::fault::Faults;
 use crate::hand::feedback::status::Status;
 use crate::hand::units::{Angle, Force, Speed, Target};
 
-/// One joint's value as a register holds it.
+/// One joint's value in a register.
 pub(crate) trait JointValue: Copy {
-    /// Bytes of a joint in its register.
+    /// Bytes per joint in the register.
     const BYTES: usize = 2;
 
-    /// Takes the number that the hand sent.
+    /// Decodes the number that the hand sent.
     fn decode(raw: i16) -> Self;
 
-    /// The number that the hand sent, as far as it is kept.
+    /// Returns the number that the hand sent; `None` if it was not stored.
     fn sent(self) -> Option<i16>;
 
-    /// True if the manual's range does not have it.
+    /// True if the value is outside the manual's range.
     fn is_out_of_range(self) -> bool;
 }
 
@@ -30,17 +30,17 @@ macro_rules! reading {
             /// The documented range.
             pub const RANGE: std::ops::RangeInclusive<$inner> = $min..=$max;
 
-            /// Keeps the number as the hand sent it.
+            /// Wraps the number that the hand sent.
             pub const fn new(raw: $inner) -> Self {
                 Self(raw)
             }
 
-            /// The number as the hand sent it, also when it is out of range.
+            /// Returns the number that the hand sent, even if it is out of range.
             pub const fn raw(self) -> $inner {
                 self.0
             }
 
-            /// The number if the manual knows it. Only this may feed logic.
+            /// Returns the number if it is in the documented range. Only this may feed logic.
             pub fn documented(self) -> Option<$inner> {
                 Self::RANGE.contains(&self.0).then_some(self.0)
             }
@@ -69,7 +69,7 @@ macro_rules! reading {
     };
 }
 
-/// A set value, which is kept only if it is in range.
+/// A set value, stored only if it is in range.
 macro_rules! set_value {
     ($name:ty, $decode:expr, $raw:expr) => {
         impl JointValue for Option<$name> {
@@ -92,7 +92,7 @@ set_value!(Target, Target::from_raw, Target::raw);
 set_value!(Force, |raw| Force::new(raw).ok(), Force::get);
 set_value!(Speed, |raw| Speed::new(raw).ok(), Speed::get);
 
-/// A byte of which every value means something.
+/// A byte without invalid values.
 macro_rules! byte {
     ($name:ty) => {
         impl JointValue for $name {
@@ -121,7 +121,7 @@ reading!(
     AngleReading(i16), 0..=1000
 );
 reading!(
-    /// POS_ACT: 0 = open, 2000 = bent (manual 2.6.14). Real hands leave the range a little.
+    /// POS_ACT: 0 = open, 2000 = bent (manual 2.6.14). Real hands exceed the range slightly.
     PositionReading(i16), 0..=2000
 );
 reading!(
@@ -133,22 +133,22 @@ reading!(
     CurrentReading(i16), 0..=2000
 );
 reading!(
-    /// TEMP in degrees Celsius (manual 2.6.20). 255 means that the hand does not know.
+    /// TEMP in degrees Celsius (manual 2.6.20). 255 means that the hand does not know the temperature.
     TemperatureReading(u8), 0..=100
 );
 
 impl AngleReading {
-    /// How far past 0..=1000 a real hand may report and still mean its end stop.
+    /// Distance outside 0..=1000 that a real hand may report at its end stop.
     const END_STOP_SLACK: i16 = 50;
 
-    /// The target that keeps the joint where it is; none if the reading makes no sense.
+    /// Target that keeps the joint where it is; `None` if the reading is implausible.
     pub fn hold(self) -> Option<Angle> {
         (-Self::END_STOP_SLACK..=1000 + Self::END_STOP_SLACK)
             .contains(&self.0)
             .then(|| Angle::nearest(self.0))
     }
 
-    /// Degrees of this joint, if the reading is in range.
+    /// Angle of this joint in degrees; `None` if the reading is out of range.
     pub fn degrees(self, dof: Dof) -> Option<f32> {
         let angle = Angle::new(self.documented()?).ok()?;
         Some(angle.degrees(dof))

@@ -1,4 +1,4 @@
-//! The newest of everything that a hand has told us, each group with its own times. Decoding from memory bytes; no history.
+//! The newest reading of each group of a hand, each with its own times. Decoding from memory bytes; no history.
 
 use crate::hand::dof::{Dof, PerDof, PerFinger};
 use crate::hand::feedback::fault::Faults;
@@ -13,10 +13,10 @@ use crate::hand::register::Span;
 use crate::hand::units::{Force, Speed, Target};
 use arrayvec::ArrayVec;
 
-/// Stands in [`HandSample::memory`] for a set value outside its range, as it is outside of every range.
+/// Placeholder in [`HandSample::memory`] for a set value outside its range; this number is outside every range.
 pub const SET_OUT_OF_RANGE: i16 = i16::MIN;
 
-/// Calls one function on the six values of a joint group, or another on the block of a fingertip.
+/// Calls `$six` on the values of a joint group or `$tip` on the block of a fingertip.
 macro_rules! of_group {
     ($sample:ident, $group:expr, $six:expr, $tip:expr) => {
         match $group {
@@ -35,14 +35,14 @@ macro_rules! of_group {
     };
 }
 
-/// The newest of everything the hand has told us. `None` = never read on this connection.
+/// The newest reading of each group. `None` = never read on this connection.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HandSample {
-    /// ANGLE_SET as the hand holds it; an element outside the manual's range is `None`.
+    /// ANGLE_SET as stored in the hand; an element outside the manual's range is `None`.
     pub angle_set: Option<Timed<PerDof<Option<Target>>>>,
-    /// FORCE_SET as the hand holds it.
+    /// FORCE_SET as stored in the hand.
     pub force_set: Option<Timed<PerDof<Option<Force>>>>,
-    /// SPEED_SET as the hand holds it.
+    /// SPEED_SET as stored in the hand.
     pub speed_set: Option<Timed<PerDof<Option<Speed>>>>,
     /// POS_ACT.
     pub position: Option<Timed<PerDof<PositionReading>>>,
@@ -58,25 +58,25 @@ pub struct HandSample {
     pub status: Option<Timed<PerDof<Status>>>,
     /// TEMP.
     pub temperature: Option<Timed<PerDof<TemperatureReading>>>,
-    /// The fingertip blocks; two reads fill them, so their times differ.
+    /// The fingertip blocks; they come from two reads, so their times differ.
     pub tactile: PerFinger<Option<Timed<TactileBlock>>>,
 }
 
-/// A piece of the hand's memory as it was read.
+/// Contents of a range of the hand's memory, as read.
 #[derive(Debug, Clone, Copy)]
 pub struct Reply<'a> {
-    /// The bytes' place.
+    /// Address range of the bytes.
     pub span: Span,
-    /// The bytes, `span.len` of them.
+    /// Contents, `span.len` bytes.
     pub bytes: &'a [u8],
-    /// When the request left.
+    /// Time at which the request was sent.
     pub asked: Moment,
-    /// When the whole reply was there.
+    /// Time at which the whole reply had arrived.
     pub received: Moment,
 }
 
 impl HandSample {
-    /// Takes every group that the reply covers whole, and says which. Groups covered in part are left as they were.
+    /// Decodes every group that the reply covers entirely, and returns those groups. Partly covered groups are unchanged.
     pub fn take(&mut self, reply: &Reply<'_>) -> Groups {
         let is_held = |group: &Group| {
             let Some(bytes) = reply.span.slice(reply.bytes, group.span()) else {
@@ -103,7 +103,7 @@ impl HandSample {
         Group::ALL.into_iter().filter(is_held).collect()
     }
 
-    /// When the request for a group left, and when its reply was there; `None` if it was never read.
+    /// Request and receive time of a group; `None` if it was never read.
     pub fn times(&self, group: Group) -> Option<(Moment, Moment)> {
         fn of<T>(read: Option<Timed<T>>) -> Option<(Moment, Moment)> {
             read.map(|read| (read.asked, read.received))
@@ -111,8 +111,8 @@ impl HandSample {
         of_group!(self, group, of, of)
     }
 
-    /// The bytes of a group as the hand sent them, in memory order; `None` if it was never read. Of set values outside their range the
-    /// hand's own number is not kept: [`SET_OUT_OF_RANGE`] stands in its place.
+    /// The bytes of a group as the hand sent them, in memory order; `None` if it was never read. Set values outside their range are not
+    /// stored; they are replaced by [`SET_OUT_OF_RANGE`].
     pub fn memory(&self, group: Group) -> Option<Vec<u8>> {
         fn six<T: JointValue>(read: Option<Timed<PerDof<T>>>) -> Option<Vec<u8>> {
             let sent = |value: &T| value.sent().unwrap_or(SET_OUT_OF_RANGE).to_le_bytes();
@@ -128,7 +128,7 @@ impl HandSample {
         of_group!(self, group, six, tip)
     }
 
-    /// `None` if a joint's value is in the manual's range, has none, or was never read; else what was sent, as far as that is kept.
+    /// Returns the sent number, if stored, of a value outside the manual's range; `None` if it is in range, has none or was never read.
     pub fn out_of_range(&self, group: Group, dof: Dof) -> Option<Option<i16>> {
         fn of<T: JointValue>(read: Option<Timed<PerDof<T>>>, dof: Dof) -> Option<Option<i16>> {
             let value = read?.value[dof];
@@ -137,7 +137,7 @@ impl HandSample {
         of_group!(self, group, |read| of(read, dof), |_tip| None)
     }
 
-    /// When the newest of these groups was received.
+    /// Receive time of the most recently received of these groups; `None` if none was read.
     pub fn newest(&self, groups: Groups) -> Option<Moment> {
         let of = Group::ALL
             .into_iter()
@@ -152,7 +152,7 @@ impl HandSample {
         self.angle.is_some_and(|angle| angle.age(now) <= limit)
     }
 
-    /// The targets that keep every joint where it was last seen; joints without a sensible reading are left alone.
+    /// Targets that keep every joint at its last reading; joints without a plausible reading get [`Target::Leave`].
     pub fn hold_targets(&self) -> PerDof<Target> {
         PerDof::from_fn(|dof| {
             self.angle

@@ -1,6 +1,6 @@
-//! STATUS codes in words (manual 2.6.19). What to do about them is said here; how to show them is not.
+//! STATUS codes as text (manual 2.6.19), including the advice for each. Presentation is defined elsewhere.
 
-/// What a drive says it is doing (manual 2.6.19).
+/// State that a drive reports (manual 2.6.19).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Status {
     /// 0: 正在松开.
@@ -22,7 +22,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// Decodes the register's byte; every byte has a meaning or is kept.
+    /// Decodes the register's byte; unlisted codes are preserved as [`Status::Unknown`].
     pub const fn from_raw(raw: u8) -> Self {
         match raw {
             0 => Self::Releasing,
@@ -64,7 +64,7 @@ impl Status {
         }
     }
 
-    /// True if the drive says that it has stopped. An unknown code says nothing.
+    /// True if the drive reports that it has stopped; false for an unknown code.
     pub const fn is_stopped(self) -> bool {
         matches!(
             self,
@@ -76,7 +76,7 @@ impl Status {
         )
     }
 
-    /// True if the drive says that it moves.
+    /// True if the drive reports motion.
     pub const fn is_moving(self) -> bool {
         matches!(self, Self::Releasing | Self::Grasping)
     }
@@ -89,7 +89,7 @@ impl Status {
         )
     }
 
-    /// What it means and what to do, in English.
+    /// English text: meaning and advice.
     pub const fn words(self) -> Words {
         match self {
             Self::Releasing => {
@@ -137,19 +137,19 @@ impl Status {
     }
 }
 
-/// A title, a cause and an advice, each one short sentence.
+/// A title, a cause and advice, each one short sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Words {
     /// Two or three words, for a badge or a heading.
     pub title: &'static str,
-    /// What happened, as one sentence.
+    /// Cause, as one sentence.
     pub cause: &'static str,
-    /// What the user should do.
+    /// Advice to the user.
     pub advice: &'static str,
 }
 
 impl Words {
-    /// Puts the three together.
+    /// Combines the three texts.
     pub const fn new(title: &'static str, cause: &'static str, advice: &'static str) -> Self {
         Self {
             title,

@@ -2,7 +2,7 @@
 
 /// Bytes of one fingertip block.
 pub const BLOCK_LEN: usize = 58;
-/// Bytes that the check covers.
+/// Number of leading bytes that the check word covers.
 const CHECKED_LEN: usize = 54;
 
 /// One fingertip's block, decoded (manual 2.6.21, table).
@@ -56,12 +56,12 @@ impl TactileBlock {
         })
     }
 
-    /// Encodes the block in memory order with a right check; for the simulated hand.
+    /// Encodes the block in memory order with a correct check word; for the simulated hand.
     pub fn encode(&self) -> [u8; BLOCK_LEN] {
         self.with_check(sum16)
     }
 
-    /// The block in memory order exactly as it was sent, a wrong check included.
+    /// Encodes the block in memory order exactly as it was sent, including a wrong check word.
     pub fn as_sent(&self) -> [u8; BLOCK_LEN] {
         self.with_check(|_| self.check)
     }
@@ -88,22 +88,22 @@ impl TactileBlock {
     }
 
     /// Direction of the tangential force in degrees, 0 towards the tip; `None` without contact
-    /// and for words that mean no angle.
+    /// and for words that are not an angle.
     pub fn direction_deg(&self) -> Option<u16> {
         (self.direction_raw < 360).then_some(self.direction_raw)
     }
 
-    /// Normal force if it is a finite number.
+    /// Normal force, N; `None` if it is not a finite number.
     pub fn normal(&self) -> Option<f32> {
         self.normal_n.is_finite().then_some(self.normal_n)
     }
 
-    /// Tangential force if it is a finite number.
+    /// Tangential force, N; `None` if it is not a finite number.
     pub fn tangential(&self) -> Option<f32> {
         self.tangential_n.is_finite().then_some(self.tangential_n)
     }
 
-    /// Whether the check word equals the 16-bit sum of the first 54 bytes. Shown, never a reason to drop data.
+    /// True if the check word equals the 16-bit sum of the first 54 bytes. Shown only; data is never dropped for it.
     pub const fn check_ok(&self) -> bool {
         self.check == self.sum
     }
@@ -115,7 +115,7 @@ fn sum16(bytes: &[u8]) -> u16 {
         .fold(0, |sum, byte| sum.wrapping_add(u16::from(*byte)))
 }
 
-/// Reads fixed-size pieces from the front.
+/// Reads fixed-size pieces from the front of a slice.
 struct Cursor<'a>(&'a [u8]);
 
 impl Cursor<'_> {

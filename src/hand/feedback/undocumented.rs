@@ -1,4 +1,4 @@
-//! Values outside the manual's ranges, as every file names them: `angle[4]`, or with what the hand sent `angle[4]=1203`.
+//! Values outside the manual's ranges, as named in every file: `angle[4]`, or with the number that the hand sent, `angle[4]=1203`.
 
 use crate::hand::dof::Dof;
 use crate::hand::feedback::group::{Group, Groups};
@@ -6,19 +6,19 @@ use crate::hand::feedback::reading::AngleReading;
 use crate::hand::feedback::sample::HandSample;
 use std::fmt;
 
-/// A value of a joint that is outside the manual's range.
+/// A joint's value outside the manual's range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Undocumented {
-    /// What it is a value of.
+    /// Group of the value.
     pub group: Group,
     /// Joint whose register held it.
     pub dof: Dof,
-    /// What the hand sent; not kept of set points.
+    /// Number that the hand sent; `None` for setpoints, which do not store it.
     pub raw: Option<i16>,
 }
 
 impl HandSample {
-    /// The values of these groups that are outside the manual's ranges.
+    /// Values of these groups that are outside the manual's ranges.
     pub fn undocumented(&self, fresh: Groups) -> impl Iterator<Item = Undocumented> {
         let sample = *self;
         let groups = Group::ALL.into_iter();
@@ -34,14 +34,14 @@ impl HandSample {
     }
 }
 
-/// How far past the manual's range real hands are seen to report positions and currents.
+/// Distance outside the manual's range at which real hands have reported positions and currents.
 const SLACK: i16 = 100;
-/// What a hand sends for a temperature or a status that it does not know.
+/// Number that a hand sends for an unknown temperature or status.
 const NOT_KNOWN: i16 = 255;
 
 impl HandSample {
-    /// True if one of these groups holds a value that no hand should send: further out than real hands are seen to go, and no word
-    /// for "not known".
+    /// True if one of these groups holds a value that no hand should send: further out of range than real hands have been seen to report,
+    /// and not the code for "not known".
     pub fn is_implausible(&self, fresh: Groups) -> bool {
         self.undocumented(fresh).any(Undocumented::is_implausible)
     }
@@ -61,12 +61,12 @@ impl Undocumented {
         }
     }
 
-    /// Its name without what was sent.
+    /// Name without the number that the hand sent.
     pub fn name(&self) -> String {
         format!("{}[{}]", self.group.name(), self.dof.index())
     }
 
-    /// Reads what [`fmt::Display`] writes.
+    /// Parses the output of [`fmt::Display`].
     pub fn parse(text: &str) -> Option<Self> {
         let (name, raw) = match text.split_once('=') {
             Some((name, raw)) => (name, Some(raw.parse().ok()?)),

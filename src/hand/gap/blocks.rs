@@ -1,72 +1,72 @@
-//! Two blocks of known size correct what the model makes of the gap: size = scale x gap + offset.
+//! Correction of the model's gap from two blocks of known size: size = scale x gap + offset.
 
 use crate::hand::gap::path::PinchGap;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// Two blocks differ by so much, in mm: of nearer ones the scale would be a guess. A block that is nearer to a known one is that
-/// one, measured again.
+/// Smallest difference between two blocks, in mm: closer together, they would not determine the scale. A block closer to a known one
+/// than this replaces it.
 const APART_MM: f32 = 10.0;
-/// Scales and offsets beyond these, in mm, are no correction but a mistake: a wrong size was told, or something else was held.
+/// Limits of scale and offset (mm). Values beyond them are a mistake: the size was entered wrongly or another object was held.
 const SCALES: RangeInclusive<f32> = 0.6..=1.6;
 const OFFSET_MM: f32 = 30.0;
 
-/// A block that was held: its size, and the gap that the model made of it.
+/// A measured block: its true size and the gap according to the model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Block {
-    /// Its true size, mm.
+    /// True size, mm.
     pub size_mm: f32,
-    /// The distance of the pads by the model while it was held, mm.
+    /// Distance of the pads according to the model while the block was held, mm.
     pub gap_mm: f32,
 }
 
 impl Block {
-    /// Sizes that a block may have, mm.
+    /// Range of allowed sizes, mm.
     pub const SIZES_MM: RangeInclusive<f32> = 1.0..=120.0;
 }
 
-/// The size of what is held, mm, and of which shape it is true.
+/// Size of the held object, mm, and the shape to which it applies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HeldSize {
-    /// Of an object like the two blocks that were measured with this hand.
+    /// Size of an object like the two blocks measured with this hand.
     Block(f32),
-    /// Diameter of a ball, by the model.
+    /// Diameter of a ball, according to the model.
     Ball(f32),
-    /// Of no shape: the pads are so far apart, by the model, and their edges may be what touches.
+    /// Distance of the pads according to the model; their edges may be in contact, so no shape is known.
     Pads(f32),
 }
 
-/// The blocks that were measured with one hand, two at most, the smaller first.
+/// The blocks measured with one hand, at most two, the smaller first.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(from = "Vec<Block>")]
 pub struct SizeBlocks(Vec<Block>);
 
-/// Why a block was not taken.
+/// Reason for rejecting a block.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BlockError {
-    /// No block has such a size.
+    /// The size is out of range.
     #[error(
         "a block has {} to {} mm, not {size_mm}",
         Block::SIZES_MM.start(),
         Block::SIZES_MM.end()
     )]
     Size {
-        /// What was told, mm.
+        /// Size that was entered, mm.
         size_mm: f32,
     },
-    /// With the other one it says what cannot be true.
+    /// Together with the other block it gives an impossible correction.
     #[error(
         "the two blocks do not fit what the hand told (scale {scale:.2}, offset {offset_mm:.0} mm): measure both again, between thumb and index only"
     )]
     Unlikely {
-        /// Scale that they would give.
+        /// Resulting scale.
         scale: f32,
-        /// Offset, mm.
+        /// Resulting offset, mm.
         offset_mm: f32,
     },
 }
 
-/// Size of a gap by two blocks.
+/// Correction of a gap, from two blocks.
 #[derive(Debug, Clone, Copy)]
 struct Correction {
     scale: f32,
@@ -86,20 +86,20 @@ impl Correction {
 }
 
 impl SizeBlocks {
-    /// What was measured.
+    /// Measured blocks.
     pub fn blocks(&self) -> &[Block] {
         &self.0
     }
 
-    /// True if none was measured.
+    /// True if no block was measured.
     pub const fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Takes a block; one of nearly its size is replaced, or of two the one that is nearer in size.
+    /// Adds a block. It replaces one of nearly its size or, if there are two, the one closer to it in size.
     ///
     /// # Errors
-    /// [`BlockError`]: then nothing changed.
+    /// [`BlockError`]; the blocks are then unchanged.
     pub fn measure(&mut self, block: Block) -> Result<(), BlockError> {
         let size_mm = block.size_mm;
         if !Block::SIZES_MM.contains(&size_mm) {
@@ -111,7 +111,7 @@ impl SizeBlocks {
         let is_replaced =
             others.len() == 2 || others.first().is_some_and(|own| away(own) < APART_MM);
         let other = others.get(usize::from(is_replaced)).copied();
-        // Of a pair whose other block is as near too, only the new one stays.
+        // If the other block is as close, too, only the new one stays.
         let other = other.filter(|own| away(own) >= APART_MM);
         let mut blocks: Vec<Block> = other.into_iter().chain([block]).collect();
         blocks.sort_by(|one, two| one.size_mm.total_cmp(&two.size_mm));
@@ -122,7 +122,7 @@ impl SizeBlocks {
         Ok(())
     }
 
-    /// The size of what is held at this gap; by the model alone until two blocks were measured. Never less than nothing.
+    /// Size of the object held at this gap, never negative; from the model alone until two blocks were measured.
     pub fn size(&self, gap: PinchGap) -> HeldSize {
         let correction = match self.0.as_slice() {
             [one, two] => Correction::of(*one, *two).ok(),
@@ -141,7 +141,7 @@ impl From<Vec<Block>> for SizeBlocks {
     fn from(kept: Vec<Block>) -> Self {
         let mut all = Self::default();
         for block in kept {
-            // What a file says and no hand can have told is dropped.
+            // A block that fails the check is dropped; no hand can have measured it.
             let _dropped = all.measure(block);
         }
         all

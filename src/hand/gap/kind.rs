@@ -1,8 +1,8 @@
-//! Kinds of grip, and which of them have a gap that can be asked for.
+//! Kinds of grip, and which of them can be commanded by gap.
 
 use serde::{Deserialize, Serialize};
 
-/// A grip as users name it. This hand can do one of them by size; [`GripKind::offered`] says why not the others.
+/// A kind of grip. This hand can do only one of them by size; [`GripKind::offered`] gives the reason for each other.
 #[derive(
     Debug,
     Clone,
@@ -28,7 +28,7 @@ pub enum GripKind {
     Around,
 }
 
-/// Why a grip cannot be had by size: in this hand no two pads face each other in it.
+/// Reason why a grip is not available by size: in this hand no two pads face each other in it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NotOffered {
     /// The middle finger's pad stays beside the thumb's.
@@ -49,7 +49,7 @@ pub enum NotOffered {
 }
 
 impl GripKind {
-    /// All.
+    /// All kinds.
     pub const ALL: [Self; 4] = [
         Self::Pinch,
         Self::ThreeFingers,
@@ -57,15 +57,15 @@ impl GripKind {
         Self::Around,
     ];
 
-    /// As command line and files have it.
+    /// Name on the command line and in files.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// Whether it can be had by size.
+    /// Checks that the grip is available by size.
     ///
     /// # Errors
-    /// [`NotOffered`]: why not.
+    /// [`NotOffered`], the reason.
     pub const fn offered(self) -> Result<(), NotOffered> {
         match self {
             Self::Pinch => Ok(()),

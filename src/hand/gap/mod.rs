@@ -1,4 +1,4 @@
-//! Grips by size: which this hand can do, the angles for a gap in mm, and the size of what is held. Reckoned by the model of
+//! Grips by size: the grips that this hand can do, the angles for a gap in mm, and the size of the held object. Computed by the model of
 //! [`crate::hand::kinematics`], so each figure is "by the model" until blocks of known size were measured.
 
 mod blocks;

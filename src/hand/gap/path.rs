@@ -1,4 +1,4 @@
-//! The one path on which the pads of thumb and index face each other, by the distance between their middles.
+//! The path on which the pads of thumb and index face each other, parametrized by the distance between the pad centres.
 
 use crate::hand::dof::{Dof, Finger, PerDof};
 use crate::hand::feedback::reading::AngleReading;
@@ -9,56 +9,56 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// Index and thumb bend, in counts, at the corners of the path: where the pads meet, where the thumb is open, and where both
-/// are. The thumb stays turned before the palm and the other fingers open. Between the first two both close so that neither
-/// pad is seen from its side; the next count on would let thumb and index cross.
+/// are open. The thumb stays rotated in front of the palm and the other fingers open. Between the first two corners both close so that
+/// neither pad is turned sideways; one count further, thumb and index could cross.
 const CORNERS: [[f32; 2]; 3] = [[412.0, 508.0], [660.0, 1000.0], [1000.0, 1000.0]];
-/// The thumb's rotation on the path: all the way before the palm.
+/// Thumb rotation on the path: fully in front of the palm.
 const ROTATED: Angle = Angle::MIN;
-/// Halvings of the path until a place on it is known to less than a count.
+/// Bisection steps that locate a point of the path to less than a count.
 const HALVINGS: u32 = 24;
-/// A joint that is farther from the path than this, in counts, does not pinch: the pads are not what touches.
+/// Largest distance of a joint from the path, in counts, for a pinch; beyond it the pads are not in contact.
 const ON_PATH_TOLERANCE: f32 = 80.0;
 
-/// Nearer than this the edges of the pads meet, mm.
+/// Gap below which the edges of the pads meet, mm.
 const EDGES_MEET_MM: f32 = 8.0;
-/// A ball that touches a pad farther from its middle than this touches its edge, mm: real pads are some 15 mm wide.
+/// Contact of a ball at more than this distance from the pad's centre is on its edge, mm: real pads are some 15 mm wide.
 const OFF_MIDDLE_MM: f32 = 5.0;
-/// The way that the thumb's pad lies in its last segment.
+/// Direction of the thumb's pad in its last segment.
 const THUMB_PAD: Vec3 = Vec3::new(28.99, 17.30, 0.0);
 
-/// What the model makes of where thumb and index are, while their pads face each other.
+/// Gap and ball diameter according to the model, while the pads of thumb and index face each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PinchGap {
-    /// Between the middles of the pads, mm.
+    /// Distance between the pad centres, mm.
     pub mm: f32,
-    /// Diameter of the ball that touches both pads nearest to their middles, mm. It is more than the gap, because the pads are tilted to
+    /// Diameter of the ball that touches both pads closest to their centres, mm. It is more than the gap, because the pads are tilted to
     /// each other: 67 degrees at 16 mm, 17 at 71 mm. `None` where it would touch their edges.
     pub ball_mm: Option<f32>,
 }
 
-/// A distance between the pads of thumb and index that the path has, in mm.
+/// A distance between the pads of thumb and index that lies on the path, in mm.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(try_from = "f32", into = "f32")]
 pub struct Gap(f32);
 
-/// A gap that the path does not have.
+/// A gap outside the range of the path.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("a pinch opens from {} to {} mm, not {got} mm", Gap::MIN.mm(), Gap::MAX.mm())]
 pub struct GapOutOfRange {
-    /// What was asked for, in mm.
+    /// Requested gap, mm.
     pub got: f32,
 }
 
 impl Gap {
-    /// The pads touch: their middles come no nearer.
+    /// Pads in contact: their centres come no closer.
     pub const MIN: Self = Self(3.0);
-    /// Beyond it the index turns its tip, not its pad, to the thumb.
+    /// Beyond this gap the index turns its tip, not its pad, to the thumb.
     pub const MAX: Self = Self(120.0);
 
-    /// The joints that pinch; the other fingers only stay out of the way.
+    /// Joints that pinch; the other fingers only stay out of the way.
     pub const JOINTS: [Dof; 3] = [Dof::Index, Dof::ThumbBend, Dof::ThumbRotate];
 
-    /// Checks the range.
+    /// Checks the range of a gap in mm.
     ///
     /// # Errors
     /// [`GapOutOfRange`].
@@ -70,7 +70,7 @@ impl Gap {
         }
     }
 
-    /// The nearest that the path has; the widest for what is no number.
+    /// Nearest gap on the path; the widest for NaN.
     pub fn nearest(mm: f32) -> Self {
         if mm.is_nan() {
             Self::MAX
@@ -79,12 +79,12 @@ impl Gap {
         }
     }
 
-    /// In mm.
+    /// Gap in mm.
     pub const fn mm(self) -> f32 {
         self.0
     }
 
-    /// Where all six joints are with this gap. Rounding to counts changes it by less than 0.2 mm.
+    /// Angles of all six joints at this gap. Rounding to counts changes the gap by less than 0.2 mm.
     ///
     /// ```
     /// use handscope_core::hand::gap::{Gap, pad_distance};
@@ -103,7 +103,7 @@ impl Gap {
         angles
     }
 
-    /// The parts of the path from this gap to another, one after the other.
+    /// Legs of the path from this gap to another, in order.
     pub fn legs_to(self, to: Self) -> Vec<PinchLeg> {
         let corner = self.share().max(to.share()) > 1.0 && self.share().min(to.share()) < 1.0;
         let between = corner.then(|| Self(distance_at(1.0)));
@@ -116,7 +116,7 @@ impl Gap {
         legs
     }
 
-    /// Straight to another gap, off the path where that has its corner between: for small steps.
+    /// Straight leg to another gap; leaves the path if a corner lies between. For small steps.
     pub fn straight_to(self, to: Self) -> PinchLeg {
         let (start, to) = (self.angles(), to.angles());
         let ways = PerDof::from_fn(|dof| f32::from(start[dof].get().abs_diff(to[dof].get())));
@@ -128,7 +128,7 @@ impl Gap {
         }
     }
 
-    /// How far along the path, in corners: 0 where the pads meet.
+    /// Position along the path, in corners: 0 where the pads meet.
     fn share(self) -> f32 {
         let (mut near, mut far) = (0.0, 2.0);
         for _ in 0..HALVINGS {
@@ -143,7 +143,7 @@ impl Gap {
     }
 }
 
-/// It is never NaN.
+/// A gap is never NaN.
 impl Eq for Gap {}
 
 impl TryFrom<f32> for Gap {
@@ -159,17 +159,17 @@ impl From<Gap> for f32 {
     }
 }
 
-/// A straight part of the path.
+/// A straight leg of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PinchLeg {
-    /// Where all joints are at its end.
+    /// Angles of all joints at its end.
     pub to: PerDof<Angle>,
-    /// Share of the way of the joint that goes farthest, 0 to 1; 1 for joints that only stay in their places.
+    /// Travel of each joint relative to the joint that travels farthest, 0 to 1; 1 if no joint moves.
     shares: PerDof<f32>,
 }
 
 impl PinchLeg {
-    /// Speeds at which all joints arrive together, the fastest at this one.
+    /// Speeds at which all joints arrive together; the joint that travels farthest moves at `fastest`.
     pub fn speeds(&self, fastest: Speed) -> PerDof<Speed> {
         let least = fastest.min(Speed::nearest(1));
         self.shares
@@ -177,7 +177,7 @@ impl PinchLeg {
     }
 }
 
-/// Millimetres between the middles of the pads of thumb and index, wherever the joints are, in counts.
+/// Distance between the pad centres of thumb and index in mm, at any joint position in counts.
 pub fn pad_distance(counts: &PerDof<f32>) -> f32 {
     let frames = SegmentFrames::of_shares(Side::Right, &counts.map(|count| count / 1000.0));
     frames
@@ -185,7 +185,7 @@ pub fn pad_distance(counts: &PerDof<f32>) -> f32 {
         .distance(frames.tip(Finger::Thumb))
 }
 
-/// Whether thumb and index can go from here to any gap, and meet nothing on the way, whichever is faster.
+/// True if thumb and index can move from here to any gap without touching each other, whichever is faster.
 pub fn is_open_for_pinch(counts: &PerDof<f32>) -> bool {
     let spare = f32::from(Angle::ARRIVED_TOLERANCE);
     let [[index, bend], ..] = CORNERS;
@@ -194,7 +194,7 @@ pub fn is_open_for_pinch(counts: &PerDof<f32>) -> bool {
         && counts[Dof::ThumbRotate] <= f32::from(ROTATED.get()) + 2.0 * spare
 }
 
-/// The gap of a hand whose thumb and index are near the path, in mm; `None` where the pads do not face each other.
+/// Gap of a hand whose thumb and index are near the path, in mm; `None` where the pads do not face each other.
 pub fn gap_on_path(counts: &PerDof<f32>) -> Option<f32> {
     let gap = pad_distance(counts);
     let meant = Gap::nearest(gap).angles();
@@ -202,7 +202,7 @@ pub fn gap_on_path(counts: &PerDof<f32>) -> Option<f32> {
     Gap::JOINTS.into_iter().all(is_near).then_some(gap)
 }
 
-/// What the model makes of a hand whose thumb and index are near the path; `None` where the pads do not face each other.
+/// Pinch gap of a hand whose thumb and index are near the path; `None` where the pads do not face each other.
 ///
 /// ```
 /// use handscope_core::hand::gap::{Gap, pinch_gap};
@@ -219,10 +219,10 @@ pub fn pinch_gap(counts: &PerDof<f32>) -> Option<PinchGap> {
     Some(PinchGap { mm, ball_mm })
 }
 
-/// The middle of a pad and where it looks.
+/// Centre and normal of a pad.
 type Pad = (Vec3, Vec3);
 
-/// The pads of index and thumb.
+/// Pads of index and thumb.
 fn pads(counts: &PerDof<f32>) -> [Pad; 2] {
     let frames = SegmentFrames::of_shares(Side::Right, &counts.map(|count| count / 1000.0));
     let out = Vec3::new(-THUMB_PAD.y, THUMB_PAD.x, 0.0).normalize();
@@ -234,7 +234,7 @@ fn pads(counts: &PerDof<f32>) -> [Pad; 2] {
     ]
 }
 
-/// Diameter of the ball whose points of contact lie nearest to the middles of both pads.
+/// Diameter of the ball that touches both pads closest to their centres; `None` if it would touch their edges.
 fn ball([(one, one_looks), (two, two_looks)]: &[Pad; 2]) -> Option<f32> {
     let (apart, facing) = (two - one, one_looks - two_looks);
     let radius = apart.dot(facing) / facing.length_squared();
@@ -242,7 +242,7 @@ fn ball([(one, one_looks), (two, two_looks)]: &[Pad; 2]) -> Option<f32> {
     (off_middle <= OFF_MIDDLE_MM).then_some(2.0 * radius)
 }
 
-/// The gap while thumb and index, and no other finger, hold something; `None` otherwise, or where an angle is not known.
+/// Gap while thumb and index, and no other finger, hold an object; `None` otherwise, or where an angle is not known.
 pub fn held_gap(grip: &Grip, angles: &PerDof<AngleReading>) -> Option<PinchGap> {
     let holds = |state| {
         matches!(
@@ -257,7 +257,7 @@ pub fn held_gap(grip: &Grip, angles: &PerDof<AngleReading>) -> Option<PinchGap> 
     pinch_gap(&counts.all()?).filter(|_| is_pinch)
 }
 
-/// Index and thumb bend so far along the path, in counts.
+/// Index and thumb bend at this position along the path, in counts.
 fn on_path(share: f32) -> [f32; 2] {
     let [met, open_thumb, open] = CORNERS;
     let (from, to, part) = if share < 1.0 {

@@ -204,7 +204,7 @@ mod tests {
             }
         }
 
-        /// The state of the index finger after so long.
+        /// State of the index finger after this time.
         fn after(&mut self, ms: u64) -> GripState {
             for _ in 0..ms / 10 {
                 self.ms += 10;
@@ -332,7 +332,7 @@ mod tests {
         assert_eq!(hand.after(100), GripState::Lost);
     }
 
-    /// The index bends to 240 in the air, against a friction of so much there, and rests; the states that were told.
+    /// The index bends to 240 in the air, against this friction, and rests; returns the reported states.
     #[expect(clippy::cast_possible_truncation, reason = "at most 100 g")]
     fn close_in_the_air(hand: &mut Reading, friction_g: i16) -> Vec<GripState> {
         hand.status = Status::Grasping;

@@ -16,7 +16,7 @@ pub struct GripThresholds {
     pub too_hard_g: u16,
     /// Current from which a drive with contact presses too hard, mA.
     pub too_hard_ma: u16,
-    /// Rise of the ratio of tangential to normal force that counts as a slip, relative to the half second before or to the start of creeping.
+    /// Rise of the ratio of tangential to normal force that is a slip, relative to the half second before or to the start of creeping.
     pub slip_ratio: f64,
     /// Turn of the tangential force with which a smaller rise is a slip, degrees. A turn alone is none: the wrist turns, too.
     pub slip_turn_deg: f64,

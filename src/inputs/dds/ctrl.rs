@@ -1,5 +1,5 @@
-//! Unitree's message to a hand, `inspire::inspire_hand_ctrl` (`handscope help dds`). What is wrong is refused whole and counted,
-//! never bent into range.
+//! Unitree's message to a hand, `inspire::inspire_hand_ctrl` (`handscope help dds`). A message with an error is refused as a whole
+//! and counted, never clamped into range.
 
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, Force, OutOfRange, PerDof, Speed};
@@ -9,17 +9,17 @@ use crate::record::file::format::cdr;
 use crate::transport::dds::DdsTopic;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-/// Four lists of six numbers, the mode and the head are shorter.
+/// Limit of a message's length: four lists of six numbers, the mode and the header are shorter.
 const BYTES_MAX: usize = 80;
-/// Messages that wait to be taken: two thirds of a second of them, so that none is followed that is much older.
+/// Queue of messages: two thirds of a second of them, so that no much older one is followed.
 pub const KEPT: u16 = 64;
-/// The bits of the mode, and what each lets pass.
+/// Bits of the mode, each of which enables one list.
 const ANGLE: u8 = 1;
 const POSITION: u8 = 2;
 const FORCE: u8 = 4;
 const SPEED: u8 = 8;
 
-/// Where programs send to the hand of this side.
+/// Topic for commands to the hand of this side.
 pub fn topic(side: Side) -> DdsTopic {
     let side = match side {
         Side::Left => 'l',
@@ -31,48 +31,48 @@ pub fn topic(side: Side) -> DdsTopic {
     }
 }
 
-/// What one message asks for.
+/// Contents of one message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CtrlMessage {
-    /// Where the joints should go.
+    /// Targets of the joints.
     pub aims: PerDof<Option<Angle>>,
-    /// How fast and how firmly.
+    /// Requested speeds and forces.
     pub limits: OfferLimits,
-    /// The same for messages that ask for the same.
+    /// Equal for equal targets.
     pub mark: u64,
 }
 
-/// Why a message was refused.
+/// Reason for refusing a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
 pub enum CtrlFault {
-    /// It is no message of this type.
+    /// Not a message of this type.
     #[error("not an inspire_hand_ctrl in CDR")]
     Malformed,
-    /// A mode that the type does not have.
+    /// The mode has a bit that the type does not define.
     #[error("its mode has other bits than angle 1, force 4 and speed 8")]
     Mode,
-    /// The mode asks for positions of the drives.
+    /// The mode enables positions of the drives.
     #[error("it sets positions of the drives, mode 2: only angles, forces and speeds are taken")]
     Position,
     /// Not six values.
     #[error("a hand has six joints")]
     Length,
-    /// A value that the register does not take.
+    /// A value outside the register's range.
     #[error("a value is outside the register's range")]
     Range,
     /// Not the motors of two hands.
     #[error("two hands have twelve motors")]
     Motors,
-    /// Faster or firmer than the user who let the hand follow allowed.
+    /// A speed or force above the limits set by the user who granted control.
     #[error("a speed or force is above --speed or --force")]
     AboveLimit,
-    /// Another sender is followed.
+    /// Another sender is being followed.
     #[error("another sender is followed until it is silent")]
     OtherSender,
 }
 
 impl CtrlFault {
-    /// The word for it in JSON.
+    /// Name in JSON.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Malformed => "malformed",
@@ -103,8 +103,8 @@ struct Raw {
     mode: u8,
 }
 
-/// Whether a message asks for a stop: it means speeds, and all of them are 0. Neither its other lists nor their lengths, nor other
-/// bits of its mode, nor what stands behind it change that.
+/// True if a message requests a stop: it enables speeds, and all of them are 0. Its other lists, their lengths, other
+/// bits of its mode and any trailing bytes are irrelevant.
 pub fn is_stop(bytes: &[u8]) -> bool {
     let raw: Option<Raw> = cdr::decode(bytes);
     raw.is_some_and(|raw| {
@@ -114,10 +114,10 @@ pub fn is_stop(bytes: &[u8]) -> bool {
 }
 
 impl CtrlMessage {
-    /// Reads a message in CDR with its head, within what the user allowed.
+    /// Parses a message in CDR with its header, within the user's limits.
     ///
     /// # Errors
-    /// [`CtrlFault`]: why it is refused whole.
+    /// [`CtrlFault`]; the message is refused as a whole.
     pub fn parse(bytes: &[u8], allowed: &ArmRequest) -> Result<Self, CtrlFault> {
         if bytes.len() > BYTES_MAX {
             return Err(CtrlFault::Malformed);
@@ -129,7 +129,7 @@ impl CtrlMessage {
         if raw.mode & POSITION != 0 {
             return Err(CtrlFault::Position);
         }
-        // What the mode does not let pass is not looked at, but must fit the type.
+        // Lists that the mode does not enable are ignored, but must fit the type.
         if raw.pos_set.len() > Dof::ALL.len() {
             return Err(CtrlFault::Length);
         }
@@ -154,7 +154,7 @@ impl CtrlMessage {
     }
 }
 
-/// The manual's "no action" leaves a joint alone (2.6.11).
+/// The manual's "no action" (2.6.11) leaves a joint alone.
 fn angle(raw: i16) -> Result<Option<Angle>, OutOfRange> {
     match raw {
         -1 => Ok(None),
@@ -162,7 +162,7 @@ fn angle(raw: i16) -> Result<Option<Angle>, OutOfRange> {
     }
 }
 
-/// The values of a list for each joint, if it is meant.
+/// Values of a list for each joint, if the mode enables it.
 fn six<T: Copy>(
     list: &[i16],
     is_meant: bool,

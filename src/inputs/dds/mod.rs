@@ -1,4 +1,4 @@
-//! Programs that send to a hand over DDS, as Unitree's do.
+//! Commands from other programs over DDS, in the format of Unitree's programs.
 
 pub mod ctrl;
 pub mod motors;

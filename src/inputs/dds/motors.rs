@@ -1,6 +1,6 @@
-//! Unitree's message to both hands of a robot as twelve motors, `unitree_go::msg::dds_::MotorCmds_`, as its DFX service takes it:
-//! motors 0 to 5 are the right hand's joints in the order of the registers, 6 to 11 the left one's; of a motor only `q` counts, 0 bent to
-//! 1 open. What is wrong in the hand's own half is refused whole.
+//! Unitree's message to both hands of a robot as twelve motors, `unitree_go::msg::dds_::MotorCmds_`, as its DFX service accepts it:
+//! motors 0 to 5 are the right hand's joints in register order, 6 to 11 the left hand's; only `q` of a motor is used, 0 bent to
+//! 1 open. An error in the hand's own half refuses the message as a whole.
 
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, PerDof};
@@ -11,10 +11,10 @@ use crate::record::file::format::cdr;
 use crate::transport::dds::DdsTopic;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-/// Twelve motors of 36 bytes and the head, with room for fields of later versions.
+/// Limit of a message's length: twelve motors of 36 bytes and the header, with room for fields of later versions.
 const BYTES_MAX: usize = 1024;
 
-/// Where programs send to both hands.
+/// Topic for commands to both hands.
 pub fn topic() -> DdsTopic {
     DdsTopic {
         name: "rt/inspire/cmd".into(),
@@ -32,15 +32,15 @@ struct MotorCmds {
 struct MotorCmd {
     _mode: u8,
     q: f32,
-    /// Speed, torque and the gains of a motor, which this hand has not.
+    /// Speed, torque and gains of a motor, which this hand does not have.
     _others: [f32; 4],
     _reserve: [u32; 3],
 }
 
-/// Reads a message in CDR with its head for the hand of this side.
+/// Parses a message in CDR with its header for the hand of this side.
 ///
 /// # Errors
-/// [`CtrlFault`]: why it is refused whole. The other hand's motors are not looked at.
+/// [`CtrlFault`]; the message is refused as a whole. The other hand's motors are not checked.
 pub fn parse(bytes: &[u8], side: Side) -> Result<CtrlMessage, CtrlFault> {
     if bytes.len() > BYTES_MAX {
         return Err(CtrlFault::Malformed);

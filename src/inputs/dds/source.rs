@@ -1,4 +1,4 @@
-//! Messages over DDS as a source that a hand can follow: one sender at a time, in order, counted.
+//! DDS commands as a source for a hand to follow: one sender at a time, in order, counted.
 
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
@@ -16,62 +16,62 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::interval;
 use tokio_util::task::AbortOnDropHandle;
 
-/// How often it is told what came in.
+/// Interval at which the statistics are published.
 const REPORT_INTERVAL: Duration = Duration::from_millis(50);
 
-/// What is taken from DDS.
+/// Configuration of the source.
 #[derive(Clone)]
 pub struct DdsSourceConfig {
-    /// Which of a robot's hands it is.
+    /// Side of the hand on the robot.
     pub side: Side,
-    /// The highest speeds and forces that a message may ask for.
+    /// Highest speeds and forces that a message may request.
     pub allowed: ArmRequest,
     /// The program's clock.
     pub clock: Clock,
-    /// Stops the hand. Called for each message that asks for it, whoever sent it.
+    /// Stops the hand. Called for each message that requests it, from any sender.
     pub stop: Arc<dyn Fn() + Send + Sync>,
-    /// Called when there is news. Must return at once.
+    /// Called when the view changed. Must return at once.
     pub wake: Wake,
 }
 
-/// What is known of the source now.
+/// Current state of the source.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DdsView {
-    /// Who is listened to, and when a message of theirs came last.
+    /// Current sender, and the time of its last message.
     pub sender: Option<(DdsWriterId, Moment)>,
-    /// Messages a second.
+    /// Messages per second.
     pub rate_hz: f64,
-    /// Messages that were taken.
+    /// Accepted messages.
     pub taken: u64,
-    /// Messages that were refused, by reason.
+    /// Refused messages, by reason.
     pub refused: BTreeMap<CtrlFault, u64>,
-    /// Messages that nobody followed, as no user granted it.
+    /// Messages without a follower, because the user has not granted control.
     pub not_granted: u64,
     /// Messages that stopped the hand although something else in them was wrong.
     pub odd_stops: u64,
-    /// The newest of them: its sender, and what was wrong.
+    /// The last of them: its sender, and the error.
     pub last_odd: Option<(DdsWriterId, CtrlFault)>,
 }
 
 impl DdsView {
-    /// As whom it would move the hand at `now`; `None` while nobody sends.
+    /// Owner as which it would control the hand at `now`; `None` without a current sender.
     pub fn owner(&self, now: Moment) -> Option<Owner> {
         let (_, last) = self.sender?;
         is_fresh(last, now).then_some(Owner::Dds)
     }
 }
 
-/// Messages that come in.
+/// Incoming messages.
 #[derive(Debug)]
 pub struct DdsCommands {
-    /// To this hand, as registers.
+    /// For this hand, as registers.
     pub ctrl: mpsc::Receiver<DdsMessage>,
-    /// To both hands of a robot, as motors.
+    /// For both hands of a robot, as motors.
     pub motors: mpsc::Receiver<DdsMessage>,
 }
 
 impl DdsCommands {
-    /// Those that are sent to the hand of this side from now on. Must be called within a tokio runtime.
+    /// Receives messages for the hand of this side from now on. Must be called within a tokio runtime.
     pub fn of(node: &DdsNode, side: Side) -> Self {
         Self {
             ctrl: node.reader(&ctrl::topic(side), ctrl::KEPT),
@@ -80,7 +80,7 @@ impl DdsCommands {
     }
 }
 
-/// An open source. Dropped, it takes nothing any more.
+/// An open source. Receives messages until dropped.
 #[derive(Debug)]
 pub struct DdsSource {
     view: watch::Receiver<DdsView>,
@@ -89,7 +89,7 @@ pub struct DdsSource {
 }
 
 impl DdsSource {
-    /// Takes these messages from now on. Must be called within a tokio runtime.
+    /// Receives these messages from now on. Must be called within a tokio runtime.
     pub fn open(config: DdsSourceConfig, commands: DdsCommands) -> Self {
         let (told, view) = watch::channel(DdsView::default());
         let outlet = OfferOutlet::default();
@@ -107,12 +107,12 @@ impl DdsSource {
         }
     }
 
-    /// What is known of it.
+    /// Current state.
     pub fn view(&self) -> DdsView {
         self.view.borrow().clone()
     }
 
-    /// Its targets from now on, for whoever follows; whoever did before does no more.
+    /// Receives its targets from now on; replaces the previous follower.
     pub fn follow(&self) -> mpsc::Receiver<Offer> {
         self.outlet.follow()
     }
@@ -184,12 +184,12 @@ impl Taking {
         };
         self.view.not_granted += u64::from(!self.outlet.offer(offer));
         if is_new {
-            // Somebody may wait for one to follow.
+            // A user may be waiting for a sender to follow.
             self.tell();
         }
     }
 
-    /// Counts a stop, and what was odd about it.
+    /// Counts a stop and any error in its message.
     fn stopped(&mut self, from: DdsWriterId, odd: Option<CtrlFault>) {
         self.view.taken += 1;
         self.rate.hit(self.config.clock.now());
@@ -199,7 +199,7 @@ impl Taking {
         }
     }
 
-    /// One sender is listened to until it is silent; Unitree's programs do not number their messages.
+    /// Accepts one sender until it is silent; Unitree's programs do not number their messages.
     fn in_turn(&mut self, from: DdsWriterId, now: Moment) -> Result<(), CtrlFault> {
         let is_other =
             |(sender, last): (DdsWriterId, Moment)| sender != from && now.since(last) < END_TIMEOUT;

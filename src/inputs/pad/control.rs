@@ -1,18 +1,18 @@
-//! What is on a gamepad, by its place, and how the Linux kernel names it.
+//! Controls of a gamepad by their location, and their names in the Linux kernel.
 
 use serde::{Deserialize, Serialize};
 
-/// Something on a gamepad that the user presses or moves. Letters are those of an Xbox pad.
+/// A control of a gamepad. Letters are those of an Xbox pad.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PadControl {
-    /// Below the other face buttons: A, cross.
+    /// Lowest face button: A, cross.
     South,
-    /// At the right of them: B, circle.
+    /// Right face button: B, circle.
     East,
-    /// At the left: X, square.
+    /// Left face button: X, square.
     West,
-    /// Above: Y, triangle.
+    /// Top face button: Y, triangle.
     North,
     /// Above the left trigger: LB, L1.
     LeftBumper,
@@ -22,43 +22,43 @@ pub enum PadControl {
     LeftTrigger,
     /// RT, R2.
     RightTrigger,
-    /// The left stick, turned.
+    /// The left stick, tilted.
     LeftStick,
-    /// The right stick, turned.
+    /// The right stick, tilted.
     RightStick,
     /// The left stick, pressed: L3.
     LeftStickPress,
     /// R3.
     RightStickPress,
-    /// Up on the cross.
+    /// Up on the D-pad.
     DpadUp,
-    /// Down on the cross.
+    /// Down on the D-pad.
     DpadDown,
-    /// Left on the cross.
+    /// Left on the D-pad.
     DpadLeft,
-    /// Right on the cross.
+    /// Right on the D-pad.
     DpadRight,
     /// Back, Share, View.
     Select,
     /// Start, Options, Menu.
     Start,
-    /// The maker's sign in the middle.
+    /// The logo button in the middle.
     Home,
 }
 
-/// How a control moves.
+/// Type of a control's motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ControlKind {
     /// Down or up.
     Button,
-    /// From 0 to 1, back to 0 when it is let go.
+    /// From 0 to 1, returns to 0 when released.
     Trigger,
-    /// From -1 to 1 both ways, back to the middle when it is let go.
+    /// Two axes from -1 to 1, returns to the centre when released.
     Stick,
 }
 
 impl PadControl {
-    /// All of them, as tables list them.
+    /// All controls, in table order.
     pub const ALL: [Self; 19] = [
         Self::South,
         Self::East,
@@ -81,7 +81,7 @@ impl PadControl {
         Self::Home,
     ];
 
-    /// How it moves.
+    /// Type of its motion.
     pub const fn kind(self) -> ControlKind {
         match self {
             Self::LeftTrigger | Self::RightTrigger => ControlKind::Trigger,
@@ -115,7 +115,7 @@ impl PadControl {
         }
     }
 
-    /// The control of this name.
+    /// Returns the control with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|own| own.name() == name)
     }
@@ -156,13 +156,13 @@ const KERNEL_NAMES: [(&str, u16); 31] = [
     ("ABS_HAT2Y", axis::HAT2Y),
 ];
 
-/// The kernel's number of a button or axis, by its name there.
+/// The kernel's code of a button or axis name.
 pub fn kernel_code(name: &str) -> Option<u16> {
     let known = KERNEL_NAMES.into_iter().find(|(own, _)| *own == name);
     known.map(|(_, code)| code)
 }
 
-/// The kernel's numbers of the buttons of a gamepad.
+/// The kernel's codes of a gamepad's buttons.
 pub(crate) mod key {
     pub(crate) const SOUTH: u16 = 0x130;
     pub(crate) const EAST: u16 = 0x131;
@@ -183,7 +183,7 @@ pub(crate) mod key {
     pub(crate) const DPAD_RIGHT: u16 = 0x223;
 }
 
-/// The kernel's numbers of the axes of a gamepad.
+/// The kernel's codes of a gamepad's axes.
 pub(crate) mod axis {
     pub(crate) const X: u16 = 0x00;
     pub(crate) const Y: u16 = 0x01;

@@ -1,4 +1,4 @@
-//! The gamepads of this computer: which are there, and what they do, from a thread of its own. Linux only; elsewhere it says so.
+//! The gamepads of this computer: detection and input, from a thread of its own. Linux only; elsewhere it reports so.
 
 #[cfg(target_os = "linux")]
 use crate::inputs::pad::evdev::SystemPads;
@@ -12,32 +12,32 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use tokio::sync::mpsc::{Receiver, channel};
 
-/// Where Linux keeps its input devices.
+/// Folder of Linux's input devices.
 pub const FOLDER: &str = "/dev/input";
-/// Reports that wait to be taken. While it is full the thread waits, and the kernel says how much it dropped meanwhile.
+/// Capacity of the report queue. While it is full the thread waits, and the kernel reports that it dropped events meanwhile.
 pub(crate) const REPORTS_MAX: usize = 256;
 
-/// Gamepads that are being read. Ends when it is dropped.
+/// Reads gamepads until dropped.
 #[derive(Debug)]
 pub struct PadReader {
     reports: Receiver<PadReport>,
 }
 
-/// How gamepads are read, with the time that their reports bear.
+/// Function that starts a reader whose reports are stamped with this clock.
 pub type OpenPads = Arc<dyn Fn(PadClock) -> Result<PadReader, PadTrouble> + Send + Sync>;
 
-/// The gamepads of this computer.
+/// Reads the gamepads of this computer.
 pub fn system_pads() -> OpenPads {
     Arc::new(|clock| PadReader::start(PathBuf::from(FOLDER), clock))
 }
 
 impl PadReader {
-    /// Of gamepads that something else reads.
+    /// Wraps reports from another reader.
     pub const fn of(reports: Receiver<PadReport>) -> Self {
         Self { reports }
     }
 
-    /// Looks for gamepads in a folder and reads them.
+    /// Searches a folder for gamepads and reads them.
     ///
     /// # Errors
     /// [`PadTrouble::NoThread`] if the system gives no thread.
@@ -46,7 +46,7 @@ impl PadReader {
         Self::with(folder, clock, Box::new(SystemPads))
     }
 
-    /// The same with devices that something else opens.
+    /// Like [`Self::start`], with a custom opener of devices.
     ///
     /// # Errors
     /// [`PadTrouble::NoThread`] if the system gives no thread.
@@ -61,7 +61,7 @@ impl PadReader {
         Ok(Self { reports })
     }
 
-    /// Says that there is none to read.
+    /// Reports that gamepads are not supported.
     ///
     /// # Errors
     /// None here.
@@ -74,27 +74,27 @@ impl PadReader {
         Ok(Self { reports })
     }
 
-    /// The next report; `None` once the thread has ended.
+    /// Waits for the next report; `None` once the thread has ended.
     pub async fn report(&mut self) -> Option<PadReport> {
         self.reports.recv().await
     }
 
-    /// A report that is there already.
+    /// Returns a report that is already queued.
     pub fn try_report(&mut self) -> Option<PadReport> {
         self.reports.try_recv().ok()
     }
 }
 
-/// The gamepads that are there now.
+/// Lists the connected gamepads.
 ///
 /// # Errors
-/// [`PadTrouble`] if none was found and something was in the way.
+/// [`PadTrouble`] if none was found and a device or the folder could not be opened.
 #[cfg(target_os = "linux")]
 pub fn find(folder: &std::path::Path) -> Result<Vec<PadFacts>, PadTrouble> {
     reader::find(folder, &SystemPads)
 }
 
-/// Says that there is none to find.
+/// Reports that gamepads are not supported.
 ///
 /// # Errors
 /// Always [`PadTrouble::LinuxOnly`].

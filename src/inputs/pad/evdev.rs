@@ -1,4 +1,4 @@
-//! Gamepads as the kernel gives them, through its event devices.
+//! Gamepads from the kernel's event devices.
 
 use crate::inputs::pad::control::key;
 use crate::inputs::pad::facts::{AxisRange, FaceOrder, PadFacts};
@@ -13,7 +13,7 @@ use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::Path;
 
-/// The number of Microsoft in the list of USB.
+/// USB vendor id of Microsoft.
 const MICROSOFT: u16 = 0x045e;
 
 /// Opens the event devices of the system.
@@ -26,7 +26,7 @@ impl OpenPad for SystemPads {
         let file = options.read(true).custom_flags(O_NONBLOCK).open(path)?;
         let device = match RawDevice::try_from(file) {
             Ok(device) => device,
-            // Any other file, which merely has such a name.
+            // Another file with such a name.
             Err(error) if error.raw_os_error() == Some(ENOTTY) => return Ok(None),
             Err(error) => return Err(error),
         };
@@ -119,7 +119,7 @@ fn facts(path: &Path, device: &RawDevice) -> io::Result<PadFacts> {
     })
 }
 
-/// Whether this driver serves the device of such a file.
+/// True if this driver serves the device of this file.
 fn has_driver(path: &Path, driver: &str) -> bool {
     let Some(name) = path.file_name() else {
         return false;

@@ -1,47 +1,47 @@
-//! What a gamepad says of itself when it is found, and which of its axes moves what.
+//! Properties of a gamepad on detection, and the assignment of its axes.
 
 use crate::inputs::pad::control::axis;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// What a gamepad says of itself.
+/// Properties of a gamepad.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PadFacts {
-    /// The name that the device gives itself.
+    /// Name that the device reports.
     pub name: String,
     /// Its device file.
     pub path: PathBuf,
-    /// Who made it, by the list of USB.
+    /// USB vendor id.
     pub vendor: u16,
-    /// What it is, by the vendor's list.
+    /// USB product id.
     pub product: u16,
-    /// Its axes by the kernel's numbers.
+    /// Axes by the kernel's code.
     pub axes: BTreeMap<u16, AxisRange>,
-    /// How its driver names the upper and the left face button.
+    /// Naming of the top and the left face button by its driver.
     pub face: FaceOrder,
 }
 
-/// The ends of an axis, as the device names them.
+/// Range of an axis, as the device reports it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AxisRange {
-    /// At the left, at the top, or let go.
+    /// Left, top, or released.
     pub min: i32,
-    /// At the right, at the bottom, or pressed.
+    /// Right, bottom, or pressed.
     pub max: i32,
-    /// How far from the middle it may rest.
+    /// Distance from the centre within which it may rest.
     pub flat: i32,
 }
 
-/// How a driver names the upper and the left face button.
+/// Naming of the top and the left face button by a driver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FaceOrder {
-    /// As the kernel asks for it: BTN_NORTH is above.
+    /// As the kernel specifies: BTN_NORTH is the top one.
     ByPlace,
-    /// By the letters of an Xbox pad, where X, at the left, is BTN_NORTH. So does the driver xpad.
+    /// By the letters of an Xbox pad, where X, on the left, is BTN_NORTH. The xpad driver does this.
     ByLetter,
 }
 
-/// What an axis moves.
+/// Assignment of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum AxisUse {
     LeftX,
@@ -55,8 +55,8 @@ pub(crate) enum AxisUse {
 }
 
 impl PadFacts {
-    /// What each of its axes moves. Pads differ in where the right stick and the triggers are: most follow the kernel's own
-    /// order, older and Bluetooth ones that of the USB tables.
+    /// Assigns each axis. Pads differ in the axes of the right stick and the triggers: most follow the kernel's order,
+    /// older and Bluetooth ones that of the USB tables.
     pub(crate) fn uses(&self) -> BTreeMap<u16, (AxisUse, AxisRange)> {
         let has = |code: u16| self.axes.contains_key(&code);
         let stick_is_rx = has(axis::RX) && has(axis::RY);

@@ -1,4 +1,4 @@
-//! What the controls of a gamepad do as TOML, version 1 (assets/manual/gamepad.md). A file is taken whole or not at all.
+//! Assignment of a gamepad's controls as TOML, version 1 (assets/manual/gamepad.md). A file is applied as a whole or not at all.
 
 use crate::inputs::pad::control::PadControl;
 use crate::inputs::pad::map::{POSE_CHARS_MAX, PadAction, PadMap};
@@ -8,11 +8,11 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use toml::Spanned;
 
-/// The format that such a file names.
+/// Format name in such a file.
 pub const FORMAT: &str = "handscope-gamepad";
-/// The most bytes of such a file.
+/// Size limit of such a file, bytes.
 pub const BYTES_MAX: u64 = 64 * 1024;
-/// Characters of a wrong value that are repeated.
+/// Characters of a wrong value repeated in the error.
 const QUOTED_CHARS: usize = 40;
 
 #[derive(Deserialize)]
@@ -25,7 +25,7 @@ struct MapRow {
     controls: Spanned<BTreeMap<Spanned<String>, Spanned<String>>>,
 }
 
-/// The words of what needs no name.
+/// Texts of the actions without a name.
 const PLAIN: [(&str, PadAction); 8] = [
     ("nothing", PadAction::Nothing),
     ("dead-man", PadAction::DeadMan),
@@ -37,7 +37,7 @@ const PLAIN: [(&str, PadAction); 8] = [
     ("choose fingers", PadAction::ChooseFingers),
 ];
 
-/// What stands for an action in a file.
+/// Text of an action in a file.
 pub fn action_words(action: &PadAction) -> String {
     if let PadAction::Pose(name) = action {
         return format!("pose {name}");
@@ -46,7 +46,7 @@ pub fn action_words(action: &PadAction) -> String {
     known.map_or_else(String::new, |(words, _)| words.into())
 }
 
-/// The action that these words stand for.
+/// Parses the text of an action.
 pub fn action_of(words: &str) -> Option<PadAction> {
     if let Some(name) = words.strip_prefix("pose ") {
         let name = name.trim();
@@ -58,10 +58,10 @@ pub fn action_of(words: &str) -> Option<PadAction> {
     known.map(|(_, action)| action)
 }
 
-/// Reads such a text.
+/// Parses a file's text.
 ///
 /// # Errors
-/// [`FileError`] with line and field; nothing is taken of such a text.
+/// [`FileError`] with line and field; such a text is rejected as a whole.
 pub fn read(text: &str) -> Result<PadMap, FileError> {
     let source = FileText::of(text, FORMAT)?;
     let row: MapRow = source.parse()?;
@@ -94,7 +94,7 @@ pub fn read(text: &str) -> Result<PadMap, FileError> {
     PadMap::of(actions).ok_or_else(|| FileCause::Empty.into())
 }
 
-/// Such a text of a map.
+/// Formats a map as a file's text.
 pub fn write(map: &PadMap) -> String {
     let head = format!("format = \"{FORMAT}\"\nversion = {VERSION}\n\n[controls]\n");
     let used = PadControl::ALL.into_iter();
@@ -106,7 +106,7 @@ pub fn write(map: &PadMap) -> String {
     lines.fold(head, |text, line| text + &line)
 }
 
-/// What a control can do, in words.
+/// Text that lists the actions of a control.
 fn allowed(control: PadControl) -> String {
     let plain = PadAction::choices(control.kind()).iter().map(action_words);
     let mut all: Vec<String> = plain.map(|words| format!("\"{words}\"")).collect();

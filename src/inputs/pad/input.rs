@@ -1,4 +1,4 @@
-//! One gamepad that a hand follows: reports in, what it asks of the hand out. It never keeps what it no longer knows.
+//! One gamepad that a hand follows: reports in, targets out. It never uses a state that is no longer certain.
 
 use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof, Moment, PerDof};
@@ -12,40 +12,40 @@ use crate::poses::starter::starter;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
-/// A dead-man counts as long as the gamepad was heard of this recently: four reports that it is alive.
+/// Time since the last report up to which a dead-man counts: four alive reports.
 pub const HEARD_TIMEOUT: Duration = Duration::from_millis(200);
-/// How far a stick goes to choose fingers, thousandths, and how far back it lets go of them.
+/// Deflection of a stick that chooses a finger, thousandths, and the one below which it releases the choice.
 const CHOOSE_AT: i16 = 500;
 const CHOOSE_UNTIL: i16 = 350;
-/// How far a stick that is pushed whole rotates the thumb in a second: its whole way in two.
+/// Thumb rotation at full deflection, counts per second: the full range in two seconds.
 const ROTATE_A_SECOND: i64 = 500;
-/// The longest time between two offers that counts as pushing, microseconds.
+/// Longest time between two offers that counts as pushing, microseconds.
 const PUSH_STEP_MAX_US: i64 = 100_000;
-/// Parts of a count of the thumb's angle.
+/// Subdivision of a count of the thumb's angle.
 const PARTS: i64 = 1_000_000;
 
-/// The poses that buttons go to, by name.
+/// Poses assigned to buttons, by name.
 pub type PadPoses = BTreeMap<String, PadAim>;
 
-/// Where a gamepad wants the hand.
+/// Target of a gamepad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PadAim {
-    /// Where the joints go; `None` leaves one alone.
+    /// Targets of the joints; `None` leaves a joint alone.
     pub joints: PerDof<Option<Angle>>,
-    /// The gap that these are the angles of, where it is one that is wanted.
+    /// Target gap, if the target is one; the joints are then its angles.
     pub gap: Option<Gap>,
 }
 
 impl PadAim {
-    /// Nothing is asked.
+    /// No target.
     const NOTHING: Self = Self::joints(PerDof::splat(None));
 
-    /// These joints, each by itself.
+    /// These joints, each independently.
     pub const fn joints(joints: PerDof<Option<Angle>>) -> Self {
         Self { joints, gap: None }
     }
 
-    /// A pose of a library.
+    /// Pose of a library.
     pub fn of(pose: &LibraryPose) -> Self {
         Self {
             joints: pose.targets(),
@@ -54,30 +54,30 @@ impl PadAim {
     }
 }
 
-/// What the user did that is no aim.
+/// An event besides the targets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PadEvent {
     /// STOP was pressed. It counts without the dead-man.
     Stop,
-    /// The gamepad is there.
+    /// A gamepad was found.
     Found,
-    /// Events were lost; the dead-man must be pressed anew.
+    /// Events were lost; the dead-man must be pressed again.
     Lost,
-    /// The gamepad is gone.
+    /// The gamepad was disconnected.
     Gone,
 }
 
 /// The fingers that a trigger closes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FingerChoice {
-    /// The stick is in its middle: all four.
+    /// Stick centred: all four fingers.
     #[default]
     All,
-    /// It is held at one side: left, up, right, down are index to little finger.
+    /// Stick held to one side: left, up, right, down are index to little finger.
     One(Dof),
 }
 
-/// One gamepad as a source of motion. Of several that are there it follows the one found first.
+/// One gamepad as a source of motion. Of several it follows the one found first.
 #[derive(Debug)]
 pub struct PadInput {
     map: PadMap,
@@ -85,26 +85,26 @@ pub struct PadInput {
     actual: PerDof<Option<Angle>>,
     pad: Option<PadId>,
     state: PadState,
-    /// Gamepads that are not followed: their STOP counts. As many as are read at once.
+    /// Gamepads that are not followed: their STOP counts. Limited by the number that is read at once.
     others: BTreeMap<PadId, PadState>,
     heard: Option<Moment>,
-    /// The dead-man was seen up since the gamepad was found, since events were lost, since STOP.
+    /// The dead-man was seen released since the gamepad was found, events were lost, or STOP was pressed.
     may_hold: bool,
     pose: Option<PadControl>,
     fingers: FingerChoice,
     push: Option<ThumbPush>,
 }
 
-/// Where a stick has rotated the thumb to.
+/// Thumb rotation set by a stick.
 #[derive(Debug, Clone, Copy)]
 struct ThumbPush {
     at: Moment,
-    /// The aim in millionths of a count.
+    /// Target in millionths of a count.
     aim: i64,
 }
 
 impl PadInput {
-    /// No gamepad yet.
+    /// Creates an input without a gamepad.
     pub fn new(map: PadMap) -> Self {
         Self {
             map,
@@ -121,7 +121,7 @@ impl PadInput {
         }
     }
 
-    /// No gamepad yet; its buttons go to the poses that are built in.
+    /// Creates an input without a gamepad whose buttons use the built-in poses.
     pub fn starting(map: PadMap) -> Self {
         let poses = starter().poses.iter();
         let poses = poses.map(|pose| (pose.name.clone(), PadAim::of(pose)));
@@ -130,8 +130,8 @@ impl PadInput {
         input
     }
 
-    /// Names the poses that buttons go to. A button whose pose is not among them does nothing. Where the pose of a button that is
-    /// held is another now, or gone, whatever is held must be pressed anew.
+    /// Sets the poses of the buttons. A button whose pose is missing does nothing. If the pose of a held button changes or
+    /// disappears, all held controls must be pressed again.
     pub fn set_poses(&mut self, poses: PadPoses) {
         let before = self.held_pose();
         self.poses = poses;
@@ -141,24 +141,24 @@ impl PadInput {
         }
     }
 
-    /// Tells where the joints are. A stick rotates the thumb from there; a thumb that is nowhere is left alone.
+    /// Sets the actual angles. A stick rotates the thumb from there; a thumb at an unknown angle is left alone.
     pub fn set_actual(&mut self, actual: PerDof<Option<Angle>>) {
         self.actual = actual;
     }
 
-    /// Changes what the controls do. Whatever is held must be pressed anew.
+    /// Changes the assignment of the controls. All held controls must be pressed again.
     pub fn set_map(&mut self, map: PadMap) {
         self.map = map;
         self.let_go();
         self.look();
     }
 
-    /// What the controls do.
+    /// Assignment of the controls.
     pub const fn map(&self) -> &PadMap {
         &self.map
     }
 
-    /// Where the controls are.
+    /// State of the controls.
     pub const fn state(&self) -> &PadState {
         &self.state
     }
@@ -168,13 +168,13 @@ impl PadInput {
         self.pad
     }
 
-    /// The fingers that a trigger closes now.
+    /// Fingers that a trigger closes now.
     pub const fn fingers(&self) -> FingerChoice {
         self.fingers
     }
 
-    /// Takes in what happened at a gamepad. Of others than the one that is followed STOP alone counts, and it counts wherever it was
-    /// seen down: also where a gamepad is found with it, or events were lost around it.
+    /// Applies a report. Of gamepads that are not followed only STOP counts, and STOP counts wherever it is seen down:
+    /// even when a gamepad is found with STOP down, or events were lost around it.
     pub fn take(&mut self, report: &PadReport) -> Option<PadEvent> {
         if self.sees_stop(report) {
             self.apply(report);
@@ -185,7 +185,7 @@ impl PadInput {
         self.apply(report)
     }
 
-    /// Notes where the controls of other gamepads are; true if a report says that STOP is down that was not down before.
+    /// Updates the state of other gamepads; returns true if a report shows STOP down that was not down before.
     fn sees_stop(&mut self, report: &PadReport) -> bool {
         let (pad, mut state, is_certain) = match &report.news {
             PadNews::Found { pad, facts, .. } => (*pad, PadState::of(facts), true),
@@ -216,7 +216,7 @@ impl PadInput {
         stops
     }
 
-    /// Where the controls of a gamepad are, as far as it is known.
+    /// Known state of a gamepad's controls.
     fn state_of(&self, pad: PadId) -> PadState {
         if self.pad == Some(pad) {
             return self.state.clone();
@@ -258,13 +258,13 @@ impl PadInput {
         }
     }
 
-    /// Whether the dead-man is held at this moment.
+    /// True if the dead-man is held at this time.
     pub fn is_held(&self, now: Moment) -> bool {
         let is_near = |heard: Moment| now.since(heard) <= HEARD_TIMEOUT;
         self.may_hold && self.is_dead_man_down() && self.heard.is_some_and(is_near)
     }
 
-    /// What the gamepad asks of the hand at this moment; `None` before the first gamepad. Without the dead-man it asks nothing.
+    /// Target of the gamepad at this time; `None` before the first gamepad. Empty while the dead-man is not held.
     pub fn offer(&mut self, now: Moment) -> Option<Offer> {
         let at = self.heard?;
         let is_held = self.is_held(now);
@@ -280,12 +280,12 @@ impl PadInput {
             gap: aim.gap,
             limits: OfferLimits::NONE,
             held: Some(is_held),
-            // Controls that are held still are no frozen tracking.
+            // Controls held still are not frozen tracking.
             mark: None,
         })
     }
 
-    /// Nothing that was held before counts.
+    /// Ignores everything that was held before.
     fn let_go(&mut self) {
         self.may_hold = false;
         self.pose = None;
@@ -314,7 +314,7 @@ impl PadInput {
         }
     }
 
-    /// Follows what needs no press: the dead-man that is up, the fingers that are chosen.
+    /// Updates the states that need no press: the released dead-man and the chosen fingers.
     fn look(&mut self) {
         self.may_hold |= !self.is_dead_man_down();
         let choosing = self.map.doing(&PadAction::ChooseFingers);
@@ -356,7 +356,7 @@ impl PadInput {
         PadAim::joints(aims)
     }
 
-    /// The pose whose button is held: the one pressed last, else any.
+    /// Pose of the held button: the one pressed last, else any.
     fn held_pose(&self) -> Option<PadAim> {
         let last = self.pose.filter(|control| self.state.is_held(*control));
         let mut all = last.into_iter().chain(self.state.held().iter().copied());
@@ -366,7 +366,7 @@ impl PadInput {
         })
     }
 
-    /// Where the stick that rotates the thumb has pushed it; `None` while no stick is pushed.
+    /// Thumb rotation set by the stick; `None` while no stick is pushed.
     fn rotated(&mut self, now: Moment) -> Option<Angle> {
         let sticks = self.map.doing(&PadAction::RotateThumb);
         let pushes = sticks.map(|stick| self.state.stick(stick).right);
@@ -386,7 +386,7 @@ impl PadInput {
         }
         let step = i64::try_from(now.since(before.at).as_micros());
         let step = step.unwrap_or(PUSH_STEP_MAX_US).min(PUSH_STEP_MAX_US);
-        // Thousandths of the push, counts a second, microseconds: millionths of a count.
+        // Thousandths of the push, counts per second, microseconds: millionths of a count.
         let aim = before.aim + push * ROTATE_A_SECOND * step / i64::from(FULL);
         let aim = aim.clamp(0, i64::from(Angle::MAX.get()) * PARTS);
         self.push = Some(ThumbPush { at: now, aim });
@@ -394,7 +394,7 @@ impl PadInput {
     }
 }
 
-/// The gap of a trigger: the widest while it is let go.
+/// Gap of a trigger: the widest while it is released.
 fn gap_of(pressed: i16) -> PadAim {
     let share = f32::from(pressed) / f32::from(FULL);
     let gap = Gap::nearest(Gap::MAX.mm() + share * (Gap::MIN.mm() - Gap::MAX.mm()));
@@ -404,7 +404,7 @@ fn gap_of(pressed: i16) -> PadAim {
     }
 }
 
-/// The finger that a stick points at; `None` in its middle. It keeps to a finger until it is well away from it.
+/// Finger to which a stick points; `None` at its centre. A finger stays chosen until the stick is well away from it.
 fn choice(before: FingerChoice, place: StickPlace) -> Option<FingerChoice> {
     let sides = [
         (Dof::Index, -place.right),

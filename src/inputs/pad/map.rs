@@ -1,53 +1,53 @@
-//! What each control of a gamepad does. Exactly one is the dead-man and one is STOP, whatever is changed.
+//! Assignment of a gamepad's controls. Exactly one control is the dead-man and one is STOP, whatever the user changes.
 
 use crate::inputs::pad::control::{ControlKind, PadControl};
 use std::collections::BTreeMap;
 
-/// Characters of the name of a pose.
+/// Longest name of a pose, characters.
 pub const POSE_CHARS_MAX: usize = 64;
 
-/// What a control does.
+/// Action of a control.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PadAction {
     Nothing,
-    /// Held: the hand follows the gamepad. Let go: it stops.
+    /// While held, the hand follows the gamepad. On release it stops.
     DeadMan,
     /// Stops the hand, whether the dead-man is held or not.
     Stop,
-    /// Held: the hand goes to the pose of this name.
+    /// While held, the hand moves to the pose of this name.
     Pose(String),
-    /// Bends the fingers that are chosen, by amount.
+    /// Bends the chosen fingers, by amount.
     CloseFingers,
     /// Bends the thumb, by amount.
     BendThumb,
-    /// Closes thumb and index to a gap, by amount: let go the widest. What other triggers and sticks ask does not count then.
+    /// Closes thumb and index to a gap, by amount; released is the widest. Overrides the other triggers and sticks.
     CloseGap,
-    /// Left and right rotate the thumb as long as it is pushed.
+    /// Left and right rotate the thumb while the stick is pushed.
     RotateThumb,
-    /// Chooses which fingers are closed.
+    /// Chooses the fingers to close.
     ChooseFingers,
 }
 
-/// What every control does.
+/// Actions of all controls.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PadMap {
-    /// What is not in here does nothing. Without [`PadAction::Nothing`].
+    /// Controls not listed do nothing. Without [`PadAction::Nothing`].
     actions: BTreeMap<PadControl, PadAction>,
 }
 
-/// Why a control cannot do that.
+/// Reason why an action cannot be assigned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MapRefusal {
-    /// A button does not know amounts, and so on.
+    /// The control is of the wrong type, such as a button for an action by amount.
     #[error("this control cannot do that")]
     WrongKind,
-    /// It is the dead-man or STOP, and no other would be.
+    /// The control is the only dead-man or STOP.
     #[error("one control must do this: give it to another one, which takes it away here")]
     OneMust,
 }
 
 impl PadAction {
-    /// What a control of this kind can do, without the poses.
+    /// Actions available to this type of control, except poses.
     pub const fn choices(kind: ControlKind) -> &'static [Self] {
         match kind {
             ControlKind::Button => &[Self::Nothing, Self::DeadMan, Self::Stop],
@@ -61,7 +61,7 @@ impl PadAction {
         }
     }
 
-    /// Whether a control of this kind can do it.
+    /// True if this type of control can do it.
     pub fn fits(&self, kind: ControlKind) -> bool {
         match self {
             Self::Pose(_) => kind == ControlKind::Button,
@@ -69,14 +69,14 @@ impl PadAction {
         }
     }
 
-    /// Whether exactly one control does it.
+    /// True if exactly one control must do it.
     pub const fn is_single(&self) -> bool {
         matches!(self, Self::DeadMan | Self::Stop)
     }
 }
 
 impl PadMap {
-    /// What a gamepad does before the user changes it. The poses are shipped ones.
+    /// Default assignment, with built-in poses.
     pub fn usual() -> Self {
         let pose = |name: &str| PadAction::Pose(name.into());
         Self {
@@ -94,7 +94,7 @@ impl PadMap {
         }
     }
 
-    /// Of these actions; `None` unless one control is the dead-man and one is STOP, and each can do what it shall.
+    /// Creates a map; `None` unless one control is the dead-man and one is STOP, and each action fits its control.
     pub fn of(actions: BTreeMap<PadControl, PadAction>) -> Option<Self> {
         let count = |wanted: &PadAction| {
             let all = actions.values();
@@ -110,12 +110,12 @@ impl PadMap {
         })
     }
 
-    /// What a control does.
+    /// Action of a control.
     pub fn action(&self, control: PadControl) -> &PadAction {
         self.actions.get(&control).unwrap_or(&PadAction::Nothing)
     }
 
-    /// The names of the poses that its buttons go to.
+    /// Names of the poses assigned to its buttons.
     pub fn poses(&self) -> impl Iterator<Item = &str> {
         self.actions.values().filter_map(|action| match action {
             PadAction::Pose(name) => Some(name.as_str()),
@@ -123,16 +123,16 @@ impl PadMap {
         })
     }
 
-    /// The controls that do this.
+    /// Controls with this action.
     pub fn doing(&self, action: &PadAction) -> impl Iterator<Item = PadControl> {
         let all = self.actions.iter();
         all.filter_map(move |(control, own)| (own == action).then_some(*control))
     }
 
-    /// The same with another action for one control. The dead-man and STOP change places with what it did.
+    /// Returns the map with another action for one control. The dead-man and STOP swap places with its former action.
     ///
     /// # Errors
-    /// [`MapRefusal`] if the control cannot do that, or nothing else would do what it does.
+    /// [`MapRefusal`] if the action does not fit the control, or would leave no dead-man or no STOP.
     pub fn with(&self, control: PadControl, action: PadAction) -> Result<Self, MapRefusal> {
         if !action.fits(control.kind()) {
             return Err(MapRefusal::WrongKind);

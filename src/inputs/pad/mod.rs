@@ -1,4 +1,4 @@
-//! A gamepad as a source of motion: what is on it, what each control does, what it asks of the hand. Gamepads are read on Linux.
+//! A gamepad as a source of motion: its controls, their assignment, and the resulting targets. Gamepads are read on Linux.
 
 pub mod control;
 pub mod device;

@@ -1,4 +1,4 @@
-//! The thread that looks for gamepads in a folder, reads them, and notices at once when one is gone.
+//! The thread that searches a folder for gamepads, reads them, and detects disconnection at once.
 
 use crate::inputs::pad::facts::PadFacts;
 use crate::inputs::pad::report::{KernelEvent, PadClock, PadId, PadNews, PadReport, PadTrouble};
@@ -14,39 +14,39 @@ use std::thread;
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc::Sender;
 
-/// How often the folder is looked at.
+/// Interval at which the folder is searched.
 const POLL_INTERVAL: Duration = Duration::from_secs(1);
-/// How often a gamepad says that it is still there, milliseconds.
+/// Interval of alive reports, milliseconds.
 const ALIVE_EACH_MS: u16 = 50;
-/// How soon the thread ends where there is no gamepad, milliseconds.
+/// Longest wait without a gamepad before the thread checks whether to end, milliseconds.
 const IDLE_MS: u16 = 250;
-/// Gamepads that are read at once: more than a computer has sockets in reach.
+/// Gamepads that are read at once: more than a computer is likely to have.
 const PADS_MAX: usize = 8;
 
-/// Opens what lies in the folder.
+/// Opens files of the folder.
 pub trait OpenPad: Send {
-    /// The gamepad of a file; `None` if it is another device.
+    /// Opens the gamepad of a file; `None` if it is another device.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     fn open(&self, path: &Path) -> io::Result<Option<Box<dyn PadDevice>>>;
 }
 
-/// A gamepad that is open.
+/// An open gamepad.
 pub trait PadDevice: Send {
-    /// What it says of itself.
+    /// Its properties.
     fn facts(&self) -> &PadFacts;
-    /// What becomes readable when it says something.
+    /// File descriptor that becomes readable when events are available.
     fn fd(&self) -> BorrowedFd<'_>;
-    /// Where its controls are.
+    /// Present state of its controls.
     ///
     /// # Errors
-    /// What the system says.
+    /// The system's error.
     fn now(&mut self) -> io::Result<Vec<KernelEvent>>;
-    /// What it said since the last call. Does not wait.
+    /// Events since the last call. Does not wait.
     ///
     /// # Errors
-    /// What the system says; any error means that it is gone.
+    /// The system's error; any error means that it was disconnected.
     fn read(&mut self) -> io::Result<Vec<DeviceSays>>;
 }
 
@@ -54,19 +54,19 @@ pub trait PadDevice: Send {
 pub enum DeviceSays {
     /// A control moved.
     Event(KernelEvent),
-    /// All that belongs together has been said.
+    /// End of a group of events.
     Whole,
-    /// The kernel dropped events. What comes until [`Self::Whole`] is not to be trusted.
+    /// The kernel dropped events. Events until [`Self::Whole`] are unreliable.
     Dropped,
 }
 
-/// Which device a file is, as long as it is there: the number of a device is given again.
+/// Identifies the device behind a file: device numbers are reused.
 type FileMark = (u64, i64, i64);
 
 struct OpenedPad {
     id: PadId,
     device: Box<dyn PadDevice>,
-    /// Events were dropped, and the rest of what they belonged to is not there yet.
+    /// Events were dropped, and the end of their group has not arrived yet.
     is_behind: bool,
 }
 
@@ -76,13 +76,13 @@ struct PadThread {
     opener: Box<dyn OpenPad>,
     to: Sender<PadReport>,
     pads: BTreeMap<PathBuf, OpenedPad>,
-    /// Devices of other kinds, so that they are not opened again and again.
+    /// Devices of other kinds, remembered so that they are not reopened.
     others: BTreeMap<PathBuf, FileMark>,
     told: Option<PadTrouble>,
     next: u64,
 }
 
-/// Nobody takes the reports any more.
+/// The receiver of the reports was dropped.
 struct NobodyListens;
 
 /// Starts the thread.
@@ -104,7 +104,7 @@ pub(crate) fn spawn(
     };
     let named = thread::Builder::new().name("gamepads".into());
     let started = named.spawn(move || {
-        // Ends when nobody listens, and says nothing more.
+        // Ends silently when the receiver is dropped.
         let _ended = thread.run();
     });
     started
@@ -112,7 +112,7 @@ pub(crate) fn spawn(
         .map_err(|error| PadTrouble::NoThread(error.into()))
 }
 
-/// The gamepads that are there.
+/// Lists the connected gamepads.
 pub(crate) fn find(folder: &Path, opener: &dyn OpenPad) -> Result<Vec<PadFacts>, PadTrouble> {
     let mut refused = BTreeSet::new();
     let mut found = Vec::new();
@@ -152,7 +152,7 @@ impl PadThread {
         Ok(())
     }
 
-    /// Opens gamepads that are new, and tells why there is none.
+    /// Opens new gamepads, and reports the reason if there is none.
     fn look(&mut self) -> Result<(), NobodyListens> {
         let files = match event_files(&self.folder) {
             Ok(files) => files,
@@ -183,7 +183,7 @@ impl PadThread {
         path: PathBuf,
         mut device: Box<dyn PadDevice>,
     ) -> Result<(), NobodyListens> {
-        // Gone already: it is looked for again.
+        // Disconnected already: the next search tries again.
         let Ok(now) = device.now() else { return Ok(()) };
         let id = PadId(self.next);
         self.next += 1;
@@ -201,7 +201,7 @@ impl PadThread {
         self.say(news)
     }
 
-    /// The gamepads that have something to say, after some time at the latest.
+    /// Waits, for a limited time, for gamepads with events.
     fn wait(&self) -> Vec<PathBuf> {
         let wanted = self.pads.values();
         let mut fds: Vec<PollFd<'_>> = wanted
@@ -213,11 +213,11 @@ impl PadThread {
             ALIVE_EACH_MS
         };
         if poll(&mut fds, PollTimeout::from(limit)).is_err() {
-            // A signal came between; the next call tells.
+            // A signal interrupted it; the next call returns the events.
             return Vec::new();
         }
         let ready = self.pads.keys().zip(&fds);
-        // An error or a hang-up also shows when it is read.
+        // An error or a hang-up also shows on reading.
         let ready = ready.filter(|(_, fd)| fd.any() != Some(false));
         ready.map(|(path, _)| path.clone()).collect()
     }
@@ -236,7 +236,7 @@ impl PadThread {
         }
     }
 
-    /// Tells a trouble when it is a new one.
+    /// Reports a problem if it is new.
     fn tell(&mut self, trouble: Option<PadTrouble>) -> Result<(), NobodyListens> {
         if self.told == trouble {
             return Ok(());
@@ -245,7 +245,7 @@ impl PadThread {
         trouble.map_or(Ok(()), |trouble| self.say(PadNews::Trouble(trouble)))
     }
 
-    /// Waits while too many reports wait: the kernel counts what is dropped meanwhile.
+    /// Blocks while the queue is full: the kernel reports that it dropped events meanwhile.
     fn say(&self, news: PadNews) -> Result<(), NobodyListens> {
         let at = (self.clock)();
         let sent = self.to.blocking_send(PadReport { at, news });
@@ -268,7 +268,7 @@ impl OpenedPad {
                 }
                 DeviceSays::Dropped => {
                     self.is_behind = true;
-                    // Nothing counts from here on, even if the rest never comes.
+                    // Held controls do not count from here on, even if the rest never arrives.
                     news.push(self.lost()?);
                 }
                 DeviceSays::Whole if self.is_behind => {
@@ -287,7 +287,7 @@ impl OpenedPad {
     }
 }
 
-/// The event devices of the folder, in order.
+/// The event devices of the folder, sorted.
 fn event_files(folder: &Path) -> Result<BTreeSet<PathBuf>, PadTrouble> {
     let trouble = |error: io::Error| PadTrouble::NoFolder {
         folder: folder.to_owned(),
@@ -308,7 +308,7 @@ fn mark(about: &Metadata) -> FileMark {
     (about.ino(), about.ctime(), about.ctime_nsec())
 }
 
-/// Keeps in mind a device that the user may not open. Other errors come from devices that are just going.
+/// Records a device that the user may not open. Other errors come from devices that are being disconnected.
 fn note_refused(refused: &mut BTreeSet<PathBuf>, path: &Path, error: &io::Error) {
     if error.kind() == io::ErrorKind::PermissionDenied {
         refused.insert(path.to_owned());

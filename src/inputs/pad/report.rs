@@ -1,4 +1,4 @@
-//! What comes from the gamepads of this computer, with the time at which it came in.
+//! Reports from the gamepads of this computer, with their receive time.
 
 use crate::hand::Moment;
 use crate::inputs::pad::control::kernel_code;
@@ -8,31 +8,31 @@ use crate::transport::Remedy;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A gamepad from when it is found until it is gone.
+/// Identifies a gamepad from detection to disconnection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PadId(pub u64);
 
-/// A button or an axis has a new value, in the kernel's numbers.
+/// New value of a button or an axis, with the kernel's code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KernelEvent {
-    /// A button is down or up.
+    /// A button was pressed or released.
     Key {
-        /// The kernel's number of the button.
+        /// The kernel's code of the button.
         code: u16,
-        /// Whether it is down.
+        /// True if it is down.
         is_down: bool,
     },
     /// An axis moved.
     Axis {
-        /// The kernel's number of the axis.
+        /// The kernel's code of the axis.
         code: u16,
-        /// Where it is, between the ends that the device names.
+        /// Position within the range that the device reports.
         value: i32,
     },
 }
 
 impl KernelEvent {
-    /// The event of a button or axis by its name in the kernel, such as `BTN_SOUTH` or `ABS_RZ`.
+    /// The event of a button or axis by its kernel name, such as `BTN_SOUTH` or `ABS_RZ`.
     pub fn named(name: &str, value: i32) -> Option<Self> {
         let code = kernel_code(name)?;
         Some(if name.starts_with("BTN_") {
@@ -46,69 +46,69 @@ impl KernelEvent {
     }
 }
 
-/// What tells the time of a report.
+/// Clock for the times of reports.
 pub type PadClock = Arc<dyn Fn() -> Moment + Send + Sync>;
 
-/// What happened.
+/// A report.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PadReport {
-    /// When it came in, by the program's clock.
+    /// Receive time, by the program's clock.
     pub at: Moment,
     pub news: PadNews,
 }
 
-/// What happened at the gamepads.
+/// Content of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PadNews {
     Found {
         pad: PadId,
-        /// What it says of itself.
+        /// Its properties.
         facts: PadFacts,
-        /// Where its controls are.
+        /// Present state of its controls.
         now: Vec<KernelEvent>,
     },
     /// A control moved.
     Moved {
         pad: PadId,
-        /// What it did.
+        /// New value.
         event: KernelEvent,
     },
-    /// A control is said to have moved, while events of its gamepad were dropped: it counts for nothing but a stop.
+    /// A control may have moved, as events of its gamepad were dropped: it counts only as a stop.
     Doubtful {
         pad: PadId,
-        /// What it may have done.
+        /// Possible new value.
         event: KernelEvent,
     },
-    /// The kernel dropped events of one: nothing that was held before counts.
+    /// The kernel dropped events: controls held before do not count.
     Lost {
         pad: PadId,
-        /// Where its controls are.
+        /// Present state of its controls.
         now: Vec<KernelEvent>,
     },
-    /// It is still there. Comes all the time, since a control that is held says nothing more.
+    /// It is still connected. Sent regularly, since a held control sends no events.
     Alive(PadId),
     /// It was unplugged or switched off.
     Gone(PadId),
-    /// Why none is found.
+    /// Reason why none is found.
     Trouble(PadTrouble),
 }
 
-/// Why no gamepad is found.
+/// Reason why no gamepad is found.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PadTrouble {
-    /// This system's gamepads are not read.
+    /// Gamepads are not supported on this system.
     #[error(
         "gamepads are read on Linux only: here another program can read one, and send what 'handscope help stream' describes"
     )]
     LinuxOnly,
-    /// The folder of the devices cannot be listed.
+    /// The device folder cannot be listed.
     #[error("no gamepad can be looked for: {} cannot be listed: {why}", folder.display())]
     NoFolder {
         folder: PathBuf,
-        /// What the system says.
+        /// The system's error.
         why: SystemError,
     },
-    /// Devices that might be gamepads may not be opened.
+    /// The user may not open devices that may be gamepads.
     #[error(
         "no gamepad can be read: {} may not be opened{}; {remedy}",
         path.display(),
@@ -117,12 +117,12 @@ pub enum PadTrouble {
     MayNotOpen {
         /// The first of them.
         path: PathBuf,
-        /// How many there are.
+        /// Number of such devices.
         count: usize,
-        /// What lets the user open it.
+        /// Step that allows the user to open it.
         remedy: Remedy,
     },
-    /// The thread that reads them did not start.
+    /// The reader thread could not be started.
     #[error("gamepads cannot be read: {0}")]
     NoThread(SystemError),
 }

@@ -1,4 +1,4 @@
-//! A gamepad as a source that a hand can follow: reports in, offers out, STOP at once.
+//! A gamepad as a source for a hand to follow: reports in, offers out, STOP at once.
 
 use crate::hand::{Angle, AngleReading, PerDof};
 use crate::inputs::offer::{Offer, OfferOutlet};
@@ -14,54 +14,54 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::{MissedTickBehavior, interval};
 use tokio_util::task::AbortOnDropHandle;
 
-/// How often a gamepad says where it wants the hand, whether it was moved or not.
+/// Interval of offers, whether a control was moved or not.
 const OFFER_INTERVAL: Duration = Duration::from_millis(10);
 
-/// What a gamepad is followed with.
+/// Configuration of a gamepad source.
 pub struct PadSourceConfig {
     /// The gamepads of this computer.
     pub reader: PadReader,
-    /// What its controls do, with the poses of its buttons.
+    /// Assignment of its controls, with the poses of its buttons.
     pub input: PadInput,
-    /// What the hand says, for where its joints are.
+    /// Readings of the hand, for the actual angles.
     pub records: Records,
     /// The program's clock.
     pub clock: Clock,
     /// Stops the hand. Called when STOP is pressed.
     pub stop: Arc<dyn Fn() + Send + Sync>,
-    /// Called when there is news. Must return at once.
+    /// Called when the view changed. Must return at once.
     pub wake: Wake,
 }
 
-/// What is known of the gamepad now.
+/// Current state of the gamepad.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct PadView {
-    /// What it calls itself; `None` without one.
+    /// Name that the device reports; `None` without a gamepad.
     pub name: Option<String>,
-    /// Why there is none, if the system says so.
+    /// Reason why there is none, if known.
     pub trouble: Option<PadTrouble>,
-    /// Its dead-man is held.
+    /// True while its dead-man is held.
     pub is_held: bool,
-    /// Where it wants the joints, while its dead-man is held.
+    /// Targets of the joints while its dead-man is held.
     pub aims: PerDof<Option<Angle>>,
-    /// Where its controls are.
+    /// State of its controls.
     pub state: PadState,
-    /// The fingers that a trigger closes.
+    /// Fingers that a trigger closes.
     pub fingers: FingerChoice,
 }
 
 impl PadView {
-    /// As whom it would move the hand; `None` without a gamepad.
+    /// Owner as which it would control the hand; `None` without a gamepad.
     pub fn owner(&self) -> Option<Owner> {
         self.name.as_ref().map(|_| Owner::Gamepad)
     }
 }
 
-/// A gamepad that is read. Dropped, it is read no more.
+/// Reads a gamepad until dropped.
 #[derive(Debug)]
 pub struct PadSource {
     view: watch::Receiver<PadView>,
-    /// The poses of its buttons from now on, once they are others than it was opened with.
+    /// Changed poses of its buttons.
     poses: watch::Sender<PadPoses>,
     outlet: OfferOutlet,
     _task: AbortOnDropHandle<()>,
@@ -82,12 +82,12 @@ impl PadSource {
         }
     }
 
-    /// What is known of it.
+    /// Current state.
     pub fn view(&self) -> PadView {
         self.view.borrow().clone()
     }
 
-    /// Other poses for its buttons from now on.
+    /// Sets the poses of its buttons.
     pub fn set_poses(&self, poses: PadPoses) {
         self.poses.send_if_modified(|told| {
             let is_news = *told != poses;
@@ -96,7 +96,7 @@ impl PadSource {
         });
     }
 
-    /// Its targets from now on, for whoever follows; whoever did before does no more.
+    /// Receives its targets from now on; replaces the previous follower.
     pub fn follow(&self) -> mpsc::Receiver<Offer> {
         self.outlet.follow()
     }

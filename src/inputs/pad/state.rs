@@ -1,18 +1,18 @@
-//! Where the controls of one gamepad are now. Amounts are whole thousandths; what the device's own numbers mean stays here.
+//! Present state of one gamepad's controls. Amounts are whole thousandths; the device's own numbers stay in this file.
 
 use crate::inputs::pad::control::{PadControl, key};
 use crate::inputs::pad::facts::{AxisRange, AxisUse, FaceOrder, PadFacts};
 use crate::inputs::pad::report::KernelEvent;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A whole amount, in thousandths.
+/// A full amount, in thousandths.
 pub const FULL: i16 = 1000;
-/// How far from the middle a stick may rest, thousandths: worn sticks do not come back whole. A device may ask for more.
+/// Dead zone of a stick around its centre, thousandths: worn sticks do not return fully. A device may specify more.
 const STICK_REST: i64 = 120;
-/// How far from either end a trigger counts as at it, thousandths.
+/// Dead zone of a trigger at either end, thousandths.
 const TRIGGER_REST: i64 = 40;
 
-/// Where the controls of a gamepad are.
+/// State of a gamepad's controls.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct PadState {
     uses: BTreeMap<u16, (AxisUse, AxisRange)>,
@@ -23,7 +23,7 @@ pub struct PadState {
     triggers: [i16; 2],
 }
 
-/// Where a stick is, in thousandths of its way.
+/// Position of a stick, in thousandths.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct StickPlace {
     /// -1000 at the left, 1000 at the right.
@@ -33,7 +33,7 @@ pub struct StickPlace {
 }
 
 impl PadState {
-    /// Of this gamepad, with nothing held.
+    /// Initial state of this gamepad, with nothing held.
     pub fn of(facts: &PadFacts) -> Self {
         let uses = facts.uses();
         let is_trigger = |(what, _): &(AxisUse, AxisRange)| *what == AxisUse::RightTrigger;
@@ -45,7 +45,7 @@ impl PadState {
         }
     }
 
-    /// The same gamepad with nothing held and everything let go.
+    /// State of the same gamepad with all controls released.
     pub fn released(&self) -> Self {
         Self {
             held: BTreeSet::new(),
@@ -55,7 +55,7 @@ impl PadState {
         }
     }
 
-    /// Takes in what the kernel says. What no control of ours says is passed over.
+    /// Applies an event. Events of unknown controls are ignored.
     pub fn apply(&mut self, event: KernelEvent) {
         match event {
             KernelEvent::Key { code, is_down } => self.button(code, is_down),
@@ -72,12 +72,12 @@ impl PadState {
         &self.held
     }
 
-    /// Whether a button is down.
+    /// True if a button is down.
     pub fn is_held(&self, button: PadControl) -> bool {
         self.held.contains(&button)
     }
 
-    /// How far a trigger is pressed, 0 to 1000; 0 for what is no trigger.
+    /// Amount by which a trigger is pressed, 0 to 1000; 0 if it is not a trigger.
     pub const fn trigger(&self, trigger: PadControl) -> i16 {
         let [left, right] = self.triggers;
         match trigger {
@@ -87,7 +87,7 @@ impl PadState {
         }
     }
 
-    /// Where a stick is; the middle for what is no stick.
+    /// Position of a stick; the centre if it is not a stick.
     pub const fn stick(&self, stick: PadControl) -> StickPlace {
         let [left, right] = self.sticks;
         match stick {
@@ -100,7 +100,7 @@ impl PadState {
     fn button(&mut self, code: u16, is_down: bool) {
         let [left, right] = &mut self.triggers;
         let control = match code {
-            // Pads with true triggers send these as well.
+            // Pads with analog triggers send these as well.
             key::TL2 | key::TR2 if self.has_trigger_axes => return,
             key::TL2 => {
                 *left = if is_down { FULL } else { 0 };
@@ -149,7 +149,7 @@ impl PadState {
     }
 }
 
-/// The button of this number.
+/// The button with this code.
 const fn button_of(code: u16, is_by_letter: bool) -> Option<PadControl> {
     Some(match code {
         key::SOUTH => PadControl::South,
@@ -173,7 +173,7 @@ const fn button_of(code: u16, is_by_letter: bool) -> Option<PadControl> {
     })
 }
 
-/// How far an axis is from its middle, -1000 to 1000; 0 where it may rest.
+/// Deflection of an axis from its centre, -1000 to 1000; 0 in the dead zone.
 fn off_middle(range: AxisRange, value: i32) -> i16 {
     let (min, max) = (i64::from(range.min), i64::from(range.max));
     let whole = max - min;
@@ -182,7 +182,7 @@ fn off_middle(range: AxisRange, value: i32) -> i16 {
     }
     // Twice the distance, so that the middle of an odd number of steps is exact.
     let off = (2 * i64::from(value) - min - max).clamp(-whole, whole);
-    // A device that calls half its way rest or more is mistaken.
+    // A device that reports half its range or more as rest is mistaken.
     let flat = (2 * i64::from(range.flat.max(0))).min(whole / 2);
     let rest = flat.max(whole * STICK_REST / i64::from(FULL));
     let beyond = (off.abs() - rest).max(0);
@@ -190,7 +190,7 @@ fn off_middle(range: AxisRange, value: i32) -> i16 {
     if off < 0 { -amount } else { amount }
 }
 
-/// How far a trigger is pressed, 0 to 1000.
+/// Amount by which a trigger is pressed, 0 to 1000.
 fn pressed(range: AxisRange, value: i32) -> i16 {
     let whole = i64::from(range.max) - i64::from(range.min);
     if whole <= 0 {
@@ -201,7 +201,7 @@ fn pressed(range: AxisRange, value: i32) -> i16 {
     thousandths(way, whole - 2 * rest)
 }
 
-/// A part of a whole in thousandths, rounded down.
+/// A share in thousandths, rounded down.
 fn thousandths(part: i64, whole: i64) -> i16 {
     let full = i64::from(FULL);
     let share = (part * full).checked_div(whole).unwrap_or(0);

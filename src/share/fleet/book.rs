@@ -1,22 +1,22 @@
-//! Which hands are there, by what was heard of them. Pure.
+//! Table of present hands, from the received announcements. Pure.
 
 use crate::hand::Moment;
 use crate::share::fleet::{FleetHand, GONE_TIMEOUT};
 use crate::transport::dds::DdsWriterId;
 use std::collections::HashMap;
 
-/// Hands that are listed; of more, the newest are left out.
+/// Limit of listed hands; beyond it, new ones are left out.
 pub const HANDS_MAX: usize = 256;
 
-/// Which hands are there.
+/// Table of present hands.
 #[derive(Debug, Default)]
 pub struct FleetBook {
-    /// By who tells of it, which is never given twice; with when it was heard last.
+    /// By announcing writer, whose id is never reused; with the time of its last announcement.
     hands: HashMap<DdsWriterId, (FleetHand, Moment)>,
 }
 
 impl FleetBook {
-    /// Takes in what was heard; true if it changes the list.
+    /// Applies an announcement; returns true if it changes the list.
     pub fn take(&mut self, from: DdsWriterId, hand: FleetHand, now: Moment) -> bool {
         if self.hands.len() >= HANDS_MAX && !self.hands.contains_key(&from) {
             return false;
@@ -27,7 +27,7 @@ impl FleetBook {
         }
     }
 
-    /// Leaves out who is silent; true if that changes the list.
+    /// Removes silent announcers; returns true if that changes the list.
     pub fn sweep(&mut self, now: Moment) -> bool {
         let before = self.hands.len();
         self.hands
@@ -35,7 +35,7 @@ impl FleetBook {
         self.hands.len() != before
     }
 
-    /// The hands by computer and name.
+    /// Present hands, sorted by computer and name.
     pub fn list(&self) -> Vec<FleetHand> {
         let mut all: Vec<FleetHand> = self.hands.values().map(|(hand, _)| hand.clone()).collect();
         let key = |hand: &FleetHand| (hand.card.host.clone(), hand.card.name.clone(), hand.card.at);

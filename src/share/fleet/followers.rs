@@ -1,4 +1,4 @@
-//! Hears of other programs that let a hand of the same side follow what is sent: two hands must not obey one sender unasked.
+//! Detects other programs whose hand of the same side follows sent targets: two hands must not obey one sender unasked.
 
 use crate::hand::kinematics::Side;
 use crate::link::Clock;
@@ -9,14 +9,14 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::{interval, timeout};
 use tokio_util::task::AbortOnDropHandle;
 
-/// Who tells of a hand is heard within this, with two of its notices lost.
+/// Time within which an announcement arrives, even with two notices lost.
 const HEARD_TIMEOUT: Duration = Duration::from_millis(2000);
-/// How often it is looked who is silent.
+/// Interval at which silent announcers are removed.
 const POLL_INTERVAL: Duration = Duration::from_millis(100);
-/// As many hands may change at once.
+/// Queue for hands that change at once.
 const KEPT: u16 = 512;
 
-/// Others whose hand of this side follows what is sent in this domain. Dropped, nobody listens any more.
+/// Other hands of this side that follow the targets sent in this domain. Listens until dropped.
 #[derive(Debug)]
 pub struct OtherFollowers {
     seen: watch::Receiver<Option<FleetCard>>,
@@ -40,12 +40,12 @@ impl OtherFollowers {
         }
     }
 
-    /// One that is there now.
+    /// Returns such a hand if one is present now.
     pub fn now(&self) -> Option<FleetCard> {
         self.seen.borrow().clone()
     }
 
-    /// One that is there, once there is one.
+    /// Waits until such a hand is present, and returns it.
     pub async fn appears(&self) -> FleetCard {
         let mut seen = self.seen.clone();
         let appeared = seen.wait_for(Option::is_some).await;
@@ -55,7 +55,7 @@ impl OtherFollowers {
         }
     }
 
-    /// One that was there already when this began to listen: waits as long as it takes to hear of it.
+    /// Returns such a hand if it was present before listening began; waits up to the announcement timeout.
     pub async fn was_there(&self) -> Option<FleetCard> {
         timeout(HEARD_TIMEOUT, self.appears()).await.ok()
     }

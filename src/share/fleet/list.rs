@@ -1,4 +1,4 @@
-//! Listens to who tells of hands.
+//! Lists the hands that other programs announce.
 
 use crate::link::{Clock, Wake};
 use crate::share::fleet::{FleetBook, FleetHand, topic};
@@ -9,13 +9,13 @@ use tokio::sync::{mpsc, watch};
 use tokio::time::interval;
 use tokio_util::task::AbortOnDropHandle;
 
-/// How often the list is looked through, and may change for those who look at it.
+/// Interval at which the list is updated.
 const LIST_INTERVAL: Duration = Duration::from_millis(100);
 
-/// As many hands may change at once.
+/// Queue for hands that change at once.
 const KEPT: u16 = 512;
 
-/// The list of hands, kept. Dropped, nobody listens any more.
+/// The list of announced hands. Listens until dropped.
 #[derive(Debug)]
 pub struct FleetList {
     interface: Ipv4Addr,
@@ -40,18 +40,18 @@ impl FleetList {
         }
     }
 
-    /// The address of the interface at which it listens.
+    /// Address of the interface at which it listens.
     pub const fn interface(&self) -> Ipv4Addr {
         self.interface
     }
 
-    /// The hands that are there now, by computer and name, if that changed since the last call.
+    /// Present hands, sorted by computer and name, if the list changed since the last call.
     pub fn news(&mut self) -> Option<Vec<FleetHand>> {
         let changed = self.shown.has_changed().unwrap_or_default();
         changed.then(|| self.shown.borrow_and_update().clone())
     }
 
-    /// The same, once it changed; `None` once nobody listens.
+    /// Waits for a change of the list and returns it; `None` once listening has ended.
     pub async fn changed(&mut self) -> Option<Vec<FleetHand>> {
         self.shown.changed().await.ok()?;
         Some(self.shown.borrow_and_update().clone())

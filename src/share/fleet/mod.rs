@@ -1,5 +1,5 @@
-//! The fleet: the hands that Handscopes share, told over DDS by those that share them and listed by those that look. Which of them are
-//! there DDS finds out; a hand's link does nothing for it.
+//! The fleet: hands that Handscopes share, announced over DDS by the sharing programs and listed by the others. Discovery is
+//! left to DDS; a hand's link has no part in it.
 
 mod book;
 mod followers;
@@ -17,7 +17,7 @@ pub use teller::{FleetTeller, host};
 
 use std::time::Duration;
 
-/// A hand is told again after so long at the most, also if nothing changed.
+/// Longest time between two announcements of a hand, even if nothing changed.
 pub const ANNOUNCE_INTERVAL: Duration = Duration::from_millis(600);
-/// A hand of which nothing was heard for so long is no longer listed: two notices in a row were lost, or nobody tells.
+/// Silence after which a hand is removed from the list: two notices in a row were lost, or the announcements ended.
 pub const GONE_TIMEOUT: Duration = Duration::from_millis(1500);

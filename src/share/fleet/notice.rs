@@ -1,4 +1,4 @@
-//! What is told of a shared hand, and how it looks on the wire.
+//! Announcement of a shared hand, and its wire format.
 
 use crate::hand::kinematics::Side;
 use crate::link::Owner;
@@ -10,27 +10,27 @@ use crate::transport::dds::DdsTopic;
 use serde::{Deserialize, Serialize};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 
-/// No notice is longer.
+/// Longest notice, bytes.
 pub const NOTICE_BYTES_MAX: usize = 1024;
-/// The version of what is told.
+/// Version of the format.
 const VERSION: u8 = 1;
-/// Longer names are cut: they stand in a line of a list.
+/// Longer names are truncated: they appear in a line of a list.
 const NAME_CHARS: usize = 60;
 
-/// What is said of a hand by who shares it.
+/// Announced description of a hand, set by the program that shares it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FleetCard {
-    /// The computer that it is at.
+    /// Name of its computer.
     pub host: String,
-    /// What it is called there.
+    /// Name of the hand there.
     pub name: String,
-    /// Which hand it is.
+    /// Side of the hand.
     pub side: Side,
-    /// Where its gateway is; `None` if it has none that others reach.
+    /// Address of its gateway; `None` if it has none that others can reach.
     pub at: Option<SocketAddr>,
-    /// Whether the first client that writes may move it, without the user there who lets it.
+    /// True if the first client that writes gets control, without a grant by the user there.
     pub first_may_move: bool,
-    /// Whether it follows what programs send here to a hand of its side.
+    /// True if it follows targets that programs send over DDS to a hand of its side.
     #[serde(default)]
     pub follows: bool,
 }
@@ -38,12 +38,12 @@ pub struct FleetCard {
 /// A hand that a Handscope shares.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FleetHand {
-    /// What is said of it.
+    /// Description.
     #[serde(flatten)]
     pub card: FleetCard,
-    /// Where its link stands.
+    /// State of its link.
     pub state: LinkState,
-    /// Who may move it.
+    /// Current holder of control.
     pub owner: Option<Owner>,
 }
 
@@ -54,7 +54,7 @@ struct Notice {
     hand: FleetHand,
 }
 
-/// Where it is told. A string, so that programs of ROS 2 read it without a type of ours.
+/// Topic of the announcements. A string, so that ROS 2 programs read it without a custom type.
 pub fn topic() -> DdsTopic {
     DdsTopic {
         name: "rt/handscope/fleet".into(),
@@ -62,14 +62,14 @@ pub fn topic() -> DdsTopic {
     }
 }
 
-/// Where others reach a gateway that listens here, if those are who are met on DDS at this interface.
+/// Address at which others reach this gateway, if it is reachable from this DDS interface.
 pub fn reachable(gateway: SocketAddr, interface: Ipv4Addr) -> Option<SocketAddr> {
     let interface = IpAddr::V4(interface);
     let ip = match gateway.ip() {
         ip if ip.is_unspecified() => interface,
         ip => ip,
     };
-    // The loopback of this computer is another's own, where another hand may be.
+    // The loopback address means a different computer to each reader, where another hand may be.
     (ip.is_loopback() == interface.is_loopback()).then(|| SocketAddr::new(ip, gateway.port()))
 }
 
@@ -84,7 +84,7 @@ impl FleetCard {
 }
 
 impl FleetHand {
-    /// The message in CDR with its head.
+    /// Encodes the message in CDR with its header.
     pub fn message(&self) -> Vec<u8> {
         let notice = Notice {
             v: VERSION,
@@ -93,11 +93,11 @@ impl FleetHand {
                 ..*self
             },
         };
-        // Only strings and numbers: it can be written.
+        // Only strings and numbers: serialization cannot fail.
         cdr::encode(&serde_json::to_string(&notice).unwrap_or_default())
     }
 
-    /// Reads a message that came in at this interface; `None` for what is none of this version.
+    /// Parses a message received at this interface; `None` if it is not valid in this version.
     pub fn parse(bytes: &[u8], interface: Ipv4Addr) -> Option<Self> {
         if bytes.len() > NOTICE_BYTES_MAX {
             return None;
@@ -110,13 +110,13 @@ impl FleetHand {
         (notice.v == VERSION).then_some(hand)
     }
 
-    /// What to connect to, to watch it.
+    /// Endpoint for connecting to it, to observe it.
     pub fn endpoint(&self) -> Option<Endpoint> {
         format!("tcp:{}", self.card.at?).parse().ok()
     }
 }
 
-/// A name as it may stand in a line: nothing that moves the line or turns it round.
+/// Filters a name for display in one line: no characters that break the line or change its direction.
 fn plain(name: &str) -> String {
     let is_sign = |sign: &char| is_printable(*sign) && *sign != '\t';
     name.chars().filter(is_sign).take(NAME_CHARS).collect()

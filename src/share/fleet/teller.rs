@@ -1,4 +1,4 @@
-//! Tells of one hand that is shared.
+//! Announces one shared hand.
 
 use crate::link::{LinkHandle, LinkStatus};
 use crate::share::fleet::{ANNOUNCE_INTERVAL, FleetCard, FleetHand, reachable, topic};
@@ -8,7 +8,7 @@ use tokio::sync::watch;
 use tokio::time::sleep;
 use tokio_util::task::AbortOnDropHandle;
 
-/// Tells of a hand. Dropped, or once the link is closed, it tells nothing any more.
+/// Announces a hand until dropped, or until the link is closed.
 #[derive(Debug)]
 pub struct FleetTeller {
     card: watch::Sender<FleetCard>,
@@ -16,7 +16,7 @@ pub struct FleetTeller {
 }
 
 impl FleetTeller {
-    /// Tells of this hand from now on, with what its link says of itself; of its gateway only if those who listen reach it. Must be
+    /// Announces this hand from now on, with the status of its link; its gateway only if listeners can reach it. Must be
     /// called within a tokio runtime.
     pub fn open(node: &DdsNode, link: &LinkHandle, card: FleetCard) -> Self {
         let telling = Publishing {
@@ -31,7 +31,7 @@ impl FleetTeller {
         }
     }
 
-    /// Says this of it from now on.
+    /// Announces it with this card from now on.
     pub fn say(&self, card: FleetCard) {
         self.card.send_if_modified(|said| {
             let is_new = *said != card;
@@ -55,9 +55,9 @@ impl Publishing {
             card.at = card.at.and_then(|at| reachable(at, self.interface));
             let told = of(&self.status.borrow_and_update());
             let (state, owner) = told;
-            // One that is lost is told again soon.
+            // A lost announcement is soon repeated.
             let _is_sent = self.writer.send(FleetHand { card, state, owner }.message());
-            // Of many that began together not all speak at once for ever.
+            // Random pauses, so that announcers that started together do not stay in step.
             let pause = ANNOUNCE_INTERVAL.mul_f64(0.75 + 0.25 * fastrand::f64());
             let is_open = tokio::select! {
                 changed = self.status.wait_for(|status| of(status) != told) => changed.is_ok(),
@@ -71,7 +71,7 @@ impl Publishing {
     }
 }
 
-/// What this computer is called.
+/// Name of this computer.
 pub fn host() -> String {
     #[cfg(unix)]
     let name = nix::unistd::gethostname()

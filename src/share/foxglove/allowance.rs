@@ -1,4 +1,4 @@
-//! A connection on which the other side may say only so much: who says more is cut off, before it costs the link its time.
+//! A connection that limits the peer's send rate: a peer that exceeds it is disconnected before it slows the link.
 
 use std::io;
 use std::pin::Pin;
@@ -7,11 +7,11 @@ use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::Instant;
 
-/// Bytes a second. A viewer says a kilobyte as it begins, and next to nothing then.
+/// Bytes per second. A viewer sends a kilobyte at the start, and next to nothing after that.
 pub const SAYS_MAX: usize = 64 * 1024;
 const OVER: Duration = Duration::from_secs(1);
 
-/// Counts what is read.
+/// Counts the bytes read.
 #[derive(Debug)]
 pub(crate) struct Allowance<S> {
     stream: S,

@@ -1,4 +1,4 @@
-//! What a recording would hold of a link, as messages for viewers, as it happens.
+//! Streams to viewers, live, the messages that a recording of the link would contain.
 
 use crate::link::LinkEntries;
 use crate::record::file::format::encode::EntryEncoder;
@@ -21,7 +21,7 @@ pub(crate) async fn feed(mut entries: LinkEntries, opening: Opening, outlet: Out
             })
         });
         for entry in lost.into_iter().chain([entry]) {
-            // What it derives depends on all that was before, whoever looks on.
+            // Derived entries depend on all previous ones, so they are computed even without viewers.
             let derived = overview.take(&entry);
             overview.rows.clear();
             overview.marks.clear();

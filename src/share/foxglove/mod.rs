@@ -1,5 +1,5 @@
-//! A hand for live viewers: the topics of its recording over the Foxglove WebSocket protocol, in the same bytes, as they happen.
-//! Viewers look on; nothing that they say reaches the hand.
+//! Live view of a hand: the topics of its recording over the Foxglove WebSocket protocol, in the same bytes, as they occur.
+//! Viewers only receive; nothing that they send reaches the hand.
 
 pub mod allowance;
 mod feed;
@@ -23,15 +23,15 @@ use tokio::runtime;
 use tokio::task::JoinSet;
 use tokio::time::sleep;
 
-/// After the system refused a connection, for want of something, the next is looked for.
+/// Delay before the next accept after the system refused a connection for lack of resources.
 const ACCEPT_AGAIN: Duration = Duration::from_millis(100);
 
-/// How a server is opened.
+/// Configuration of a server.
 #[derive(Debug, Clone)]
 pub struct FoxgloveConfig {
-    /// Where it listens. Port 0 means any free one.
+    /// Listen address. Port 0 means any free one.
     pub address: SocketAddr,
-    /// Which hand is shown, and from when its moments count, as a recording of it would begin.
+    /// Hand and time base, as in the opening of a recording.
     pub opening: Opening,
 }
 
@@ -46,10 +46,10 @@ pub struct FoxgloveServer {
 }
 
 impl FoxgloveServer {
-    /// Listens for as long as it is kept. It shows nothing by itself.
+    /// Listens until dropped. Shows nothing before [`Self::show`] is called.
     ///
     /// # Errors
-    /// The system's, if the address cannot be listened at.
+    /// The system's error if the address cannot be bound.
     pub fn open(config: FoxgloveConfig, runtime: &runtime::Handle) -> io::Result<Self> {
         let listener = std::net::TcpListener::bind(config.address)?;
         listener.set_nonblocking(true)?;
@@ -69,7 +69,7 @@ impl FoxgloveServer {
         })
     }
 
-    /// Shows what happens at a link from now on. It does not keep the link open.
+    /// Shows the events of a link from now on. Does not keep the link open.
     pub fn show(&mut self, link: &LinkHandle) {
         let _inside = self.runtime.enter();
         let entries = LinkEntries::new(link.observe(), link.clock());
@@ -77,22 +77,22 @@ impl FoxgloveServer {
         self.tasks.spawn(feeds);
     }
 
-    /// Where it listens.
+    /// Listen address, with the actual port.
     pub const fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Where messages go in.
+    /// Entry point for messages.
     pub const fn outlet(&self) -> &Outlet {
         &self.outlet
     }
 
-    /// Who views, the oldest first.
+    /// Connected viewers, the oldest first.
     pub fn viewers(&self) -> Vec<Viewer> {
         self.outlet.viewers()
     }
 
-    /// Connections that were refused because there were [`VIEWERS_MAX`].
+    /// Number of connections refused because there were [`VIEWERS_MAX`].
     pub fn turned_away(&self) -> u64 {
         self.outlet.turned_away()
     }

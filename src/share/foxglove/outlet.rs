@@ -1,36 +1,36 @@
-//! What all viewers are shown, made once: the newest messages, of which each viewer takes its own, and who views. Whoever is too
-//! slow misses the oldest; nobody is waited for.
+//! Distributes messages to all viewers: each message is encoded once, and each viewer receives its own topics. A viewer that is too
+//! slow misses the oldest; the publisher never waits.
 
 use crate::record::file::format::encode::Message;
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::broadcast;
 
-/// Viewers at one time; more are turned away at once.
+/// Concurrent viewers; further connections are refused at once.
 pub const VIEWERS_MAX: usize = 8;
-/// Messages that wait for the slowest viewer: more than a second of a hand with everything that goes over its wire.
+/// Messages that wait for the slowest viewer: more than a second of a hand with all its wire traffic.
 pub const BACKLOG_MAX: usize = 1024;
 
-/// One viewer as the user sees it.
+/// One viewer, as shown to the user.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Viewer {
     pub address: SocketAddr,
-    /// Topics that it subscribed to.
+    /// Number of subscribed topics.
     pub topics: usize,
-    /// Messages that it was given.
+    /// Number of messages sent to it.
     pub sent: u64,
-    /// Messages, of all topics, that it was too slow for.
+    /// Messages, of all topics, missed because it was too slow.
     pub missed: u64,
 }
 
-/// Where messages go in. Copies go to the same viewers.
+/// Entry point for messages. Clones share the same viewers.
 #[derive(Debug, Clone)]
 pub struct Outlet {
     messages: broadcast::Sender<Arc<Message>>,
     board: Arc<Mutex<Board>>,
 }
 
-/// A connection among those of one server. None is ever given twice.
+/// Identifies a connection of one server; never reused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct ViewerId(u64);
 
@@ -49,18 +49,18 @@ impl Outlet {
         }
     }
 
-    /// Whether anyone would get a message.
+    /// True if any viewer would receive a message.
     pub fn is_viewed(&self) -> bool {
         self.messages.receiver_count() > 0
     }
 
-    /// Gives a message to all who subscribed to its topic. Does not wait.
+    /// Sends a message to all subscribers of its topic. Does not wait.
     pub fn publish(&self, message: Message) {
-        // That nobody views is no error.
+        // Having no viewers is no error.
         let _viewers = self.messages.send(Arc::new(message));
     }
 
-    /// Who views, the oldest first.
+    /// Connected viewers, the oldest first.
     pub(crate) fn viewers(&self) -> Vec<Viewer> {
         self.with(|board| board.viewers.iter().map(|(_, viewer)| *viewer).collect())
     }
@@ -69,7 +69,7 @@ impl Outlet {
         self.with(|board| board.turned_away)
     }
 
-    /// Takes a new viewer, unless there are too many.
+    /// Adds a new viewer, unless there are too many.
     pub(crate) fn connect(&self, address: SocketAddr) -> Option<Seat> {
         let id = self.with(|board| board.connect(address))?;
         Some(Seat {
@@ -79,7 +79,7 @@ impl Outlet {
     }
 
     fn with<T>(&self, act: impl FnOnce(&mut Board) -> T) -> T {
-        // Each call leaves the board whole, also one that panicked.
+        // Each call leaves the board consistent, even one that panicked.
         act(&mut self.board.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
@@ -103,7 +103,7 @@ impl Board {
     }
 }
 
-/// The place of one viewer, free again when this is dropped, however its connection ends.
+/// Place of one viewer, freed when dropped, however its connection ends.
 #[derive(Debug)]
 pub(crate) struct Seat {
     outlet: Outlet,
@@ -111,12 +111,12 @@ pub(crate) struct Seat {
 }
 
 impl Seat {
-    /// The messages from now on.
+    /// Subscribes to the messages from now on.
     pub(crate) fn messages(&self) -> broadcast::Receiver<Arc<Message>> {
         self.outlet.messages.subscribe()
     }
 
-    /// Notes something of this viewer.
+    /// Updates the viewer's entry.
     pub(crate) fn note(&self, what: impl FnOnce(&mut Viewer)) {
         self.outlet.with(|board| {
             let ours = board.viewers.iter_mut().find(|(id, _)| *id == self.id);

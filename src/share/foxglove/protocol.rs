@@ -1,5 +1,5 @@
-//! The words of the Foxglove WebSocket protocol, as far as a server needs them that only shows: who it is, which topics there
-//! are, and the messages of those that a viewer subscribed to. Beside the topics of a recording there is the model of the hand.
+//! Messages of the Foxglove WebSocket protocol needed by a read-only server: server info, topics, and messages of subscribed topics.
+//! In addition to the topics of a recording there is the model of the hand.
 //!
 //! <https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md>
 
@@ -12,18 +12,18 @@ use crate::record::file::format::topic::Topic;
 use serde::Deserialize;
 use serde_json::json;
 
-/// What viewers call the protocol, the newer name first. Foxglove and PlotJuggler say the newer one, Lichtblick and older clients the
-/// other; what is said here is the same under both.
+/// Names of the subprotocol, the newer one first. Foxglove and PlotJuggler use the newer one, Lichtblick and older clients the
+/// other; the messages used here are the same under both.
 pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
-/// The channel of the model, far behind those of the topics.
+/// Channel of the model, well above those of the topics.
 pub const MODEL_CHANNEL: u64 = 1000;
-/// Begins a message of a topic.
+/// Opcode of a topic's message.
 const MESSAGE_DATA: u8 = 1;
 /// Levels of a status.
 const WARNING: u8 = 1;
 const ERROR: u8 = 2;
 
-/// What a viewer asks for.
+/// A viewer's request.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(tag = "op", rename_all = "camelCase")]
 pub(crate) enum Request {
@@ -34,12 +34,12 @@ pub(crate) enum Request {
     Unsubscribe {
         subscription_ids: Vec<u32>,
     },
-    /// What this server does not offer.
+    /// A request that this server does not offer.
     #[serde(other)]
     Other,
 }
 
-/// A topic that a viewer wants, under a number of its own choice.
+/// A viewer's subscription to a channel, under an id of its own choice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(crate) struct Subscription {
@@ -48,18 +48,18 @@ pub(crate) struct Subscription {
 }
 
 impl Subscription {
-    /// The topic, if there is one of this number.
+    /// Topic of the channel; `None` if there is none with this number.
     pub(crate) fn topic(self) -> Option<Topic> {
         Topic::by_channel(u16::try_from(self.channel_id).ok()?)
     }
 }
 
-/// What each viewer is told of the hand.
+/// Messages that each viewer receives at the start.
 #[derive(Debug)]
 pub(crate) struct Greeting {
-    /// First: who serves, and the topics.
+    /// Server info and topics, sent first.
     pub(crate) texts: [String; 2],
-    /// The model, as a message of this time.
+    /// The model, with its time stamp.
     model: (u64, Vec<u8>),
 }
 
@@ -74,14 +74,14 @@ impl Greeting {
         }
     }
 
-    /// The model for the subscription of this number. It does not change, so it is told once.
+    /// The model, for this subscription. It does not change, so it is sent once.
     pub(crate) fn model(&self, subscription: u32) -> Vec<u8> {
         let (nanos, bytes) = &self.model;
         data(subscription, *nanos, bytes)
     }
 }
 
-/// The hand, and the topics of a recording of it.
+/// Server info of the hand, and the topics of its recording.
 fn texts(opening: &Opening) -> [String; 2] {
     let badge = if opening.simulated {
         " (SIMULATED)"
@@ -91,7 +91,7 @@ fn texts(opening: &Opening) -> [String; 2] {
     let info = json!({
         "op": "serverInfo",
         "name": format!("Handscope {}{badge}", opening.hand),
-        // Nothing can be published, called, set or fetched.
+        // Publishing, services, parameters and assets are not offered.
         "capabilities": [],
         "metadata": { "version": opening.version, "simulated": opening.simulated.to_string() },
         "sessionId": opening.began_since_1970().as_nanos().to_string(),
@@ -120,7 +120,7 @@ fn texts(opening: &Opening) -> [String; 2] {
     [info, topics].map(|told| told.to_string())
 }
 
-/// A message for the subscription of this number.
+/// Encodes a message for this subscription.
 pub(crate) fn message_data(subscription: u32, message: &Message) -> Vec<u8> {
     data(subscription, message.log_nanos, &message.bytes)
 }
@@ -134,12 +134,12 @@ fn data(subscription: u32, nanos: u64, bytes: &[u8]) -> Vec<u8> {
     data
 }
 
-/// Tells a viewer that something was ignored.
+/// Status message: a request was ignored.
 pub(crate) fn warning(words: &str) -> String {
     status(WARNING, words)
 }
 
-/// Tells a viewer that it was not understood.
+/// Status message: a request was not understood.
 pub(crate) fn error(words: &str) -> String {
     status(ERROR, words)
 }

@@ -1,5 +1,5 @@
-//! One viewer's connection: it is greeted, subscribes, and is sent what it subscribed to until it goes, stops reading, falls
-//! silent or keeps neither to the protocol nor to its allowance.
+//! One viewer's connection: after the greeting it subscribes, and receives its subscriptions until it leaves, stops reading, falls
+//! silent, or violates the protocol or its allowance.
 
 use crate::record::file::format::encode::Message;
 use crate::record::file::format::topic::Topic;
@@ -22,24 +22,24 @@ use tokio_tungstenite::tungstenite::http::{HeaderValue, StatusCode, header};
 use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
 use tokio_tungstenite::{WebSocketStream, accept_hdr_async_with_config};
 
-/// From the connection to the end of the handshake.
+/// Time from the connection to the end of the handshake.
 pub const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(2);
-/// A viewer that does not take what it is sent within this is ended.
+/// Time within which a viewer must accept sent data; then it is disconnected.
 pub const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
-/// A viewer has nothing to say for hours, so it is asked whether it is there.
+/// Interval of pings: a viewer may have nothing to send for hours.
 const PING_INTERVAL: Duration = Duration::from_secs(20);
-/// One that did not answer this long is taken for gone: a half-open connection says nothing of itself.
+/// Silence after which a viewer is disconnected: a half-open connection does not report itself.
 pub const SILENT_MAX: Duration = Duration::from_secs(60);
 /// Longest message of a viewer: it names topics, of which there are a dozen.
 const SAID_MAX: usize = 16 * 1024;
-/// Bytes that are gathered before they are written.
+/// Bytes buffered before they are written.
 const GATHERED: usize = 16 * 1024;
-/// Messages in one go, after which the viewer is listened to again.
+/// Messages sent in one batch before the viewer's requests are read again.
 const IN_ONE_GO: usize = 64;
 
 type Socket = WebSocketStream<Allowance<TcpStream>>;
 
-/// A viewer while it is connected.
+/// A connected viewer.
 pub(crate) struct Connection {
     seat: Seat,
     greeting: Arc<Greeting>,
@@ -55,9 +55,9 @@ impl Connection {
         }
     }
 
-    /// Shows until the viewer goes or is ended.
+    /// Serves until the viewer leaves or is disconnected.
     pub(crate) async fn serve(mut self, stream: TcpStream) {
-        // A viewer's broken connection ends with that viewer; the others go on.
+        // A viewer's broken connection ends only that viewer.
         let _broken = self.show(stream).await;
     }
 
@@ -94,7 +94,7 @@ impl Connection {
         }
     }
 
-    /// Sends this message and those that wait behind it.
+    /// Sends this message and those queued behind it.
     async fn pass_on(
         &self,
         socket: &mut Socket,
@@ -135,7 +135,7 @@ impl Connection {
         Some(ours.id)
     }
 
-    /// Does what the viewer asks, and gives what it is told of that.
+    /// Carries out a viewer's request and returns the replies.
     fn answers(&mut self, said: &Frame) -> Vec<Frame> {
         let answers = match said {
             Frame::Text(text) => match serde_json::from_str(text) {
@@ -156,7 +156,7 @@ impl Connection {
                 Err(unknown) => vec![error(&format!("not understood: {unknown}"))],
             },
             Frame::Binary(_) => vec![warning("ignored: this server takes no messages")],
-            // Those of the connection itself are answered by the crate.
+            // Control frames are answered by the crate.
             Frame::Ping(_) | Frame::Pong(_) | Frame::Close(_) | Frame::Frame(_) => Vec::new(),
         };
         let topics = self.subscriptions.len();
@@ -164,7 +164,7 @@ impl Connection {
         answers
     }
 
-    /// Takes a subscription, or says why not; to the model it is answered with it.
+    /// Adds a subscription, or returns the reason for refusing it; a subscription to the model returns the model.
     fn subscribe(&mut self, wanted: Subscription) -> Option<Frame> {
         let Subscription { id, channel_id } = wanted;
         if wanted.topic().is_none() && channel_id != MODEL_CHANNEL {
@@ -204,7 +204,7 @@ async fn shake_hands(stream: TcpStream) -> io::Result<Socket> {
     shaken.await.map_err(io::Error::other)
 }
 
-/// Chooses the newest name of the protocol that the viewer knows, and refuses one that knows none.
+/// Chooses the newest subprotocol that the viewer knows, and refuses viewers that know none.
 struct Chooser;
 
 impl server::Callback for Chooser {

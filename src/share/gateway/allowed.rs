@@ -1,5 +1,5 @@
-//! What a client of the gateway may write: targets, and what belongs to moving. All else is refused here, whoever asks; nothing
-//! that outlasts the power or leads away from the hand can be expressed. Pure.
+//! Writes allowed to a client of the gateway: targets and their limits. Everything else is refused here, for every client; values
+//! that outlast power-off or disconnect the hand cannot be expressed. Pure.
 
 use crate::hand::register::{ANGLE_SET, CLEAR_ERROR, FORCE_SET, GESTURE_NO_SET, SPEED_SET};
 use crate::hand::{
@@ -7,11 +7,11 @@ use crate::hand::{
     Register, Speed, Target,
 };
 
-/// The command that words written at this address mean.
+/// Converts words written at this address to a command.
 ///
 /// # Errors
-/// `IllegalAddress` for every register but ANGLE_SET, FORCE_SET, SPEED_SET, CLEAR_ERROR and GESTURE_NO_SET, and for a
-/// write that leaves one of them; `IllegalValue` out of the manual's range.
+/// `IllegalAddress` for every register except ANGLE_SET, FORCE_SET, SPEED_SET, CLEAR_ERROR and GESTURE_NO_SET, and for a
+/// write that extends beyond one of them; `IllegalValue` for values outside the manual's range.
 pub(crate) fn command(address: u16, words: &[u16]) -> Result<HandCommand, ModbusException> {
     let wrong = |_range: OutOfRange| ModbusException::IllegalValue;
     if let Some(values) = joints(&ANGLE_SET, address, words) {
@@ -35,7 +35,7 @@ pub(crate) fn command(address: u16, words: &[u16]) -> Result<HandCommand, Modbus
             .map_err(wrong);
     }
     match (address, words) {
-        // Manual: single bytes side by side; one word there is one of them.
+        // Manual: adjacent single bytes; one word there is one of them.
         (at, [1]) if at == CLEAR_ERROR.address => Ok(HandCommand::ClearErrors),
         (at, [_]) if at == CLEAR_ERROR.address => Err(ModbusException::IllegalValue),
         (at, [number]) if at == GESTURE_NO_SET.address => Gesture::new(*number)
@@ -45,8 +45,8 @@ pub(crate) fn command(address: u16, words: &[u16]) -> Result<HandCommand, Modbus
     }
 }
 
-/// What a request of function 16 has for all six joints of ANGLE_SET, as it stands there: whether it is a stop is asked before
-/// whether its length, what else it writes and its values are right. `None` where it has not all six.
+/// Raw values of a function 16 request for all six joints of ANGLE_SET: the check for a stop comes before the checks of
+/// its length, its other contents and its values. `None` if it does not contain all six.
 pub(crate) fn all_angles(pdu: &[u8]) -> Option<PerDof<i16>> {
     let [16, high, low, _, _, _, words @ ..] = pdu else {
         return None;
@@ -60,7 +60,7 @@ pub(crate) fn all_angles(pdu: &[u8]) -> Option<PerDof<i16>> {
     is_whole.then(|| PerDof::new(six.map(i16::from_be_bytes)))
 }
 
-/// The joints that words at this address set; `None` unless all of them lie in this register, whole.
+/// Joint values of words at this address; `None` unless all words lie entirely in this register.
 fn joints(register: &Register, address: u16, words: &[u16]) -> Option<PerDof<Option<i16>>> {
     let offset = address.checked_sub(register.address)?;
     let first = usize::from(offset / 2);

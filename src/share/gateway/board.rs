@@ -1,4 +1,4 @@
-//! Who is connected to a gateway, and what each of them did. Counts and remembers; sends nothing.
+//! Clients of a gateway, with their statistics. Stores only; sends nothing.
 
 use crate::hand::{HandCommand, Moment};
 use crate::link::session::motion::SETPOINT_HZ_MAX;
@@ -12,77 +12,76 @@ use std::time::Duration;
 use tokio::sync::Notify;
 use tokio::time::Instant;
 
-/// Clients at one time; more are turned away at once.
+/// Concurrent clients; further connections are refused at once.
 pub const CLIENTS_MAX: usize = 16;
-/// Commands of one kind are so far apart, as the setpoints of a slider are.
+/// Smallest interval between commands of one kind, as for the setpoints of a slider.
 const WRITE_INTERVAL: Duration = Duration::from_millis(1000 / SETPOINT_HZ_MAX as u64);
-/// Requests are counted over this time.
+/// Period over which requests are counted.
 const RATE_OVER: Duration = Duration::from_secs(1);
-/// Changes of who may move the hand that are kept for whoever tells them: clients come and go between two looks.
+/// Queue of control changes until they are reported: clients may come and go between two polls.
 const EVENTS_MAX: usize = 256;
 
-/// One connection to a gateway. None is ever given twice, and the first one is not the default.
+/// Identifies one connection to a gateway; never reused. The default is not a valid id.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct ClientId(u64);
 
-/// One client as the user sees it.
+/// One client, as shown to the user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GatewayClient {
-    /// By which it is named.
     pub id: ClientId,
     pub address: SocketAddr,
-    /// When it connected, by the link's clock.
+    /// Time of the connection, by the link's clock.
     pub since: Moment,
-    /// Requests in the last whole second.
+    /// Requests in the last full second.
     pub hz: u32,
-    /// Reads that were answered with values.
+    /// Reads answered with values.
     pub reads: u64,
-    /// Writes that the hand acknowledged.
+    /// Writes acknowledged by the hand.
     pub writes: u64,
-    /// Writes that were refused.
+    /// Refused writes.
     pub refused: u64,
-    /// Why the last of them was.
+    /// Reason for the last refusal.
     pub refusal: Option<WriteRefusal>,
-    /// Whether it may move the hand.
+    /// Control of the hand.
     pub lease: ClientLease,
 }
 
-/// Whether a client may move the hand.
+/// State of a client's control of the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClientLease {
-    /// It never could.
+    /// It never had control.
     Never,
-    /// It can now.
+    /// It has control.
     Held(Lease),
-    /// It could, until this.
+    /// It had control until this.
     Ended(LeaseRefusal),
 }
 
-/// Something that changed about who may move the hand.
+/// A change of control of the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MoverEvent {
     pub client: SocketAddr,
     pub change: MoverChange,
 }
 
-/// How the right of a client to move the hand changed.
+/// Kind of a control change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MoverChange {
-    /// It may from now on.
+    /// The client got control.
     Began,
-    /// It may no more, for this reason.
+    /// The client lost control, for this reason.
     Ended(LeaseRefusal),
-    /// It disconnected, and the hand is stopped.
+    /// The client disconnected, and the hand is stopped.
     Left,
 }
 
-/// The clients of one gateway, for all who serve them. Locks last for one call.
+/// The clients of one gateway, shared by their connections. Each lock lasts for one call.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SharedBoard(Arc<Mutex<Board>>);
 
 impl SharedBoard {
     pub(crate) fn with<T>(&self, act: impl FnOnce(&mut Board) -> T) -> T {
-        // Each call leaves the board whole, also one that panicked.
+        // Each call leaves the board consistent, even one that panicked.
         act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
@@ -93,15 +92,15 @@ pub(crate) struct Board {
     rows: Vec<Row>,
     last_id: u64,
     pub(crate) turned_away: u64,
-    /// Who is about to get the right to move the hand.
+    /// The client that is acquiring control.
     taking: Option<ClientId>,
-    /// Who got and lost the right to move the hand, until that is told.
+    /// Control changes not yet reported.
     events: VecDeque<MoverEvent>,
-    /// When each kind of command went out last.
+    /// Time of the last command of each kind.
     turns: Vec<(Discriminant<HandCommand>, Instant)>,
 }
 
-/// The client that may move the hand.
+/// The client that has control of the hand.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Holder {
     pub(crate) client: ClientId,
@@ -109,48 +108,48 @@ pub(crate) struct Holder {
     pub(crate) heard: Moment,
 }
 
-/// One client.
+/// One client's entry.
 #[derive(Debug)]
 pub(crate) struct Row {
     shown: GatewayClient,
     pace: Pace,
-    /// When it asked something last.
+    /// Time of its last request.
     heard: Moment,
-    /// When it stopped what another moved last.
+    /// Time at which it last stopped another controller's motion.
     pub(crate) stopped: Option<Instant>,
-    /// The user grants it the right to move the hand.
+    /// Notified when the user grants it control.
     pub(crate) granted: Arc<Notify>,
 }
 
 impl Row {
-    /// A whole request came.
+    /// Counts a complete request.
     pub(crate) fn asked(&mut self, now: Moment) {
         self.heard = now;
         self.pace.hit(now);
     }
 
-    /// What it may.
+    /// Control state, for changes.
     pub(crate) fn lease(&mut self) -> &mut ClientLease {
         &mut self.shown.lease
     }
 
-    /// A grant by the user came to nothing.
+    /// Records that a grant by the user failed.
     pub(crate) fn not_granted(&mut self, refusal: WriteRefusal) {
         self.shown.refusal = Some(refusal);
     }
 
-    /// A read was answered.
+    /// Counts an answered read.
     pub(crate) fn read(&mut self) {
         self.shown.reads += 1;
     }
 
-    /// A stop was obeyed that would not have been written as it stands.
+    /// Counts a stop that was obeyed although the request itself was invalid.
     pub(crate) fn obeyed_odd(&mut self, odd: WriteRefusal) {
         self.shown.writes += 1;
         self.shown.refusal = Some(odd);
     }
 
-    /// A write ended so.
+    /// Counts the result of a write.
     pub(crate) fn wrote(&mut self, written: Result<(), WriteRefusal>) {
         match written {
             Ok(()) => self.shown.writes += 1,
@@ -163,7 +162,7 @@ impl Row {
 }
 
 impl Board {
-    /// Takes a new client, unless there are too many.
+    /// Adds a new client, unless there are too many.
     pub(crate) fn connect(&mut self, address: SocketAddr, now: Moment) -> Option<ClientId> {
         if self.rows.len() >= CLIENTS_MAX {
             self.turned_away += 1;
@@ -191,7 +190,7 @@ impl Board {
         Some(id)
     }
 
-    /// The right of this client to move the hand changed so.
+    /// Queues a control change of this client for reporting.
     pub(crate) fn mover(&mut self, id: ClientId, change: MoverChange) {
         let Some(client) = self.row(id).map(|row| row.shown.address) else {
             return;
@@ -202,18 +201,18 @@ impl Board {
         self.events.push_back(MoverEvent { client, change });
     }
 
-    /// What changed since the last call, in order.
+    /// Returns the changes since the last call, in order.
     pub(crate) fn take_events(&mut self) -> Vec<MoverEvent> {
         self.events.drain(..).collect()
     }
 
-    /// A client is gone.
+    /// Removes a client.
     pub(crate) fn disconnect(&mut self, id: ClientId) {
         self.taking.take_if(|taking| *taking == id);
         self.rows.retain(|row| row.shown.id != id);
     }
 
-    /// Who may move the hand, and when it asked something last.
+    /// Returns the client that has control, with the time of its last request.
     pub(crate) fn holder(&self) -> Option<Holder> {
         self.rows.iter().find_map(|row| match row.shown.lease {
             ClientLease::Held(lease) => Some(Holder {
@@ -225,7 +224,7 @@ impl Board {
         })
     }
 
-    /// One begins to take the right to move the hand, and is the only one who does. Gives its address.
+    /// Starts acquiring control for a client, one at a time, and returns its address; `None` if another is in progress.
     pub(crate) fn begin_taking(&mut self, id: ClientId) -> Option<SocketAddr> {
         let row = self.rows.iter().find(|row| row.shown.id == id)?;
         if self.taking.is_some() {
@@ -235,12 +234,12 @@ impl Board {
         Some(row.shown.address)
     }
 
-    /// It took it, or could not.
+    /// Ends the acquisition, successful or not.
     pub(crate) fn end_taking(&mut self) {
         self.taking = None;
     }
 
-    /// When a command of this kind may go out next: at most [`SETPOINT_HZ_MAX`] times a second.
+    /// Time at which a command of this kind may be sent next: at most [`SETPOINT_HZ_MAX`] per second.
     pub(crate) fn turn(&mut self, command: &HandCommand, now: Instant) -> Instant {
         let kind = std::mem::discriminant(command);
         let before = self.turns.iter().find(|(own, _)| *own == kind);
@@ -264,7 +263,7 @@ impl Board {
     }
 }
 
-/// Counts in whole seconds.
+/// Counts events per full second.
 #[derive(Debug, Default)]
 struct Pace {
     began: Moment,

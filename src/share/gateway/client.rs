@@ -1,6 +1,6 @@
-//! One client's connection: whole requests in, one answer each, and an end at a deadline for whoever keeps neither to the
-//! protocol nor to the time. Reads are answered as they are ready, writes one at a time in their order. Some clients take a few
-//! unanswered requests for a dead hand, so one request that waits for the hand does not hold up the others.
+//! One client's connection: complete requests in, one answer each, and disconnection at a deadline for clients that violate the
+//! protocol or are too slow. Reads are answered as they complete, writes one at a time in order. Some clients interpret a few
+//! unanswered requests as a dead hand, so one request that waits for the hand does not block the others.
 
 use crate::codec::mbap::{ADU_LEN_MAX, Adu, MbapSplitter};
 use crate::codec::pdu::{self, ModbusRole, Pdu};
@@ -18,19 +18,19 @@ use tokio::net::TcpStream;
 use tokio::sync::Notify;
 use tokio::time::{Instant, timeout, timeout_at};
 
-/// From the first byte of a request to its last: on a network they come together.
+/// Time from the first byte of a request to its last: on a network they arrive together.
 pub const REQUEST_TIMEOUT: Duration = Duration::from_secs(2);
-/// A client that asks nothing for so long is taken for gone: a half-open connection says nothing of itself.
+/// Time without requests after which a client is disconnected: a half-open connection does not report itself.
 pub const IDLE_MAX: Duration = Duration::from_secs(60);
-/// A client that does not take its answer within this is ended.
+/// Time within which a client must accept its answer; then it is disconnected.
 pub const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// So many reads of one client wait for the hand at a time, and so many writes behind the one under way: as many as the standard
-/// lets a client have unanswered. Reads beyond them are told that the hand is busy; a client with more writes is ended, and the
-/// hand stops where it moved it: a queue of targets would go on long after whoever wrote them.
+/// Limit of one client's reads that wait for the hand, and of its writes queued behind the one in progress: as many as the
+/// standard allows a client to have unanswered. Further reads get the busy exception; a client with more writes is disconnected, and
+/// the hand stops if that client was moving it: a queue of targets would continue long after they were written.
 const WAITING_MAX: usize = 16;
 
-/// A client while it is connected: it is gone when this is dropped, however its connection ends.
+/// A connected client: dropping this disconnects it, however its connection ends.
 pub(crate) struct Connection {
     service: Service,
     id: ClientId,
@@ -47,21 +47,21 @@ impl Connection {
         }
     }
 
-    /// Answers until the client hangs up, talks nonsense or misses a deadline.
+    /// Serves until the client hangs up, sends an invalid header or misses a deadline.
     pub(crate) async fn serve(self, stream: TcpStream) {
-        // A client's broken connection ends with that client; the others go on.
+        // A client's broken connection ends only that client.
         let _broken = self.talk(stream).await;
     }
 
     async fn talk(&self, stream: TcpStream) -> io::Result<()> {
         let mut writing = None;
         let ended = self.converse(stream, &mut writing).await;
-        // A write that has begun is not broken off: it may be taking the right to move the hand.
+        // A write in progress is not aborted: it may be acquiring control.
         OptionFuture::from(writing).await;
         ended
     }
 
-    /// Answers, and leaves the write that had begun at the end.
+    /// Serves the connection, and leaves a write in progress at its end in `writing`.
     async fn converse<'a>(
         &'a self,
         mut stream: TcpStream,
@@ -72,7 +72,7 @@ impl Connection {
         let mut heard = Instant::now();
         let mut begun = None;
         let mut reads = FuturesUnordered::new();
-        // Writes go in their order, one at a time, and past the reads.
+        // Writes run in order, one at a time, independently of the reads.
         let mut writes = VecDeque::new();
         loop {
             while let Some(asked) = splitter.next().map_err(io::Error::other)? {
@@ -99,7 +99,7 @@ impl Connection {
             let deadline = begun.map_or(heard + IDLE_MAX, |begun| begun + REQUEST_TIMEOUT);
             tokio::select! {
                 biased;
-                // It takes the turn of a write, which may take the right as well.
+                // A grant is handled in place of a write, as a write may acquire control as well.
                 () = self.granted.notified(), if writing.is_none() => {
                     let granted = self.service.leases.granted(self.id);
                     *writing = Some(granted.map(|()| None).boxed());
@@ -116,7 +116,7 @@ impl Connection {
                     tell(&mut stream, &answer).await?;
                 }
                 read = timeout_at(deadline, stream.read(&mut chunk)) => match read {
-                    // There is room: what is kept is less than one message.
+                    // There is room: the buffered rest is less than one message.
                     Ok(Ok(len @ 1..)) => {
                         splitter.push(chunk.get(..len).unwrap_or_default());
                     }
@@ -125,7 +125,7 @@ impl Connection {
                 },
             }
         }
-        // It asks no more, but may listen on. What it moved is stopped first.
+        // The client has finished sending, but may still read. Its motion is stopped first.
         self.service.leases.disconnect(self.id);
         if let Some(Some(answer)) = OptionFuture::from(writing.take()).await {
             tell(&mut stream, &answer).await?;
@@ -145,7 +145,7 @@ async fn tell(stream: &mut TcpStream, answer: &[u8]) -> io::Result<()> {
     timeout(WRITE_TIMEOUT, stream.write_all(answer)).await?
 }
 
-/// Whatever else is asked takes its turn among the writes.
+/// True for reads; all other requests are queued as writes.
 fn is_read(asked: &Adu) -> bool {
     matches!(
         pdu::parse(ModbusRole::Client, asked.pdu()),

@@ -1,5 +1,5 @@
-//! Which client may move the hand, from the grant to its end, and its writes. Each end stops the hand, however it came: the
-//! hand is not left to go on to a target of a program that is gone.
+//! Control of the hand by gateway clients, from the grant to its end, and their writes. Every end of control stops the hand,
+//! whatever its cause: the hand must not continue to a target of a program that has gone.
 
 use crate::hand::register::{ANGLE_ACT, FORCE_SET, Register, SPEED_SET};
 use crate::hand::{Angle, Dof, Force, HandCommand, OutOfRange, PerDof, Speed};
@@ -17,32 +17,32 @@ use tokio::time::{Instant, sleep_until, timeout};
 
 /// The manual's "no action" (2.6.11).
 const NO_ACTION: i16 = -1;
-/// A stop is where the joints were when it was written: they went on meanwhile, at most so many counts.
+/// Distance from the present angles up to which targets are a stop, counts: the joints moved on after the client read them.
 const STAY_TOLERANCE: u16 = 150;
-/// A client that stopped the hand repeats that until it sees it rest.
+/// Time for which a client that stopped the hand may repeat the stop, until it sees the hand at rest.
 const STOP_REPEATS: Duration = Duration::from_secs(2);
-/// A client is told within this whether the hand took its stop, and it is looked so often.
+/// Time within which a client is answered whether the hand accepted its stop, and the poll interval for that.
 const STOP_TAKES: Duration = Duration::from_secs(1);
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
 
-/// Which clients may move the hand.
+/// Clients that can get control of the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Writers {
-    /// Only the one to which the user grants it.
+    /// Only the client to which the user grants it.
     Granted,
-    /// The first that writes while nobody may: the user grants it to whoever comes.
+    /// The first client that writes while no one has control, without a further grant.
     First,
 }
 
-/// Why a client takes the right.
+/// Reason for acquiring control.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Claim {
     Wrote,
-    /// The user chose it.
+    /// The user chose the client.
     Chosen,
 }
 
-/// The right to move the hand, among the clients of one gateway.
+/// Control of the hand, among the clients of one gateway.
 #[derive(Debug, Clone)]
 pub(crate) struct ClientLeases {
     pub(crate) link: LinkHandle,
@@ -63,7 +63,7 @@ impl ClientLeases {
         }
     }
 
-    /// Writes what a request asks for, of a client that may, or may from now on. Done once the hand acknowledged it.
+    /// Writes the command of a client that has control or can acquire it now. Completes once the hand acknowledged it.
     pub(crate) async fn write(
         &self,
         client: ClientId,
@@ -72,11 +72,11 @@ impl ClientLeases {
     ) -> Result<(), WriteRefusal> {
         let lease = match self.lease(client) {
             ClientLease::Held(lease) => lease,
-            // A fault has ended every lease, and nobody can get one before it is cleared. It gives no right to move.
+            // A fault has ended every lease, and no client can get one before it is cleared. Clearing gives no control.
             _ if command == HandCommand::ClearErrors && self.is_free() && self.is_shut() => {
                 return Ok(self.link.write(command).await?);
             }
-            // Whoever may not move the hand may stop it, while another moves it.
+            // A client without control may stop the hand while another controller moves it.
             lease => match self.obey_stop(client, request).await {
                 Some(done) => return done,
                 None if lease == ClientLease::Never => self.take(client, Claim::Wrote).await?,
@@ -97,7 +97,7 @@ impl ClientLeases {
         Ok(written?)
     }
 
-    /// The user grants the right to this client.
+    /// Acquires control for this client, to which the user granted it.
     pub(crate) async fn granted(&self, client: ClientId) {
         if let Err(refusal) = self.take(client, Claim::Chosen).await {
             self.board
@@ -105,7 +105,7 @@ impl ClientLeases {
         }
     }
 
-    /// Ends what has to end: the lease of a client that is silent, or one that the link ended.
+    /// Ends the lease of a silent client, or one that the link has already ended.
     pub(crate) fn look_after(&self) {
         let Some(holder) = self.board.with(|board| board.holder()) else {
             return;
@@ -116,7 +116,7 @@ impl ClientLeases {
         }
     }
 
-    /// Ends a lease for this reason, which stops the hand, unless it ended before for another.
+    /// Ends a lease for this reason, which stops the hand, unless it ended earlier for another.
     fn end(&self, holder: Holder, why: Disarmed) {
         let end = self.end_lease(holder, why);
         self.board
@@ -132,7 +132,7 @@ impl ClientLeases {
         end
     }
 
-    /// A client is gone.
+    /// Removes a client and ends its lease.
     pub(crate) fn disconnect(&self, client: ClientId) {
         let holder = self.board.with(|board| board.holder());
         if let Some(holder) = holder.filter(|holder| holder.client == client) {
@@ -145,7 +145,7 @@ impl ClientLeases {
         self.board.with(|board| board.disconnect(client));
     }
 
-    /// The gateway closes.
+    /// Ends the current lease; called when the gateway closes.
     pub(crate) fn close(&self) {
         if let Some(holder) = self.board.with(|board| board.holder()) {
             self.end(holder, Disarmed::Released);
@@ -167,13 +167,13 @@ impl ClientLeases {
         });
     }
 
-    /// Whether a client may take the right by writing.
+    /// True if a client may acquire control by writing.
     fn is_free(&self) -> bool {
         self.writers == Writers::First && self.link.status().holder.is_none()
     }
 
-    /// Stops the hand if a request is a stop, which may be one that cannot be written as it stands; `None` if it is none. Where there
-    /// is no live hand the stop waits for it, and the client is told so.
+    /// Stops the hand if a request is a stop, even one that is invalid as a write; `None` if it is no stop. Without a live
+    /// hand the stop stays pending, and the client gets an error.
     pub(crate) async fn obey_stop(
         &self,
         client: ClientId,
@@ -193,7 +193,7 @@ impl ClientLeases {
         })
     }
 
-    /// Whether the hand acknowledged what stops it, or is known to rest by it.
+    /// Returns true once the hand acknowledged the hold command, or once it may no longer move; false if the link is lost.
     async fn stop_acknowledged(&self, records: &mut Records) -> bool {
         let mut sent = None;
         loop {
@@ -221,8 +221,8 @@ impl ClientLeases {
         }
     }
 
-    /// Whether this is a stop of what a client moves, or its repetition: joints are told to stay about where they are, and none to
-    /// go elsewhere. Then the hand is stopped.
+    /// Stops the hand if the targets are a stop of a client's motion, or its repetition: some joints stay about where they are,
+    /// and none moves elsewhere. Returns true if so.
     async fn stops(&self, client: ClientId, targets: &PerDof<i16>) -> bool {
         let now = Instant::now();
         let stopped = |board: &mut Board| board.row(client).and_then(|row| row.stopped);
@@ -252,7 +252,7 @@ impl ClientLeases {
         stops
     }
 
-    /// The angles as they were read last: a client stops a hand that falls silent at those that it saw.
+    /// Last read angles: a client stops a hand that falls silent at the angles that it saw.
     async fn pose(&self) -> Option<PerDof<i16>> {
         match self.reads.newest(ANGLE_ACT.span()) {
             Some(bytes) => values(&bytes, Ok::<i16, OutOfRange>).ok(),
@@ -260,7 +260,7 @@ impl ClientLeases {
         }
     }
 
-    /// Whether nobody can get the right now: a drive reports a fault, or the stop that it caused goes on.
+    /// True if no client can get control now: a drive reports a fault, or the hold that it caused is in progress.
     fn is_shut(&self) -> bool {
         matches!(
             self.link.status().state,
@@ -279,7 +279,7 @@ impl ClientLeases {
         taken
     }
 
-    /// Arms the hand with the speeds and forces that it has, and grants it.
+    /// Arms the hand with its present speeds and forces, and grants it.
     async fn arm(
         &self,
         client: ClientId,
@@ -290,7 +290,7 @@ impl ClientLeases {
             LinkState::Offline | LinkState::Identifying => Some(ArmRefusal::Offline),
             LinkState::Holding => Some(ArmRefusal::Holding),
             LinkState::Fault => Some(ArmRefusal::Fault),
-            // Armed for nobody: a stop is on its way.
+            // Armed without a holder: a stop is on its way.
             LinkState::Armed if self.link.status().holder.is_none() => Some(ArmRefusal::Holding),
             LinkState::Monitoring | LinkState::Armed => None,
         };
@@ -301,7 +301,7 @@ impl ClientLeases {
         if claim == Claim::Wrote && !self.is_free() {
             return Err(WriteRefusal::Taken);
         }
-        // Whoever had it among the clients has it no more.
+        // The client that had control loses it.
         if let Some(before) = self.board.with(|board| board.holder()) {
             let taken = LeaseRefusal::Taken(owner);
             self.mark(before.client, ClientLease::Ended(taken));
@@ -315,7 +315,7 @@ impl ClientLeases {
             Err(_ended) => Err(ArmRefusal::Offline),
         };
         if let Err(reason) = armed {
-            // Nothing was moved, so nothing is stopped.
+            // Nothing was moved, so there is nothing to stop.
             if self.link.check(lease).is_ok() {
                 self.link.disarm();
             }
@@ -343,7 +343,7 @@ impl ClientLeases {
     }
 }
 
-/// The values of six joints.
+/// Decodes and checks the values of six joints.
 fn values<T>(
     bytes: &[u8],
     check: fn(i16) -> Result<T, OutOfRange>,
@@ -356,7 +356,7 @@ fn values<T>(
     Ok(PerDof::new(values))
 }
 
-/// Whether targets keep joints about where they are, and send none elsewhere. What no target can be asks for nothing.
+/// True if targets keep some joint about where it is and send none elsewhere. Values that are no targets are ignored.
 fn stays(targets: &PerDof<i16>, angles: &PerDof<i16>) -> bool {
     let is_near = |dof: Dof, to: i16| to.abs_diff(angles[dof]) <= STAY_TOLERANCE;
     let goes = |dof: Dof, to: i16| Angle::new(to).is_ok() && !is_near(dof, to);

@@ -1,5 +1,5 @@
-//! A gateway: several Modbus TCP clients at one hand, at the addresses that the hand itself has. What they read comes from
-//! what the link reads anyway, so that many cost no more than one; one of them at a time may move the hand, if the user lets it.
+//! A gateway: several Modbus TCP clients share one hand, at the hand's own addresses. Their reads are served from the link's
+//! regular readings, so that many clients cost the same as one; one client at a time can get control of the hand, if the user allows it.
 
 mod allowed;
 pub mod board;
@@ -26,25 +26,25 @@ use tokio::task::JoinSet;
 use tokio::time::{MissedTickBehavior, interval, sleep};
 use tokio_util::task::AbortOnDropHandle;
 
-/// A client that may move the hand and asks nothing for so long may no more, unless the user says otherwise.
+/// Default silence, without any request, after which a client loses control.
 pub const SILENCE: Duration = Duration::from_secs(10);
-/// How often silence is looked for.
+/// Interval of the check for silent clients.
 const POLL_INTERVAL: Duration = Duration::from_millis(100);
-/// After the system refused a connection, for want of something, the next is looked for.
+/// Delay before the next accept after the system refused a connection for lack of resources.
 const ACCEPT_AGAIN: Duration = Duration::from_millis(100);
 
-/// How a gateway is opened.
+/// Configuration of a gateway.
 #[derive(Debug, Clone, Copy)]
 pub struct GatewayConfig {
-    /// Where it listens. Port 0 means any free one.
+    /// Listen address. Port 0 means any free one.
     pub address: SocketAddr,
-    /// Which clients may move the hand.
+    /// Clients that can get control of the hand.
     pub writers: Writers,
-    /// A client that may move the hand and asks nothing for so long may no more.
+    /// Silence, without any request, after which a client loses control.
     pub silence: Duration,
 }
 
-/// An open gateway. Dropping it closes its listener and all its connections, and stops the hand if a client may move it.
+/// An open gateway. Dropping it closes its listener and all its connections, and stops the hand if a client has control.
 #[derive(Debug)]
 pub struct Gateway {
     address: SocketAddr,
@@ -53,10 +53,10 @@ pub struct Gateway {
 }
 
 impl Gateway {
-    /// Listens for as long as it is kept.
+    /// Listens until dropped.
     ///
     /// # Errors
-    /// The system's, if the address cannot be listened at.
+    /// The system's error if the address cannot be bound.
     pub fn open(
         link: LinkHandle,
         config: GatewayConfig,
@@ -76,29 +76,29 @@ impl Gateway {
         })
     }
 
-    /// Where it listens.
+    /// Listen address, with the actual port.
     pub const fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Who is connected, the oldest first.
+    /// Connected clients, the oldest first.
     pub fn clients(&self) -> Vec<GatewayClient> {
         let now = self.leases.link.clock().now();
         self.leases.board.with(|board| board.shown(now))
     }
 
-    /// Who got and lost the right to move the hand since the last call, each one, in order.
+    /// Control changes since the last call, each one, in order.
     pub fn movers(&self) -> Vec<MoverEvent> {
         self.leases.board.with(Board::take_events)
     }
 
-    /// Connections that were refused because there were [`CLIENTS_MAX`].
+    /// Number of connections refused because there were [`CLIENTS_MAX`].
     pub fn turned_away(&self) -> u64 {
         self.leases.board.with(|board| board.turned_away)
     }
 
-    /// Lets this client move the hand: whoever may now may no more, and the hand is armed with the speeds and forces that it
-    /// has. The user must have asked for it. What came of it is the client's [`GatewayClient::lease`], or its refusal.
+    /// Grants this client control of the hand: the present holder loses it, and the hand is armed with its present speeds and
+    /// forces. Call only at the user's request. The result is the client's [`GatewayClient::lease`], or its refusal.
     pub fn grant(&self, client: ClientId) {
         let tell = |row: &mut board::Row| row.granted.notify_one();
         self.leases.board.with(|board| board.row(client).map(tell));
@@ -133,7 +133,7 @@ async fn serve(listener: TcpListener, leases: ClientLeases) {
     }
 }
 
-/// Serves a new client, or turns it away.
+/// Serves a new client, or refuses it.
 fn begin(clients: &mut JoinSet<()>, leases: &ClientLeases, stream: TcpStream, address: SocketAddr) {
     let now = leases.link.clock().now();
     let Some(id) = leases.board.with(|board| board.connect(address, now)) else {

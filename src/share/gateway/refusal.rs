@@ -1,50 +1,50 @@
-//! Why a gateway does not do what a client asks, in words for the user and as a Modbus exception.
+//! Reasons for a gateway's refusal, as text for the user and as Modbus exceptions.
 
 use crate::hand::{ModbusException, Refusal};
 use crate::link::RequestError;
 use crate::record::ArmRefusal;
 
-/// Why a write of a client was not done.
+/// Reason why a client's write was not carried out.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum WriteRefusal {
-    /// Nobody granted a client the right to move this hand.
+    /// The user has not granted control of this hand to any client.
     #[error("no client may move the hand: a person has to grant it")]
     NotGranted,
-    /// Another has the right.
+    /// Another controller has control.
     #[error("another may move the hand now")]
     Taken,
-    /// This connection had the right once.
+    /// This connection had control earlier.
     #[error("this client could move the hand, and that ended: it has to connect again")]
     Over,
     /// The hand could not be armed.
     #[error("the hand could not be armed: {0}")]
     NotArmed(ArmRefusal),
-    /// The hand holds a speed or a force that cannot be set, so it cannot be armed with what it has.
+    /// The hand's present speed or force is not a valid setting, so the hand cannot be armed with it.
     #[error("the speeds and forces that the hand has now make no sense")]
     Limits,
     /// Not a register that clients may write.
     #[error("clients may not write {words} words at address {address}")]
     Address {
-        /// First byte.
+        /// Address of the first byte.
         address: u16,
         words: usize,
     },
-    /// Fewer or more words than were announced, or than a message has.
+    /// The number of words differs from the announced one, or exceeds a message.
     #[error("the request does not have the {count} words that it announces")]
     Count { count: u16 },
     /// Outside the manual's range.
     #[error("a value for address {address} is outside the manual's range")]
     Value {
-        /// First byte.
+        /// Address of the first byte.
         address: u16,
     },
-    /// The link or the hand did not take it.
+    /// The link or the hand did not accept it.
     #[error(transparent)]
     Request(#[from] RequestError),
 }
 
 impl WriteRefusal {
-    /// What the client is told.
+    /// Exception sent to the client.
     pub(crate) fn exception(&self) -> ModbusException {
         match self {
             Self::NotGranted | Self::Taken | Self::Over | Self::NotArmed(_) | Self::Limits => {
@@ -57,7 +57,7 @@ impl WriteRefusal {
     }
 }
 
-/// What a client is told of a failed request.
+/// Exception sent to a client for a failed request.
 pub(crate) fn exception(error: &RequestError) -> ModbusException {
     match error {
         RequestError::NotConnected => ModbusException::NoPath,
@@ -74,7 +74,7 @@ pub(crate) fn exception(error: &RequestError) -> ModbusException {
     }
 }
 
-/// The hand's own exception passes as it is. What the rule against unsafe writes keeps back has no code of its own.
+/// The hand's own exception is forwarded. The rule against unsafe writes has no exception code of its own.
 const fn refused(reason: Refusal) -> ModbusException {
     match reason {
         Refusal::Exception(own) => own,

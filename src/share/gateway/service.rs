@@ -1,4 +1,4 @@
-//! What a gateway answers to one request of a client: from what the link read last, or what the hand acknowledged.
+//! Answers a client's request to a gateway, from the link's last readings or with the hand's acknowledgement.
 
 use crate::codec::mbap::Adu;
 use crate::codec::modbus::READ_WORDS_MAX;
@@ -9,7 +9,7 @@ use crate::share::gateway::board::{ClientId, Row};
 use crate::share::gateway::leases::ClientLeases;
 use crate::share::gateway::refusal::{WriteRefusal, exception};
 
-/// Addresses of the hand: twelve bits, as CAN ids have room for. Beyond them a hand on RS485 would only be silent.
+/// Size of the hand's address space: twelve bits, as in CAN ids. Beyond it a hand on RS485 would only be silent.
 const MEMORY_LEN: u32 = 4096;
 /// Most words of one write (manual 2.5, function 16).
 const WRITE_WORDS_MAX: usize = 123;
@@ -21,7 +21,7 @@ pub(crate) struct Service {
 }
 
 impl Service {
-    /// The whole message that answers a request. Whatever unit is asked answers: there is one hand.
+    /// Returns the whole message that answers a request. Any unit id is answered: there is one hand.
     pub(crate) async fn answer(&self, client: ClientId, asked: &Adu) -> Vec<u8> {
         let now = self.leases.link.clock().now();
         self.note(client, |row| row.asked(now));
@@ -33,7 +33,7 @@ impl Service {
         asked.reply(asked.unit, &said)
     }
 
-    /// The answer without its function code.
+    /// Returns the answer without its function code.
     async fn obey(&self, client: ClientId, request: &[u8]) -> Result<Vec<u8>, ModbusException> {
         match pdu::parse(ModbusRole::Client, request) {
             Pdu::Read { address, count } => {
@@ -56,10 +56,10 @@ impl Service {
                 Ok([address, count].map(u16::to_be_bytes).concat())
             }
             _ => match self.leases.obey_stop(client, request).await {
-                // A stop counts although its length is wrong.
+                // A stop counts even if its length is wrong.
                 Some(Ok(())) => Ok(request.get(1..5).unwrap_or_default().to_vec()),
                 Some(Err(refusal)) => Err(refusal.exception()),
-                // A known function of a wrong length.
+                // A known function with a wrong length.
                 None if matches!(request, [3 | 6 | 16, ..]) => Err(ModbusException::IllegalValue),
                 None => Err(ModbusException::IllegalFunction),
             },
@@ -83,7 +83,7 @@ impl Service {
         Ok([len].into_iter().chain(words).collect())
     }
 
-    /// Writes what a request asks for. A stop that cannot be written as it stands is a stop all the same.
+    /// Writes the command of a request. A stop that is invalid as a write is still a stop.
     async fn write(
         &self,
         client: ClientId,
@@ -111,7 +111,7 @@ impl Service {
     }
 }
 
-/// What words written at this address mean, or why clients may not write them.
+/// Converts words written at this address to a command, or returns the reason why clients may not write them.
 fn command(address: u16, words: &[u16]) -> Result<HandCommand, WriteRefusal> {
     allowed::command(address, words).map_err(|exception| match exception {
         ModbusException::IllegalValue => WriteRefusal::Value { address },
@@ -122,7 +122,7 @@ fn command(address: u16, words: &[u16]) -> Result<HandCommand, WriteRefusal> {
     })
 }
 
-/// The words of function 16, as many as it announces.
+/// Decodes the words of function 16, if there are as many as announced.
 fn words_of(count: u16, bytes: &[u8]) -> Result<Vec<u16>, WriteRefusal> {
     let (pairs, odd) = bytes.as_chunks::<2>();
     let is_whole = odd.is_empty() && pairs.len() == usize::from(count);

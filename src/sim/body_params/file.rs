@@ -1,4 +1,4 @@
-//! Bodies as files of TOML: read whole or not at all, and printed with units and ranges. What a file leaves out is as in the
+//! Bodies as TOML files: read entirely or not at all, and printed with units and ranges. Values missing from a file are those of the
 //! default body.
 
 use crate::hand::{Dof, Finger};
@@ -13,19 +13,18 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use toml::{Spanned, Value};
 
-/// Bytes of such a file; the default body has some ten thousand.
+/// Size limit of a body file, bytes; the default body takes some ten thousand.
 const BYTES_MAX: u64 = 1 << 20;
 
-/// Why a file is no body.
+/// Error for a file that is not a valid body.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the body {} cannot be used: {why}; 'handscope sim --print-body' shows every key with its range",
     path.display()
 )]
 pub struct BodyFileError {
-    /// The file.
     pub path: PathBuf,
-    /// What is wrong with it, and where.
+    /// Error with its position.
     pub why: FileError,
 }
 
@@ -52,7 +51,7 @@ struct FingertipRow {
 /// Reads a body.
 ///
 /// # Errors
-/// [`BodyFileError`]: the file is not there, or something in it is not known or out of its range.
+/// [`BodyFileError`]: the file is missing, or has an unknown key or a value out of range.
 pub fn read(path: &Path) -> Result<BodyParams, BodyFileError> {
     load(path, BYTES_MAX, parse).map_err(|why| BodyFileError {
         path: path.to_owned(),
@@ -60,7 +59,7 @@ pub fn read(path: &Path) -> Result<BodyParams, BodyFileError> {
     })
 }
 
-/// The body that a text describes.
+/// Parses a body.
 ///
 /// # Errors
 /// [`FileError`] with line and field.
@@ -78,7 +77,7 @@ pub fn parse(text: &str) -> Result<BodyParams, FileError> {
     Ok(body)
 }
 
-/// Puts numbers in their places.
+/// Stores the numbers in their fields.
 fn take<T>(
     source: FileText<'_>,
     numbers: &Numbers,
@@ -142,7 +141,7 @@ fn fingertip(source: FileText<'_>, row: &FingertipRow) -> Result<FingertipBody, 
     Ok(tip)
 }
 
-/// The whole body as a file, each number with its unit and its range.
+/// Formats the whole body as a file, each number with its unit and its range.
 pub fn print(body: &BodyParams) -> String {
     let mut text = String::from(
         "# The body of a simulated hand: 'handscope sim --body FILE', or 'sim:?body=FILE'.\n\

@@ -1,7 +1,7 @@
-//! What differs from one hand of the family to the next, as numbers: of every joint, every fingertip and the supply. A file of
-//! them ([`file`]) is a body; [`random`] draws some between the two hands that were measured in public. Moves nothing.
+//! Numbers in which hands of the family differ: joints, fingertips and supply. A file of
+//! them ([`file`]) is a body; [`random`] draws bodies between the two hands with published measurements. Moves nothing.
 //!
-//! How stiff an object is, is the object's; the body only multiplies it. Nothing that looks for settings may read a body.
+//! The stiffness of an object is the object's; the body only multiplies it. Code that searches for settings must not read a body.
 
 pub mod file;
 pub mod random;
@@ -11,30 +11,30 @@ use crate::hand::{PerDof, PerFinger};
 
 /// Position when fully bent, counts.
 pub const STROKE: f64 = 2000.0;
-/// Position counts a second for each unit of SPEED_SET.
+/// Position counts per second for each unit of SPEED_SET.
 // Manual: 2.6.13 says 600 ms for the full stroke at 1000; 3.04 was measured on a sister hand.
 pub const COUNTS_PER_SPEED: f64 = STROKE / 0.6 / 1000.0;
-/// From a command to the motion, ms (measured: 64 +- 8); the measured ways past a threshold are of it, too.
+/// Delay between a command and the motion, ms (measured: 64 +- 8); the measured overshoot belongs to this latency.
 pub const LATENCY_MS: f64 = 64.0;
 
-/// One number of a body as it stands in the file.
+/// One number of a body, as in the file.
 #[derive(Debug, Clone, Copy)]
 pub struct BodyKey<T> {
-    /// Its key.
+    /// Key in the file.
     pub name: &'static str,
-    /// What it is, with its unit.
+    /// Description with unit.
     pub about: &'static str,
-    /// The smallest that is possible.
+    /// Smallest allowed value.
     pub least: f64,
-    /// The largest.
+    /// Largest allowed value.
     pub most: f64,
-    /// Looks it up.
+    /// Reads the field.
     pub get: fn(&T) -> f64,
-    /// Finds the place of it.
+    /// Returns a mutable reference to the field.
     pub place: fn(&mut T) -> &mut f64,
 }
 
-/// Declares each number once: its key, its default, its range and what it is.
+/// Declares each number once: key, default, range and description.
 macro_rules! numbers {
     ($(#[$doc:meta])* $Type:ident, $keys:ident { $($about:literal $field:ident = $default:expr, $least:literal..$most:literal;)+ }) => {
         $(#[$doc])*
@@ -50,7 +50,7 @@ macro_rules! numbers {
         }
 
         impl $Type {
-            /// Its numbers, in the order of the file.
+            /// The keys of its numbers, in file order.
             pub const KEYS: &'static [BodyKey<Self>] = $keys;
         }
 
@@ -99,26 +99,23 @@ numbers! {
 
 /// Channels of a fingertip.
 pub const CHANNELS: usize = 8;
-/// The fastest that a channel may drift, counts a second.
+/// Largest drift of a channel, counts per second.
 pub const DRIFT_MAX: f64 = 1_000_000.0;
 
 /// One fingertip.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FingertipBody {
-    /// Channels that always say 0.
+    /// Channels that always read 0.
     pub dead: [bool; CHANNELS],
-    /// How fast each channel drifts, counts a second.
+    /// Drift of each channel, counts per second.
     pub drift: [f64; CHANNELS],
 }
 
-/// A whole body. The default is the hand that was simulated before there were bodies.
+/// A whole body. The default equals the simulated hand of versions without bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyParams {
-    /// The supply.
     pub supply: SupplyBody,
-    /// The joints.
     pub joints: PerDof<JointBody>,
-    /// The fingertips.
     pub fingertips: PerFinger<FingertipBody>,
 }
 

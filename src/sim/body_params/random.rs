@@ -1,4 +1,4 @@
-//! Bodies between the two hands that were measured in public, for tests and benches.
+//! Random bodies between the two hands with published measurements, for tests and benches.
 //!
 //! One is smorales' RH56DFTP (latency 66 ms, 99 of 100 below 70; 3.04 counts/s per unit of speed; contacts that scatter by 7.5
 //! counts; zeros up to 241 g), the other the damaged RH56DFX of arXiv 2603.08988.
@@ -6,10 +6,10 @@
 use crate::hand::{Finger, PerDof};
 use crate::sim::body_params::{BodyParams, JointBody};
 
-/// The body of this seed. Each hand has its own way of running past a threshold; its joints differ a little.
+/// Draws the body of this seed. Each hand has its own overshoot characteristic; its joints differ slightly.
 pub fn random(seed: u64) -> BodyParams {
     let mut rng = fastrand::Rng::with_seed(seed ^ 0xB0D7);
-    // Drawn apart, so that all else is as it was before there was this.
+    // A separate generator, so that all other values stay as they were before this one was added.
     let mut kept = fastrand::Rng::with_seed(seed ^ 0x6B65_7074);
     let run_on = rng.f64();
     let mut between = |least: f64, most: f64| least + (most - least) * rng.f64();

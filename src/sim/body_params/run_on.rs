@@ -1,19 +1,19 @@
-//! How far a drive runs past its force threshold on two hands of the family. No state.
+//! Overshoot of a drive past its force threshold on two hands of the family. No state.
 
 use crate::hand::impact::{overshoot_g, second_hand_overshoot_g, two_stage_overshoot_g};
 
-/// A contact that meets its threshold.
+/// A contact at which the force meets the threshold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MetThreshold {
-    /// Units of SPEED_SET.
+    /// Speed in units of SPEED_SET.
     pub speed: f64,
-    /// The threshold, g.
+    /// Force threshold, g.
     pub threshold_g: f64,
-    /// Whether the finger came fast and was slowed down before the contact.
+    /// True if the finger approached fast and slowed down before the contact.
     pub came_fast: bool,
 }
 
-/// Grams past the threshold on a block of [`crate::hand::impact::RIGID_G_PER_COUNT`], where `second` is the share of the second
+/// Overshoot in grams on a block of [`crate::hand::impact::RIGID_G_PER_COUNT`]; `second` is the weight of the second
 /// hand, 0 to 1.
 pub fn run_on_g(met: MetThreshold, second: f64) -> f64 {
     let MetThreshold {

@@ -1,4 +1,4 @@
-//! Simulated hands on a CAN bus (manual 2.3), on a wire of Linux's 16-byte frames. Opens no interface.
+//! Simulated hands on a CAN bus (manual 2.3), over a wire of Linux's 16-byte frames. Opens no interface.
 
 use crate::codec::can::{
     CanFrame, CanFunction, CanId, CanRecord, PIECE_MAX, RECORD_LEN, frame, from_record, to_record,
@@ -13,16 +13,16 @@ use std::io;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::time::sleep;
 
-/// The data byte of the reply to a write.
-// Manual: 2.3.2 gives its length, 1, and not its content. One record of a sister hand shows 8 after a write of 8 bytes.
+/// Data byte of the reply to a write.
+// Manual: 2.3.2 gives its length, 1, but not its content. One record of a sister hand shows 8 after a write of 8 bytes.
 const ACK: u8 = 1;
-/// What a hand that says no to a write might put there instead.
+/// Data byte that a hand might send instead to refuse a write.
 const NAK: u8 = 0;
 
-/// Answers on `wire` until it ends. Silent for other ids, other kinds of frames and runs that the hand refuses.
+/// Answers on `wire` until it ends. Ignores other ids, other kinds of frames and ranges that the hand refuses.
 ///
 /// # Errors
-/// How the wire ended; `UnexpectedEof` if the other side hung up.
+/// The error that ended the wire; `UnexpectedEof` if the other side closed it.
 pub async fn serve(hands: impl Into<SimHands>, mut wire: impl Wire) -> io::Result<()> {
     let hands = hands.into();
     let mut record = [0; RECORD_LEN];
@@ -40,7 +40,7 @@ pub async fn serve(hands: impl Into<SimHands>, mut wire: impl Wire) -> io::Resul
     }
 }
 
-/// What one hand says to a frame, after its turnaround: nothing, or the same once or twice.
+/// Replies of one hand to a frame, after its turnaround: none, or one reply once or twice.
 pub(crate) async fn answer(hand: &SharedHand, asked: &CanFrame) -> ArrayVec<CanFrame, 2> {
     let Some(reply) = reply(hand, asked) else {
         return ArrayVec::new();
@@ -72,7 +72,7 @@ fn reply(hand: &SharedHand, asked: &CanFrame) -> Option<CanFrame> {
                 frame(way, id, address, &bytes)
             }
             (CanFunction::Write, bytes @ [_, ..]) => {
-                // The late frames that tell how a SAVE or a calibration ended are the serial line's.
+                // Late frames with the result of a SAVE or a calibration exist on the serial line only.
                 let effect = match hand.write_quietly(address, bytes, now) {
                     Ok(effect) => effect,
                     Err(AccessError::ReadOnly { .. }) => return frame(way, id, address, &[NAK]),

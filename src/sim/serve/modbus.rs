@@ -1,4 +1,4 @@
-//! The simulated hand's memory as Modbus sees it, over a socket or a serial line (manual 2.4, 2.5). Frames nothing.
+//! Modbus access to the simulated hand's memory, over a socket or a serial line (manual 2.4, 2.5). No framing.
 
 use crate::hand::Span;
 use crate::hand::register::{ERROR, Element, STATUS, TEMP, by_address};
@@ -11,15 +11,15 @@ use std::ops::RangeInclusive;
 const READ_WORDS_MAX: u16 = 125;
 /// Most words of one write (manual 2.5, function 16).
 const WRITE_WORDS_MAX: usize = 0x7B;
-/// The network address, one byte a field (manual 2.6).
+/// The network address, one byte per field (manual 2.6).
 const ADDRESS: RangeInclusive<u16> = 1700..=1703;
-/// Marks a reply that is an exception.
+/// Function code bit that marks an exception.
 const EXCEPTION: u8 = 0x80;
 const ILLEGAL_FUNCTION: u8 = 1;
 const ILLEGAL_ADDRESS: u8 = 2;
 const ILLEGAL_VALUE: u8 = 3;
 
-/// Why a request has no good reply.
+/// Reason for a missing or negative reply.
 enum No {
     Exception(u8),
     Silence,
@@ -39,7 +39,7 @@ impl From<AccessError> for No {
     }
 }
 
-/// What one hand says to a request, function code and data, at its time now; `None` where it is silent.
+/// Reply of one hand to a request (function code and data) at its current time; `None` if it does not answer.
 pub(crate) fn answer(hand: &SharedHand, request: &[u8]) -> Option<Vec<u8>> {
     let personality = hand.with(|hand, _| *hand.personality());
     let unit = Unit { hand, personality };
@@ -62,7 +62,7 @@ pub(crate) fn answer(hand: &SharedHand, request: &[u8]) -> Option<Vec<u8>> {
     }
 }
 
-/// One hand while it answers one request.
+/// One hand while answering one request.
 struct Unit<'a> {
     hand: &'a SharedHand,
     personality: Personality,
@@ -128,15 +128,15 @@ impl Unit<'_> {
         })
     }
 
-    /// The memory bytes that written words mean; `None` for a word that is no byte where one is wanted.
+    /// Memory bytes of written words; `None` for a word that is not a byte where one is required.
     fn memory_of(&self, address: u16, data: &[u8]) -> Option<Vec<u8>> {
-        // Manual: 1000 to 1009 are single bytes side by side, and so are 1700 to 1703; one word there is one of them.
+        // Manual: 1000 to 1009 are adjacent single bytes, and so are 1700 to 1703; a word there is one of them.
         let single = (1000..=1009).contains(&address);
         match (data, self.personality.byte_words) {
-            // The byte meant for this register lands in its neighbour.
+            // The byte for this register lands in its neighbour.
             (_, ByteWords::HighFirst) => {}
             ([high, low], _) if single => return (*high == 0).then(|| vec![*low]),
-            // Two fields of the address in one word are two.
+            // One word addresses one field; two fields need two words.
             ([0, low], _) if ADDRESS.contains(&address) => return Some(vec![*low]),
             _ => {}
         }
@@ -149,7 +149,7 @@ impl Unit<'_> {
         )
     }
 
-    /// Memory order from and to the order on the wire, where the high byte of a word comes first.
+    /// Converts between memory order and wire order, where the high byte of a word comes first.
     fn swapped(&self, at: u16, [first, second]: [u8; 2]) -> [u8; 2] {
         let is_byte = by_address(at).is_some_and(|row| row.element == Element::Byte);
         if is_byte && self.personality.byte_words == ByteWords::HighFirst {
@@ -164,7 +164,7 @@ impl Unit<'_> {
             && [ERROR.address, STATUS.address, TEMP.address].contains(&address)
     }
 
-    /// Where a request inside a group leads.
+    /// Address to which a request inside a group leads.
     fn inner(&self, address: u16) -> Result<u16, No> {
         let Some(row) = by_address(address).filter(|row| row.address != address) else {
             return Ok(address);

@@ -1,4 +1,4 @@
-//! Simulated hands as a Modbus RTU server (manual 2.4). Opens no port: it is given a wire.
+//! Simulated hands as a Modbus RTU server (manual 2.4). Opens no port: the wire is passed in.
 
 use crate::codec::modbus_rtu::crc16;
 use crate::sim::personality::RtuReplyGap;
@@ -11,20 +11,20 @@ use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::time::sleep;
 
-/// Bytes taken at once, and kept while a request is not whole: the longest frame, twice.
+/// Read size, and capacity for an incomplete request: twice the longest frame.
 const CHUNK: usize = 512;
-/// Silence after which an unfinished request is given up: far longer than any gap inside one.
+/// Silence after which an unfinished request is dropped: far longer than any gap inside one.
 const SILENCE: Duration = Duration::from_millis(50);
-/// Silence behind noise after which a request is looked for again: shorter than any client's patience.
+/// Silence after noise before the server searches for a request again: shorter than any client's timeout.
 const SILENCE_AFTER_NOISE: Duration = Duration::from_millis(10);
-/// The pause inside a reply of a hand that makes one: longer than the 1.5 characters that are allowed.
+/// Pause inside a split reply: longer than the 1.5 characters that are allowed.
 const PAUSE: Duration = Duration::from_millis(2);
-/// Requests of functions 03 and 06: unit, function, two words, check.
+/// Length of requests with functions 03 and 06: unit, function, two words, check.
 const SHORT_LEN: usize = 8;
-/// Of function 16 around its data: unit, function, two words, length, check.
+/// Length of a function 16 request without its data: unit, function, two words, length, check.
 const LONG_FRAMING: usize = 9;
 
-/// Answers on `wire` until the other side hangs up. Silent for other ids and bad frames.
+/// Answers on `wire` until the other side hangs up. Ignores other ids and bad frames.
 pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
     let mut line = RtuServer {
         hands: hands.into(),
@@ -32,7 +32,7 @@ pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
         held: ArrayVec::new(),
         is_noisy: false,
     };
-    // The end of the wire is the only end there is, and the only error.
+    // The only error is the end of the wire, which ends the server.
     let _hung_up = line.run().await;
 }
 
@@ -40,7 +40,7 @@ struct RtuServer<W> {
     hands: SimHands,
     wire: W,
     held: ArrayVec<u8, CHUNK>,
-    /// What comes is not listened to until the line is silent.
+    /// Input is discarded until the line is silent.
     is_noisy: bool,
 }
 
@@ -81,7 +81,7 @@ impl<W: Wire> RtuServer<W> {
         Ok(())
     }
 
-    /// `frame` is a request without its check.
+    /// Answers `frame`, a request without its check.
     async fn answer(&mut self, frame: &[u8]) -> io::Result<()> {
         let Some((unit, request)) = frame.split_first() else {
             return Ok(());
@@ -116,24 +116,24 @@ impl<W: Wire> RtuServer<W> {
     }
 }
 
-/// What stands at the front of the bytes since the last request or the last silence.
+/// Content at the front of the bytes received since the last request or silence.
 enum Front {
-    /// A whole request, without its check, and its length with it.
+    /// A complete request without its check, and the length including the check.
     Request(Vec<u8>, usize),
-    /// A request that is not whole yet, or nothing.
+    /// An incomplete request, or nothing.
     Open,
-    /// No request.
+    /// Not a request.
     Noise,
 }
 
-/// A request begins behind another one or behind a silence, nowhere else: the data of a longer one that was cut may look
-/// like one too.
+/// Classifies the buffered bytes. A request begins after another one or after a silence, nowhere else: the data of a longer,
+/// truncated one may look like a request, too.
 fn front(held: &[u8]) -> Front {
     let len = match held {
         [] | [_] => return Front::Open,
         [_, 16, _, _, _, _, count, ..] => LONG_FRAMING + usize::from(*count),
         [_, 16, ..] => return Front::Open,
-        // Other functions have requests of their own; those without data are told that they are not known.
+        // Other functions have their own formats; those without data get the exception for an unknown function.
         [_, 1..=0x7F, ..] => SHORT_LEN,
         _ => return Front::Noise,
     };

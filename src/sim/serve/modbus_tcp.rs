@@ -1,4 +1,4 @@
-//! Simulated hands as a Modbus TCP server (manual 2.5). Binds nothing: it is given a listener, or a connection.
+//! Simulated hands as a Modbus TCP server (manual 2.5). Binds nothing: the listener or the connection is passed in.
 
 use crate::codec::mbap::{Adu, MbapSplitter};
 use crate::sim::personality::{ReplyUnit, TcpClients};
@@ -11,19 +11,19 @@ use tokio::net::TcpListener;
 use tokio::task::JoinSet;
 use tokio::time::sleep;
 
-/// Clients at one time. A hand was seen to take two; more lets tests and viewers look on.
+/// Concurrent clients. A real hand was seen to accept two; more lets tests and viewers connect as well.
 pub const CLIENTS_MAX: usize = 16;
-/// Bytes taken at once: the longest request.
+/// Read size: the longest request.
 const CHUNK: usize = 260;
-/// What a gateway says whose target is silent.
+/// Exception code of a gateway whose target does not answer.
 const TARGET_SILENT: u8 = 11;
 
-/// Answers every client of `listener` until the future is dropped, which closes all connections too. One hand answers
-/// to every unit id; of several, 255 and 0 mean the first, other units the hand of that id, and a unit that no hand
-/// has gets the exception of a gateway whose target is silent.
+/// Answers every client of `listener` until the future is dropped, which also closes all connections. A single hand answers
+/// to every unit id; of several, 255 and 0 mean the first, other units the hand with that id, and a unit without a
+/// hand gets the exception of a gateway whose target does not answer.
 ///
 /// # Errors
-/// The listener's own failures.
+/// Errors of the listener itself.
 pub async fn serve(hands: impl Into<SimHands>, listener: TcpListener) -> io::Result<()> {
     let hands = hands.into();
     let mut clients = JoinSet::new();
@@ -49,9 +49,9 @@ pub async fn serve(hands: impl Into<SimHands>, listener: TcpListener) -> io::Res
     }
 }
 
-/// Answers one client until it hangs up or talks nonsense.
+/// Answers one client until it hangs up or sends an invalid header.
 pub async fn serve_client(hands: impl Into<SimHands>, wire: impl Wire) {
-    // A client's broken connection ends with that client; the others go on.
+    // A client's broken connection ends only that client.
     let _broken = answer_all(hands.into(), wire).await;
 }
 

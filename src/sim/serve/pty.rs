@@ -1,4 +1,4 @@
-//! Simulated hands behind a pseudo-terminal, where other programs open it like a serial port. Unix only.
+//! Simulated hands behind a pseudo-terminal, which other programs open like a serial port. Unix only.
 
 use crate::sim::serve::hands::SimHands;
 use crate::sim::serve::modbus_rtu;
@@ -10,11 +10,11 @@ use std::future::Future;
 use std::path::Path;
 use std::time::Duration;
 
-/// Makes the link at `path` at once, and answers there while the returned future lives. Clients may come and go;
-/// dropping the future removes the link. With a pace it takes the time of a line, else none.
+/// Creates the link at `path` at once, and answers there while the returned future lives. Clients may come and go;
+/// dropping the future removes the link. With a pace it simulates the timing of a line.
 ///
 /// # Errors
-/// As [`PtyLink::create`]: something that is no link stands there, no permission, no such folder. Must be called
+/// As for [`PtyLink::create`]: the path exists and is not a link, no permission, no such folder. Must be called
 /// within a tokio runtime.
 pub fn serve_rs485(
     hands: impl Into<SimHands> + Send + 'static,
@@ -30,10 +30,10 @@ pub fn serve_rs485(
     })
 }
 
-/// As [`serve_rs485`], in Modbus RTU.
+/// Like [`serve_rs485`], in Modbus RTU.
 ///
 /// # Errors
-/// As [`serve_rs485`].
+/// As for [`serve_rs485`].
 pub fn serve_rtu(
     hands: impl Into<SimHands> + Send + 'static,
     path: &Path,
@@ -48,7 +48,7 @@ pub fn serve_rtu(
     })
 }
 
-/// A line that speaks one speed, if it is given, and else any.
+/// Creates a line that accepts one speed if a pace is given, else any.
 fn line(path: &Path, pace: Option<LinePace>) -> Result<PtyLink, TransportError> {
     let link = PtyLink::create(path)?;
     Ok(match pace {
@@ -57,18 +57,18 @@ fn line(path: &Path, pace: Option<LinePace>) -> Result<PtyLink, TransportError> 
     })
 }
 
-/// From a request on the bus to the reply. The manual names no time for CAN; it is short of what was seen on RS485.
+/// Time from a request on the bus to the reply. The manual names no time for CAN; it is shorter than observed on RS485.
 const ON_BUS: Duration = Duration::from_micros(300);
-/// A CAN adapter on USB: the bytes that stand for a frame take no less than its bits on a bus of 1 Mbit/s (manual 2.3).
+/// Pace of a CAN adapter on USB: its bytes take no less than the frame's bits on a bus of 1 Mbit/s (manual 2.3).
 const ADAPTER: LinePace = LinePace {
     baud: 1_000_000,
     turnaround: ON_BUS,
 };
 
-/// As [`serve_rs485`], with the hand behind a serial CAN adapter, in the time that adapter, bus and hand take.
+/// Like [`serve_rs485`], with the hand behind a serial CAN adapter, with the timing of adapter, bus and hand.
 ///
 /// # Errors
-/// As [`serve_rs485`].
+/// As for [`serve_rs485`].
 pub fn serve_slcan(
     hands: impl Into<SimHands> + Send + 'static,
     path: &Path,
@@ -78,10 +78,10 @@ pub fn serve_slcan(
     Ok(paced(link, ADAPTER, |wire| slcan::serve(hands, wire)))
 }
 
-/// As [`serve_slcan`], with the maker's own adapter.
+/// Like [`serve_slcan`], with the maker's own adapter.
 ///
 /// # Errors
-/// As [`serve_rs485`].
+/// As for [`serve_rs485`].
 pub fn serve_usbcan(
     hands: impl Into<SimHands> + Send + 'static,
     path: &Path,

@@ -1,4 +1,4 @@
-//! Simulated hands on a serial wire, private framing (manual 2.2). Opens no port.
+//! Simulated hands on a serial wire with private framing (manual 2.2). Opens no port.
 
 use crate::codec::rs485::{
     READ_LEN_MAX, RequestDecoder, Rs485Frame, Rs485Request, encode_calibration_end,
@@ -16,24 +16,24 @@ use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::time::{Instant, sleep, sleep_until};
 
-/// The value in an acknowledgement (manual 2.2.2).
+/// Value in an acknowledgement (manual 2.2.2).
 const ACK: u8 = 1;
-/// What a hand that says no to a write might put there instead.
-// Manual: it has no such answer.
+/// Value that a hand might send instead to refuse a write.
+// Manual: there is no negative acknowledgement.
 const NAK: u8 = 0;
-/// Bytes taken at once: more than the longest request.
+/// Read size: more than the longest request.
 const CHUNK: usize = 512;
-/// Silence after which an unfinished request is given up: far longer than any gap between two bytes of one.
+/// Silence after which an unfinished request is dropped: far longer than any gap between two bytes of one.
 const SILENCE: Duration = Duration::from_millis(50);
 
-/// Answers on `wire` until the other side hangs up. Silent for other ids, bad frames and runs it refuses.
+/// Answers on `wire` until the other side hangs up. Ignores other ids, bad frames and ranges that the hand refuses.
 pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
     let mut line = Rs485Server {
         hands: hands.into(),
         wire,
         decoder: RequestDecoder::default(),
     };
-    // The end of the wire is the only end there is, and the only error.
+    // The only error is the end of the wire, which ends the server.
     let _hung_up = line.run().await;
 }
 
@@ -152,7 +152,7 @@ fn answer(hand: &SharedHand, request: &Rs485Request) -> Option<Rs485Frame> {
 }
 
 /// True if a frame to this id is for this hand.
-// Manual: 2.6.1 gives hands 1 to 254, and says nothing of who answers to 0 and 255, nor with which id.
+// Manual: 2.6.1 allows ids 1 to 254, and does not define replies to 0 and 255.
 fn is_meant(hand: &SimHand, id: u8) -> bool {
     let any = matches!(id, 0 | 255) && hand.personality().any_id == AnyId::Answered;
     any || id == hand.id()

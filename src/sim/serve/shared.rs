@@ -5,7 +5,7 @@ use crate::sim::hand::SimHand;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::time::Instant;
 
-/// A hand that several servers answer for. Locks last for one call.
+/// A hand shared by several servers. Each lock lasts for one call.
 #[derive(Debug, Clone)]
 pub struct SharedHand {
     hand: Arc<Mutex<SimHand>>,
@@ -13,12 +13,12 @@ pub struct SharedHand {
 }
 
 impl SharedHand {
-    /// True while there is another handle to the same hand.
+    /// True while another handle to the same hand exists.
     pub fn is_shared(&self) -> bool {
         Arc::strong_count(&self.hand) > 1
     }
 
-    /// Switches the hand's clock on at `epoch`, the instant of [`Moment::ZERO`].
+    /// Shares a hand whose clock starts at `epoch`, the instant of [`Moment::ZERO`].
     pub fn new(hand: SimHand, epoch: Instant) -> Self {
         Self {
             hand: Arc::new(Mutex::new(hand)),
@@ -26,19 +26,19 @@ impl SharedHand {
         }
     }
 
-    /// The hand's time now.
+    /// Current time of the hand.
     pub fn now(&self) -> Moment {
         Moment::from_duration(self.epoch.elapsed())
     }
 
-    /// The instant of a moment, never before it.
+    /// Converts a moment to an instant, never earlier than the moment.
     pub fn instant(&self, moment: Moment) -> Instant {
         self.epoch + moment.since(Moment::ZERO)
     }
 
-    /// Does something with the hand, at its time now.
+    /// Calls `act` with the hand, at its current time.
     pub fn with<T>(&self, act: impl FnOnce(&mut SimHand, Moment) -> T) -> T {
-        // A hand whose user panicked still is a whole hand: each call leaves it so.
+        // A panic in another caller leaves the hand consistent: each call completes its own changes.
         let mut hand = self.hand.lock().unwrap_or_else(PoisonError::into_inner);
         act(&mut hand, self.now())
     }

@@ -1,4 +1,4 @@
-//! Simulated hands behind a serial CAN adapter, adapter included (Lawicel's text). Opens no port.
+//! Simulated hands behind a simulated serial CAN adapter (Lawicel protocol). Opens no port.
 
 use crate::codec::can::CanFrame;
 use crate::codec::slcan::{BITRATES, CommandDecoder, SlcanAnswer, SlcanCommand, encode_answer};
@@ -8,20 +8,20 @@ use crate::transport::Wire;
 use std::io;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 
-/// Bytes taken at once: many commands.
+/// Read size: many commands.
 const CHUNK: usize = 512;
-/// The bit rate of a hand as delivered (manual 2.3) …
+/// Factory bit rate of a hand (manual 2.3) …
 const HAND_BITRATE: u32 = 1_000_000;
-/// … and the timing registers that stand for it, as the adapters' manual has them.
+/// … and the matching timing registers, from the adapters' manual.
 const HAND_TIMING: u16 = 0x0014;
-/// Bytes that send a frame of 11 bits are acknowledged with.
+/// Acknowledgement of a sent frame with an 11-bit id.
 const SENT_SHORT: &[u8] = b"z\r";
-/// What the adapter says of itself, as the known ones do.
+/// Adapter identification, as from known adapters.
 const VERSION: &[u8] = b"V1013\r";
 const SERIAL: &[u8] = b"NSIM1\r";
 const FLAGS: &[u8] = b"F00\r";
 
-/// Answers on `wire` until the other side hangs up. At another bit rate than the hand's nobody is on the bus.
+/// Answers on `wire` until the other side hangs up. At any bit rate other than the hand's the bus is empty.
 pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
     let mut adapter = SlcanServer {
         hands: hands.into(),
@@ -29,11 +29,11 @@ pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
         mode: Mode::Closed,
         bitrate: Some(HAND_BITRATE),
     };
-    // The end of the wire is the only end there is, and the only error.
+    // The only error is the end of the wire, which ends the server.
     let _hung_up = adapter.run().await;
 }
 
-/// What part the adapter takes in the bus.
+/// Mode of the adapter on the bus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mode {
     Closed,
@@ -45,7 +45,7 @@ struct SlcanServer<W> {
     hands: SimHands,
     wire: W,
     mode: Mode,
-    /// None if it was set by timing registers that are not the hand's.
+    /// `None` if it was set by timing registers that are not the hand's.
     bitrate: Option<u32>,
 }
 
@@ -94,7 +94,7 @@ impl<W: Wire> SlcanServer<W> {
             SlcanCommand::Other(b'N') => return self.wire.write_all(SERIAL).await,
             SlcanCommand::Other(b'F') => return self.wire.write_all(FLAGS).await,
             SlcanCommand::Other(_) => {}
-            // No hand knows such frames (manual 2.3): they go out, and nobody answers.
+            // Hands do not know such frames (manual 2.3): they are sent and remain unanswered.
             SlcanCommand::SendOther(b'R') => return self.say(&SlcanAnswer::Sent).await,
             SlcanCommand::SendOther(_) => return self.wire.write_all(SENT_SHORT).await,
             SlcanCommand::Send(frame) => {

@@ -1,4 +1,4 @@
-//! Simulated hands behind the maker's own USB-CAN adapter, adapter included. Opens no port.
+//! Simulated hands behind a simulated USB-CAN adapter of the hand's maker. Opens no port.
 
 use crate::codec::usbcan::{PacketContent, PacketDecoder, encode};
 use crate::sim::serve::can;
@@ -7,13 +7,13 @@ use crate::transport::Wire;
 use std::io;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 
-/// Bytes taken at once: many packets.
+/// Read size: many packets.
 const CHUNK: usize = 512;
 
-/// Answers on `wire` until the other side hangs up. Packets of other kinds, the adapter's settings among them, get no
-/// answer: what the maker's adapter says to those is not known.
+/// Answers on `wire` until the other side hangs up. Packets of other kinds, including adapter settings, are not
+/// answered: the reply of the maker's adapter is not known.
 pub async fn serve(hands: impl Into<SimHands>, wire: impl Wire) {
-    // The end of the wire is the only end there is, and the only error.
+    // The only error is the end of the wire, which ends the server.
     let _hung_up = answer_all(&hands.into(), wire).await;
 }
 
