@@ -1,4 +1,4 @@
-//! Everything the user can ask for, as one closed list. Says nothing about how it is done.
+//! All user actions, as one closed list, independent of how they are carried out.
 
 use crate::app::checkup::CheckupAction;
 use crate::app::exhibit::ExhibitAction;
@@ -28,149 +28,148 @@ use crate::poses::{Play, Preset};
 use crate::transport::Endpoint;
 use std::path::PathBuf;
 
-/// One thing the user asked for. Returned by the views, carried out by `App::act`.
+/// A user action. Returned by the views, carried out by `App::act`.
 #[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum Action {
     /// Hold every hand now, from anywhere, armed or not.
     Stop,
-    /// Let setpoints pass.
+    /// Arm the hand: setpoints are sent from now on.
     Arm,
-    /// Let none pass any more; the hand keeps what it was told.
+    /// Disarm the hand: no further setpoints are sent; the hand keeps the last ones.
     Disarm,
-    /// Let the hand move only while the key for it is held, or whenever it is armed.
+    /// Allow motion only while the hold-to-run key is pressed (true), or whenever armed.
     HoldToRun(bool),
-    /// What is done with the key for it.
+    /// State of the hold-to-run key.
     HoldKey(HoldKey),
-    /// Disarm hands that are asked nothing for some minutes, or not.
+    /// Disarm hands that receive no commands for some minutes, or not.
     DisarmIdle(bool),
-    /// Where a joint should go. Ignored unless armed and the joint is not locked.
+    /// Set the target angle of a joint. Ignored unless armed and the joint is not locked.
     Target(Dof, Angle),
-    /// Force threshold of one joint or of all: sent when armed, kept for arming otherwise.
+    /// Force threshold of one joint (`None` = all): sent when armed, else stored for arming.
     Force(Option<Dof>, Force),
-    /// Speed of one joint or of all: sent when armed, kept for arming otherwise.
+    /// Speed of one joint (`None` = all): sent when armed, else stored for arming.
     Speed(Option<Dof>, Speed),
-    /// Leave a joint alone, or not.
+    /// Lock or unlock a joint.
     Lock(Dof, bool),
-    /// All joints that are not locked towards open or bent, at the speeds that are set. Needs arming.
+    /// Open or bend all joints that are not locked, at the speeds that are set. Needs arming.
     Preset(Preset),
-    /// Close or open thumb and index to this gap; where they could meet on the way, open them for it and no more. Needs arming.
+    /// Move thumb and index to this gap; if they could collide on the way, open them first, only as far as needed. Needs
+    /// arming.
     Pinch(Gap),
-    /// What thumb and index hold now is a block of this size, mm: keep it, to correct the sizes that are told of this hand.
+    /// Measure the block of this size in mm between thumb and index, to correct the sizes shown for this hand.
     MeasureBlock(f32),
     /// Forget the blocks that were measured with this hand.
     ForgetBlocks,
-    /// Take a stored pose. Needs arming.
+    /// Start a gesture stored in the hand. Needs arming.
     Gesture(Gesture),
-    /// Keep the pose that the hand has now, by this name or the next free one.
+    /// Store the current pose of the hand, by this name or the next unused one.
     Capture(String),
-    /// Put the pose that the hand has now in the place of this one.
+    /// Replace this pose by the current pose of the hand.
     Recapture(PoseId),
     /// Change poses or sequences. Sends nothing.
     Library(LibraryEdit),
-    /// Take a pose of the library, within its speed and force. Needs arming.
+    /// Move to a pose of the library, within its speed and force. Needs arming.
     Recall(PoseId),
-    /// Run a sequence, pause it, end it.
+    /// Start, step, pause or end a sequence.
     Play(Play),
-    /// Show what is shipped by this name no more, or show it again. Sends nothing.
+    /// Hide a shipped entry by name (true), or show it again. Sends nothing.
     HideShipped(String, bool),
-    /// Show a sequence on the drawn hand, or none any more; nothing is sent.
+    /// Show a sequence on the drawn hand, or end that. Sends nothing.
     DryRun(Option<SequenceId>),
-    /// What is asked about recordings.
+    /// An action on recordings.
     Recording(RecordingAction),
-    /// What the user does at an exhibition, or to begin one.
+    /// An action at an exhibition, or to start one.
     Exhibit(ExhibitAction),
-    /// What is asked of inputs and of the gateway.
+    /// An action on inputs or the gateway.
     Input(InputAction),
-    /// What is asked about grasp trials.
+    /// An action on grasp trials.
     Trial(TrialAction),
-    /// What is asked about check-ups.
+    /// An action on check-ups.
     Checkup(CheckupAction),
-    /// Add what a file of poses holds: one at a place that was typed, else one that is asked for.
+    /// Import a pose file at the typed path, else ask the user for one.
     ImportPoses(Option<PathBuf>),
-    /// Ask where the poses should go, and write them.
+    /// Ask for a path, and export the poses.
     ExportPoses,
-    /// Give a gesture a name; empty takes it away.
+    /// Name a gesture; an empty name removes it.
     NameGesture(Gesture, String),
-    /// How gestures are started.
+    /// Set how gestures are started.
     GestureRoute(GestureRoute),
-    /// Clear what can be cleared; the pose is held first.
+    /// Clear the errors that can be cleared; the pose is held first.
     ClearErrors,
-    /// Change what the hand is found by: its id, serial speed or IP address. Asks first, under a card.
+    /// Change an address row of the hand: its ID, serial speed or IP address. Asks first, on a card.
     ChangePlace(ParamId, Value),
-    /// Return to the factory's parameters. Asks first, under a card.
+    /// Reset to factory parameters. Asks first, on a card.
     FactoryReset,
-    /// Calibrate the force sensors. Checks first, under a card.
+    /// Calibrate the force sensors. Checks the preconditions first, on a card.
     CalibrateForce,
-    /// What the user decides on such a card.
+    /// A decision on such a card.
     Procedure(ProcedureAction),
-    /// Talk to this hand from now on.
+    /// Connect to this hand.
     Connect(Endpoint),
-    /// Talk to no hand.
+    /// Disconnect from the hand.
     Disconnect,
-    /// What is done with the list of hands.
+    /// An action on the list of hands.
     Hands(HandsAction),
-    /// Look for serial ports again.
+    /// Search for serial ports again.
     FindPorts,
-    /// Look for hands. Reads only.
+    /// Scan for hands. Reads only.
     Scan(ScanTarget),
-    /// Look no further; what was found stays.
+    /// Cancel the scan; the hands found so far stay listed.
     CancelScan,
-    /// Listen for hands that other Handscopes share, at this network interface, or no more.
+    /// Listen on this network interface for hands shared by other Handscopes; `None` ends that.
     FindShared(Option<String>),
-    /// This fault was seen by the user.
+    /// Mark this fault as seen.
     SeenFault(Dof, FaultKind),
-    /// All faults were seen by the user.
+    /// Mark all faults as seen.
     SeenFaults,
-    /// Ask where a file should go, and write it.
+    /// Ask for a path, and write the export there.
     Save(Export),
-    /// Make a picture of the plots in this size (width, height in points), and save it. Carried out by the shell, as
-    /// the program itself draws nothing.
+    /// Save a picture of the plots in this size (width, height in points). Carried out by the shell, as the program
+    /// itself draws nothing.
     SavePicture((u32, u32)),
-    /// Do not close the window after all.
+    /// Keep the window open after all.
     Stay,
-    /// Close the window, whatever is lost.
+    /// Close the window despite unsaved changes.
     Leave,
-    /// A notice was read.
+    /// Dismiss a notice.
     Dismiss(u64),
-    /// Dark or light.
     Theme(Theme),
-    /// Draw the right hand or the left one.
+    /// Set the side of the hand that is drawn.
     Side(Side),
-    /// English or Chinese.
     Language(Language),
-    /// Divide the window like this.
+    /// Set the layout of the window.
     Layout(Layout),
-    /// Draw everything so much larger than designed.
+    /// Set the zoom factor.
     Zoom(Zoom),
-    /// Read this first while something moves.
+    /// Set the group that is polled first during motion.
     ReadFirst(PollPriority),
-    /// How angles are written and typed.
+    /// Set the unit in which angles are shown and entered.
     AngleUnit(AngleUnit),
-    /// Seconds that the plots show.
+    /// Set the time span of the plots.
     PlotWindow(PlotWindow),
-    /// Show a plot or hide it; the last one stays.
+    /// Show or hide a plot; the last one stays.
     ShowPlot(PlotKind, bool),
-    /// Draw a plot tall; the one that was grown before the last becomes a sparkline.
+    /// Enlarge a plot; of the two enlarged before, the older becomes a sparkline.
     GrowPlot(PlotKind),
-    /// Put a note of these words into the history at a moment; of no words, none.
+    /// Add a note to the history at a moment; an empty text adds none.
     Note(Moment, String),
-    /// Take a note out of the history again.
+    /// Remove a note from the history.
     RemoveMark(Mark),
-    /// Count the channels of these fingertips from now: one, or all.
+    /// Tare one fingertip, or all.
     Tare(Option<Finger>),
-    /// What a kept row is to hold once it is applied, or nothing any more. Writes nothing.
+    /// Stage a value for a persistent row, or unstage it. Writes nothing.
     Stage(ParamId, Option<Value>),
-    /// Read, write and save what the hand keeps.
+    /// Read, write and save the hand's persistent parameters.
     Param(ParamAction),
-    /// Take the last taring back.
+    /// Undo the last tare.
     UndoTare,
-    /// Count the fingertips from the taring that was kept of this hand.
+    /// Apply the stored tare of this hand.
     TakeKeptTare,
 }
 
 impl Action {
-    /// What this does to the hand, for the record of what happened; `None` if it does nothing to it. Arming, stopping,
-    /// gestures and notes are in the history already.
+    /// The action as an event for the fault recorder; `None` if it does not affect the hand. Arming, stopping, gestures
+    /// and notes are in the history already.
     pub fn person_act(&self, is_armed: bool, poses: &PoseState) -> Option<PersonAct> {
         let act = match self {
             Self::Disarm => return Some(PersonAct::Disarm),
@@ -241,7 +240,7 @@ impl Action {
             | Self::UndoTare
             | Self::TakeKeptTare => return None,
         };
-        // The rest passes only while armed.
+        // The other actions have an effect only while armed.
         is_armed.then_some(act)
     }
 }

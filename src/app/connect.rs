@@ -1,4 +1,4 @@
-//! The built-in hand behind its wire, beside all other wires. The only place that knows that it is built in.
+//! Dialling of built-in hands and all other wires. Only this module knows which hands are built in.
 
 use crate::link::Clock;
 use crate::sim::body_params::file;
@@ -11,7 +11,7 @@ use futures::future::BoxFuture;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// One built-in hand: it lives on between connections, as a real one does.
+/// A built-in hand. Like a real one, it keeps its state between connections.
 struct Built {
     seed: u64,
     scenario: Scenario,
@@ -19,23 +19,23 @@ struct Built {
     hand: SharedHand,
 }
 
-/// The built-in hands that live, and the clock they live by.
+/// The existing built-in hands and their clock.
 #[derive(Clone)]
 struct BuiltHands {
     clock: Clock,
     all: Arc<Mutex<Vec<Built>>>,
 }
 
-/// Dials everything: `sim:` to a built-in hand for each seed, scenario and body, over a wire in memory, anything else to the system.
+/// Dials all wires: `sim:` connects in memory to a built-in hand per seed, scenario and body; all others go to the system.
 pub struct SimDial {
     system: SystemDial,
     built: BuiltHands,
-    /// The built-in hand that every RS485 line ends at, if they do.
+    /// Built-in hand at the end of every RS485 line, if set.
     at_lines: Option<Endpoint>,
 }
 
 impl SimDial {
-    /// No hand is built before it is dialled.
+    /// Creates the dialler without hands; each is created when it is first dialled.
     pub fn new(clock: Clock) -> Self {
         let all = Arc::default();
         Self {
@@ -45,7 +45,8 @@ impl SimDial {
         }
     }
 
-    /// As [`SimDial::new`], and every RS485 line ends at this built-in hand: for pictures of what only a line has.
+    /// Like [`SimDial::new`], with this built-in hand at the end of every RS485 line: for screenshots of line-specific
+    /// features.
     pub fn at_lines(clock: Clock, hand: Endpoint) -> Self {
         Self {
             at_lines: Some(hand),
@@ -55,8 +56,8 @@ impl SimDial {
 }
 
 impl BuiltHands {
-    /// The hand of this seed, scenario and body: the one of last time, or a new one that begins now. A body's file is read only
-    /// for a new one, on a thread of its own.
+    /// Returns the hand of this seed, scenario and body, creating it if needed. A body file is read only for a new hand, on a
+    /// blocking thread.
     async fn hand(&self, wanted: Wanted) -> Result<SharedHand, TransportError> {
         let scenario: Scenario =
             wanted
@@ -84,7 +85,7 @@ impl BuiltHands {
         let began = self.clock.instant(self.clock.now());
         let hand = SharedHand::new(SimHand::new(config), began);
         let mut all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
-        // One that nobody is connected to makes room.
+        // Disconnected hands make room.
         all.retain(|built| built.hand.is_shared());
         all.push(Built {
             seed: wanted.seed,
@@ -104,7 +105,7 @@ impl BuiltHands {
     }
 }
 
-/// The built-in hand that an endpoint names.
+/// Parameters of a built-in hand, as named by an endpoint.
 struct Wanted {
     seed: u64,
     scenario: String,
@@ -150,7 +151,7 @@ impl Dial for SimDial {
         Box::pin(async move {
             let hand = built.hand(wanted).await?;
             let (ours, its) = pair();
-            // Ends by itself when our end is dropped.
+            // The task ends when our end of the wire is dropped.
             tokio::spawn(rs485::serve(hand, its));
             let wire: BoxedWire = Box::new(ours);
             Ok(wire)

@@ -1,10 +1,10 @@
-//! What an act at one hand needs besides the hand.
+//! Context of an action on one hand.
 
 use crate::app::env::Env;
 use crate::app::notices::{HandNotices, NoticeKind};
 use crate::hand::Moment;
 
-/// What an act at one hand needs besides the hand: the time, what the program stands on, and where it is told what happened.
+/// Context of an action on one hand: time, environment, and the sink for notices.
 pub(crate) struct Ctx<'a> {
     pub(crate) now: Moment,
     pub(crate) env: &'a Env,
@@ -12,7 +12,7 @@ pub(crate) struct Ctx<'a> {
 }
 
 impl Ctx<'_> {
-    /// Tells the user this, about this hand.
+    /// Publishes a notice about this hand.
     pub(crate) fn tell(&mut self, what: NoticeKind) {
         self.notices.push(self.now, what);
     }

@@ -1,4 +1,4 @@
-//! What each action does to a hand or to the window, in one list without a rest; when it passes follows from that.
+//! Effect of each action on a hand or the window, as one exhaustive list; it determines when an action is permitted.
 
 use crate::app::action::Action;
 use crate::app::checkup::CheckupAction;
@@ -10,37 +10,38 @@ use crate::app::procedures::procedure::ProcedureAction;
 use crate::app::trials::state::TrialAction;
 use crate::poses::Play;
 
-/// What an action does.
+/// Effect of an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
     /// Holds every hand.
     StopsAll,
-    /// Stops or disarms a hand, or takes the right to move it away.
+    /// Stops or disarms a hand, or revokes control of it.
     Stops,
-    /// Moves a hand, or lets the user or a program move it.
+    /// Moves a hand, or permits the user or a program to move it.
     Moves,
-    /// Sets how a hand moves once something moves it, or clears its errors.
+    /// Changes the parameters of later motion, or clears errors.
     Adjusts,
-    /// Writes what a hand keeps, or lets it calibrate itself.
+    /// Writes persistent parameters, or starts a calibration.
     WritesKept,
-    /// Opens or answers a card. Nothing is sent because of it but what the card asked for before.
+    /// Opens or answers a card. Sends only what the card has asked about.
     Asks,
-    /// Looks for hands, takes or leaves one, opens or closes a way for programs, of which none may move it yet.
+    /// Scans for hands, connects or disconnects one, opens or closes an interface for programs, none of which has
+    /// control yet.
     Connects,
-    /// Changes what this program knows, keeps or shows of a live hand. Nothing is sent but reads.
+    /// Changes the program's knowledge, storage or display of a live hand. Sends only reads.
     Keeps,
-    /// Is about recordings.
+    /// Concerns recordings.
     Records,
     /// Belongs to an exhibition, which has rules of its own.
     Exhibits,
-    /// Chooses what is on the screen, or makes a file of that.
+    /// Changes the content of the screen, or exports it.
     Shows,
     /// Sets the theme or the language.
     Dresses,
 }
 
 impl Effect {
-    /// True for what is carried out while a series of trials runs. All else would come between it and the hand.
+    /// True for actions permitted while a series of trials runs. All others would interfere with its motion.
     pub const fn passes_in_series(self) -> bool {
         matches!(
             self,
@@ -56,8 +57,8 @@ impl Effect {
         )
     }
 
-    /// True for what is carried out while a recording is shown: a stop, what is done with recordings, and how the window looks. All
-    /// else is about a live hand, and is refused.
+    /// True for actions permitted while a recording is shown: a stop, operations on recordings, and the display. All others concern
+    /// a live hand and are refused.
     const fn passes_in_replay(self) -> bool {
         matches!(
             self,
@@ -65,13 +66,12 @@ impl Effect {
         )
     }
 
-    /// True for what is carried out during an exhibition: nothing on its page asks for more.
+    /// True for actions permitted during an exhibition; its page offers no others.
     pub const fn passes_in_exhibit(self) -> bool {
         matches!(self, Self::StopsAll | Self::Exhibits | Self::Dresses)
     }
 
-    /// True for what may still be carried out after a stop that was asked for in the same frame: nothing that moves a hand or
-    /// writes what it keeps.
+    /// True for actions permitted after a stop in the same frame: none that moves a hand or writes its persistent parameters.
     pub const fn passes_with_stop(self) -> bool {
         matches!(
             self,
@@ -88,12 +88,12 @@ impl Effect {
 }
 
 impl Action {
-    /// True for what can be asked for while a recording is shown: a note is one of the recording then, and a message is one of its.
+    /// True for actions permitted while a recording is shown. Notes and notices belong to the recording then.
     pub const fn passes_in_replay(&self) -> bool {
         matches!(self, Self::Note(..) | Self::Dismiss(_)) || self.effect().passes_in_replay()
     }
 
-    /// What this does.
+    /// Effect of this action.
     #[expect(clippy::too_many_lines, reason = "one list of all actions")]
     pub const fn effect(&self) -> Effect {
         match self {
@@ -156,7 +156,7 @@ impl Action {
                 | InputAction::JoinDds(_)
                 | InputAction::Mirror(_),
             ) => Effect::Connects,
-            // Still held: nothing changes by it.
+            // A repeated press changes nothing.
             Self::HoldKey(HoldKey::Held)
             | Self::DisarmIdle(_)
             | Self::Capture(_)

@@ -1,4 +1,4 @@
-//! The hands that other Handscopes share: what the window shows of them, and the listening behind it. Never connects by itself.
+//! Hands shared by other Handscopes: their display, and the listener behind it. Never connects by itself.
 
 use crate::app::env::Env;
 use crate::share::fleet::{FleetHand, FleetList};
@@ -6,23 +6,23 @@ use crate::transport::dds::{DdsError, DdsNode, DdsPlace};
 use std::net::Ipv4Addr;
 use std::sync::Arc;
 
-/// What the window shows of the fleet.
+/// State of the fleet view.
 #[derive(Debug, Default)]
 pub struct FleetState {
-    /// The hands that are there, by computer and name.
+    /// Shared hands, sorted by computer and name.
     pub hands: Vec<FleetHand>,
-    /// Why nobody listens, although the user wanted it.
+    /// Reason why listening failed.
     pub refused: Option<DdsError>,
     list: Option<FleetList>,
 }
 
 impl FleetState {
-    /// Where it is listened, if it is.
+    /// Address of the interface that is listened on, if any.
     pub fn interface(&self) -> Option<Ipv4Addr> {
         self.list.as_ref().map(FleetList::interface)
     }
 
-    /// Listens at this interface, or no more.
+    /// Listens on this interface; `None` ends listening.
     pub(crate) fn listen(&mut self, interface: Option<String>, env: &Env) {
         *self = Self::default();
         let Some(interface) = interface else { return };
@@ -39,7 +39,7 @@ impl FleetState {
         }
     }
 
-    /// Takes in who came, changed and went.
+    /// Applies fleet updates.
     pub(crate) fn drain(&mut self) {
         if let Some(list) = &mut self.list
             && let Some(hands) = list.news()

@@ -1,25 +1,25 @@
-//! Where the user put the borders between the rooms of the window, which rooms are shut, and how large the window is.
-//! Shares and flags only: what a room shows, and how small it may become, is the window's matter.
+//! Layout of the window: positions of the borders between its rooms, closed rooms, and the window size. Shares and
+//! flags only: the contents and minimum sizes of rooms are defined by the window.
 
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// The smallest window that shows everything, points.
+/// Smallest window that shows everything, in points.
 pub const WINDOW_LEAST: [f32; 2] = [1024.0, 640.0];
-/// The window as it first opens, points.
+/// Initial size of the window, in points.
 pub const WINDOW_FIRST: [f32; 2] = [1440.0, 900.0];
-/// No screen is larger, points.
+/// Maximum size of the window, larger than any screen, in points.
 const WINDOW_MOST: [f32; 2] = [7680.0, 4320.0];
-/// A border stands within these shares of what it divides.
+/// Range of a border's position, as a share of the area that it divides.
 const SHARES: std::ops::RangeInclusive<f32> = 0.05..=0.95;
 
-/// A room of the window that has a border of its own or can be shut. The room in the middle has neither.
+/// A room of the window that has a border of its own or can be closed. The room in the middle has neither.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum WindowRoom {
-    /// The column of joints; its border is at its right.
+    /// Column of joints; its border is on the right.
     Joints,
-    /// The drawn hand over its fingertips; its border is at its right.
+    /// Drawing of the hand above its fingertips; its border is on the right.
     Stage,
-    /// Poses and demos; its border is above.
+    /// Poses and demos; its border is at the top.
     Strip,
 }
 
@@ -27,7 +27,8 @@ impl WindowRoom {
     pub const ALL: [Self; 3] = [Self::Joints, Self::Stage, Self::Strip];
 }
 
-/// How large the window is: each has a layout of its own, so that a small screen leaves no mark on a large one.
+/// Size class of the window. Each has a layout of its own, so that a small screen does not affect the layout for a
+/// large one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Breakpoint {
     Small,
@@ -36,7 +37,7 @@ pub enum Breakpoint {
 }
 
 impl Breakpoint {
-    /// Of a window so wide, points.
+    /// Size class of a window of this width in points.
     pub fn of(width: f32) -> Self {
         match width {
             ..1280.0 => Self::Small,
@@ -46,22 +47,22 @@ impl Breakpoint {
     }
 }
 
-/// How one room stands.
+/// Layout of one room.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RoomLayout {
-    /// Its part of what its border divides, 0.05..=0.95; none as designed.
+    /// Share of the area that its border divides, 0.05..=0.95; `None` = default.
     #[serde(
         skip_serializing_if = "Option::is_none",
         deserialize_with = "sane_share"
     )]
     pub share: Option<f32>,
-    /// Only its name is shown.
+    /// True if collapsed to its title.
     pub shut: bool,
 }
 
 impl RoomLayout {
-    /// This part of what its border divides, cut to what makes sense.
+    /// Sets the share, clamped to the valid range; a non-finite one is dropped.
     #[must_use]
     pub fn with_share(self, share: f32) -> Self {
         let sane = share.is_finite();
@@ -77,7 +78,7 @@ fn sane_share<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f32>, D::Erro
     Ok(share.and_then(|share| RoomLayout::default().with_share(share).share))
 }
 
-/// Width and height of the window, points, within what a screen can have.
+/// Width and height of the window in points, limited to plausible values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f32; 2]", into = "[f32; 2]")]
 pub struct WindowSize([f32; 2]);
@@ -107,7 +108,7 @@ impl Default for WindowSize {
     }
 }
 
-/// How a window of one [`Breakpoint`] is divided. The default is as designed.
+/// Layout of the rooms at one [`Breakpoint`].
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RoomLayouts {
@@ -120,7 +121,6 @@ pub struct RoomLayouts {
 }
 
 impl RoomLayouts {
-    /// How a room stands.
     pub const fn room(&self, room: WindowRoom) -> RoomLayout {
         match room {
             WindowRoom::Joints => self.joints,
@@ -129,7 +129,6 @@ impl RoomLayouts {
         }
     }
 
-    /// With another standing of one room.
     #[must_use]
     pub const fn with(mut self, room: WindowRoom, standing: RoomLayout) -> Self {
         match room {
@@ -140,7 +139,7 @@ impl RoomLayouts {
         self
     }
 
-    /// With a room shut or opened.
+    /// Toggles a room between open and closed.
     #[must_use]
     pub const fn toggled(self, room: WindowRoom) -> Self {
         let standing = self.room(room);
@@ -149,11 +148,11 @@ impl RoomLayouts {
     }
 }
 
-/// The window, and how it is divided at each [`Breakpoint`].
+/// Size of the window, and the layout of its rooms at each [`Breakpoint`].
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Layout {
-    /// As large as it is while it is not maximised.
+    /// Size when not maximised.
     pub window: WindowSize,
     pub maximized: bool,
     pub small: RoomLayouts,
@@ -162,7 +161,6 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// How a window of this size is divided.
     pub const fn at(&self, breakpoint: Breakpoint) -> RoomLayouts {
         match breakpoint {
             Breakpoint::Small => self.small,
@@ -171,7 +169,6 @@ impl Layout {
         }
     }
 
-    /// With another division of windows of this size.
     #[must_use]
     pub const fn with(mut self, breakpoint: Breakpoint, rooms: RoomLayouts) -> Self {
         match breakpoint {

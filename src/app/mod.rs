@@ -1,4 +1,4 @@
-//! Everything the program knows, without drawing: state, actions, and what is done about them.
+//! The program without drawing: state, actions, and their handling.
 
 pub mod action;
 pub mod checkup;

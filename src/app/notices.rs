@@ -1,4 +1,4 @@
-//! What the user should read, as typed causes. The words, in every language, are the views'.
+//! Notices for the user, as typed causes. The views provide the texts in every language.
 
 use crate::app::readings::faults::FaultKind;
 use crate::app::slot::HandLabel;
@@ -18,251 +18,224 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Notices that ask for attention: more than the user reads. The oldest go first.
+/// Maximum number of open notices: more than the user reads. The oldest are dropped first.
 pub const NOTICES_MAX: usize = 64;
-/// Entries of the log: a trouble a minute for a working day, with as much room again. The oldest go first.
+/// Maximum number of log entries: one per minute over two working days. The oldest are dropped first.
 pub const LOG_MAX: usize = 1000;
 
-/// How much it matters.
+/// Severity of a notice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Level {
-    /// Good to know.
+    /// For information.
     Info,
-    /// Something did not go as wished.
+    /// A request or operation failed.
     Warn,
-    /// The hand may do something that nobody wants.
+    /// The hand may move unexpectedly.
     Alarm,
 }
 
-/// What was asked of the hand.
+/// Kind of a request to the hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum RequestKind {
-    /// A stored pose.
+    /// A gesture stored in the hand.
     Gesture(Gesture),
     ClearErrors,
 }
 
-/// What happened.
+/// Cause of a notice.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoticeKind {
-    /// The hand was live and is not any more.
+    /// The hand was live and is now lost.
     LinkLost(LinkTrouble),
     /// The hand could not be reached so far.
     NoLink(LinkTrouble),
     /// The hand answers again. It is not armed.
     Reconnected,
-    /// The USB adapter keeps replies back.
+    /// The USB adapter delays replies.
     LatencyTimer {
         port: String,
-        /// For how long, where the system tells; else it was seen in round trips.
+        /// Latency if the system reports it; `None` if inferred from round trips.
         ms: Option<u16>,
     },
-    /// Feedback shows that the hand rests.
+    /// Feedback confirms that the hand is at rest.
     HoldConfirmed {
-        /// From the press to rest.
+        /// Time from the press to rest.
         after: Duration,
     },
     /// Feedback does not show rest: the hand may still move.
     HoldAlarm,
     /// Stop was pressed, and there is no live link to send it over.
     StopNotSent,
-    /// A fingertip that is touched was to be tared: nothing was changed.
+    /// Taring was refused because a fingertip is touched: nothing was changed.
     TareUnderLoad {
         finger: Finger,
-        /// What presses it, in newtons.
+        /// Force on it in newtons.
         newtons: f32,
     },
-    /// The hand is not armed any more, and no user asked for it.
+    /// The hand was disarmed without a request of the user.
     Disarmed(Disarmed),
-    /// The hand is not armed any more, for another controller wrote this.
+    /// The hand was disarmed because another controller wrote this.
     DisarmedByOther(SetpointConflict),
-    /// What the hand followed fell silent; the hand was stopped.
+    /// The followed source fell silent; the hand was stopped.
     SourceSilent(Owner),
-    /// The window did not look for so long that so many steps of what goes on were left out.
+    /// The window did not read for too long, so this number of task steps was dropped.
     StepsLost(u64),
-    /// This hand was stopped or lost while another led it, and that one was stopped, too.
+    /// This hand was stopped or lost while following another, which was stopped as well.
     LeaderStopped,
-    /// An armed hand was asked nothing for so long that it was disarmed, as the settings say.
+    /// An armed hand received no commands for the configured time and was disarmed.
     IdleDisarmed,
     /// The hand cannot be armed.
     ArmRefused(ArmRefusal),
-    /// A joint is not well.
-    Fault {
-        /// The joint.
-        dof: Dof,
-        what: FaultKind,
-    },
-    /// Something was asked and did not work.
+    /// A joint has a fault.
+    Fault { dof: Dof, what: FaultKind },
+    /// A request failed.
     RequestFailed {
-        /// What was asked.
         what: RequestKind,
-        /// Why.
         error: RequestError,
     },
-    /// Something was asked and the hand acknowledged it. It does not say that it is done.
-    Acknowledged {
-        /// What was asked.
-        what: RequestKind,
-    },
+    /// The hand acknowledged a request. It does not report completion.
+    Acknowledged { what: RequestKind },
     /// A gesture moves all joints, and this one is locked. Nothing was sent.
     GestureWouldMoveLocked {
         /// The first locked joint.
         dof: Dof,
     },
-    /// Gestures are switched off. Nothing was sent.
+    /// Gestures are disabled. Nothing was sent.
     GesturesOff,
-    /// A pose cannot be kept while an angle is unknown or old.
+    /// The pose cannot be stored while an angle is unknown or stale.
     PoseUnknown,
-    /// A block was not taken to correct the sizes that are told.
+    /// A block was rejected as a correction of the sizes shown.
     BlockNotTaken(BlockError),
-    /// A file of poses was added.
+    /// A pose file was imported.
     PosesImported { poses: usize, sequences: usize },
-    /// A file that was chosen was not taken, not even in part.
+    /// A chosen file was rejected as a whole.
     FileRefused {
-        /// The file.
         path: PathBuf,
-        /// Where and why.
+        /// Location and cause.
         error: FileError,
     },
-    /// A file of this program's own could not be read; it is left as it was, under another name.
+    /// A file of this program is unreadable; it was set aside unchanged.
     FileIgnored {
-        /// The file.
         path: PathBuf,
-        /// Where and why.
+        /// Location and cause.
         error: FileError,
-        /// Where it lies now; `None` if it could not be moved.
+        /// Its new path; `None` if it could not be moved.
         kept_as: Option<PathBuf>,
     },
-    /// A sequence ended, for nothing was held in time.
+    /// A sequence ended because no object was held in time.
     NotHolding { grip: GripState },
-    /// A series of trials is over.
+    /// A series of trials has ended.
     SeriesEnded {
-        /// Trials that were measured.
+        /// Number of measured trials.
         trials: usize,
-        /// Why it ended early.
+        /// Reason for an early end.
         aborted: Option<Abort>,
     },
-    /// A check-up is over.
+    /// A check-up has ended.
     CheckupEnded {
-        /// Figures that are to be acted on, and to be watched.
+        /// Number of figures that require action, and of those to watch.
         act: usize,
         watch: usize,
-        /// Why it ended early.
+        /// Reason for an early end.
         aborted: Option<Abort>,
     },
-    /// Something else was asked of the hand while a series runs. Nothing was sent.
+    /// Another request was made while a series runs. Nothing was sent.
     SeriesRuns,
-    /// The hand was to be armed for a series, and is not, or the plan is another by now.
+    /// A series was not started: the hand is not armed, or the plan has changed since.
     SeriesNotBegun,
-    /// An exhibition needs a hand that is connected, and that nothing else is done to.
+    /// An exhibition needs a connected hand without other activity.
     ExhibitNotBegun,
-    /// An exhibition is for one hand, and several are connected.
+    /// An exhibition supports one hand only, and several are connected.
     ExhibitWantsOneHand,
     /// This hand, or the port that leads to it, is open in another slot. Nothing was connected.
     OpenElsewhere {
-        /// What was asked for.
+        /// Requested endpoint.
         endpoint: String,
-        /// What the hand that has it is called.
+        /// Name of the hand that has it open.
         hand: String,
     },
-    /// A recording could not be opened or read on.
-    RecordingRefused {
-        /// The file.
-        path: PathBuf,
-        why: OpenError,
-    },
-    /// Something happened to the file that a hand is recorded into.
+    /// A recording could not be opened, or reading it failed.
+    RecordingRefused { path: PathBuf, why: OpenError },
+    /// An event of the file that a hand is recorded into.
     Recording(RecorderNotice),
-    /// The disk does not take what is recorded, in the system's words. It is tried again.
+    /// Writing to the disk fails, with the error text of the system. It is retried.
     RecordingStalled { why: String },
-    /// A recording was to be shown while something goes on at the hand that the user must see.
+    /// A recording was not shown because a live hand needs the user's attention.
     NotReplayedNow,
-    /// Something was asked of a hand while a recording is shown. Nothing was sent.
+    /// A request to a hand was made while a recording is shown. Nothing was sent.
     Recorded,
-    /// Recordings need more room than they may: the oldest are deleted when a recording begins later.
+    /// Recordings exceed the storage budget: the oldest are deleted when a recording starts later.
     RecordingsPlanned {
-        /// How many.
+        /// Number of recordings.
         recordings: usize,
         /// Bytes that this frees.
         bytes: u64,
-        /// When the first and the last of them were recorded, as days.
+        /// Days of the first and the last of them.
         days: (String, String),
-        /// Not before this time, `2026-11-22 09:30`, UTC.
+        /// Earliest time of the deletion, `2026-11-22 09:30`, UTC.
         due: String,
     },
     RecordingsDeleted {
-        /// How many.
+        /// Number of recordings.
         recordings: usize,
     },
-    /// A recording was read.
-    RecordingOpened {
-        /// Where it lies.
-        path: PathBuf,
-        trials: usize,
-    },
-    /// No process could be started that stops the hand if this program is killed.
+    /// A saved trial session was opened.
+    RecordingOpened { path: PathBuf, trials: usize },
+    /// The guard process that stops the hand if this program is killed could not be started.
     Unguarded {
-        /// The system's words.
+        /// Error text of the system.
         why: String,
     },
-    /// OpenGL did not start, so the program draws its window by itself.
+    /// OpenGL did not start, so the program uses its software renderer.
     DrawnWithoutOpenGl {
-        /// The system's words.
+        /// Error text of the system.
         reason: String,
     },
     /// A file was written.
     Saved { path: PathBuf, entries: usize },
     /// A file could not be written.
     NotSaved { path: PathBuf, error: SystemError },
-    /// A recording could not be written in a format of others.
+    /// A recording could not be exported.
     NotExported {
-        /// The recording.
+        /// Path of the recording.
         path: PathBuf,
         error: ExportError,
     },
     /// A recording could not be deleted.
-    NotDeleted {
-        /// The file.
-        path: PathBuf,
-        error: SystemError,
-    },
-    /// A file could not be shown in the system's file manager.
-    NotRevealed {
-        /// The file.
-        path: PathBuf,
-        error: SystemError,
-    },
-    /// No place was chosen for a file: the dialog was cancelled, or this desktop has none.
+    NotDeleted { path: PathBuf, error: SystemError },
+    /// A file could not be revealed in the system's file manager.
+    NotRevealed { path: PathBuf, error: SystemError },
+    /// No file was chosen: the dialog was cancelled, or this desktop has none.
     NoFileChosen,
-    /// The hand at this address answers otherwise than the one of last time: it may be another.
+    /// The hand at this address answers differently than the previous one: it may be a different hand.
     HandDiffers {
         differences: Vec<FactDifference>,
-        /// Day of last time.
+        /// Day of the previous connection.
         last_seen: String,
     },
-    /// The plan of trials of the last time cannot be taken.
+    /// The stored plan of trials is invalid.
     PlanIgnored { error: PlanReadError },
-    /// The remembered hand's spelling means nothing.
+    /// The stored endpoint is invalid.
     EndpointIgnored {
-        /// What the file says.
+        /// Text in the settings file.
         text: String,
     },
 }
 
 impl NoticeKind {
-    /// A file could not be written there.
+    /// Notice that a file could not be written.
     pub(crate) fn not_saved(path: PathBuf, error: &std::io::Error) -> Self {
         let error = error.into();
         Self::NotSaved { path, error }
     }
 
-    /// A recording could not be deleted.
+    /// Notice that a recording could not be deleted.
     pub(crate) fn not_deleted(path: PathBuf, error: &std::io::Error) -> Self {
         let error = error.into();
         Self::NotDeleted { path, error }
     }
 
-    /// How much it matters.
+    /// Severity of the notice.
     pub const fn level(&self) -> Level {
         match self {
             Self::LinkLost(_) | Self::HoldAlarm | Self::StopNotSent => Level::Alarm,
@@ -286,7 +259,7 @@ impl NoticeKind {
         }
     }
 
-    /// Kinds that differ only in a measured figure are one notice, with the newest figure.
+    /// Kinds that differ only in a measured value are one notice, with the newest value.
     fn is_same(&self, other: &Self) -> bool {
         let confirmed: fn(&Self) -> bool = |kind| matches!(kind, Self::HoldConfirmed { .. });
         let planned: fn(&Self) -> bool = |kind| matches!(kind, Self::RecordingsPlanned { .. });
@@ -295,22 +268,20 @@ impl NoticeKind {
     }
 }
 
-/// One thing to read.
+/// A notice for the user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Notice {
-    /// To dismiss it.
+    /// Identifies the notice for dismissal.
     pub id: u64,
-    /// When it happened last.
+    /// Time of the latest occurrence.
     pub at: Moment,
-    /// How much it matters.
     pub level: Level,
-    /// What happened.
     pub what: NoticeKind,
-    /// The hand that it is about, where there are several, or where that is another than the one of now.
+    /// Hand of the notice, if there are several, or if it is not the current one.
     pub hand: Option<HandLabel>,
-    /// It is about a hand, named or not.
+    /// True if the notice is about a hand, named or not.
     is_of_hand: bool,
-    /// Times it happened since it was dismissed last.
+    /// Number of occurrences since it was last dismissed.
     pub count: u32,
 }
 
@@ -338,7 +309,7 @@ impl Notice {
     }
 }
 
-/// What a notice is about.
+/// Subject of a notice.
 #[derive(Debug, Clone, Copy)]
 enum About<'a> {
     NoHand,
@@ -355,7 +326,7 @@ impl<'a> About<'a> {
     }
 }
 
-/// What the user should read, and the log of all that was to be read; both bounded.
+/// Open notices, and the log of all notices; both bounded.
 #[derive(Debug, Clone, Default)]
 pub struct Notices {
     kept: VecDeque<Notice>,
@@ -364,19 +335,19 @@ pub struct Notices {
     log_dropped: u64,
 }
 
-/// Where it is told what happened at one hand: of several, with its name.
+/// Adds notices about one hand; if there are several, with its name.
 pub(crate) struct HandNotices<'a> {
     notices: &'a mut Notices,
     hand: Option<HandLabel>,
 }
 
 impl HandNotices<'_> {
-    /// Adds one, as [`Notices::push`] does.
+    /// Adds a notice, as [`Notices::push`] does.
     pub(crate) fn push(&mut self, at: Moment, what: NoticeKind) {
         self.notices.add(at, what, About::Hand(self.hand.as_ref()));
     }
 
-    /// Another hand takes the place of this one, which had no name as it was the only one: what was told of it carries its name.
+    /// Adds the name of the former only hand to its notices, when another hand takes its place.
     pub(crate) fn name_former(&mut self, hand: &HandLabel) {
         let Notices { kept, log, .. } = &mut *self.notices;
         for notice in kept.iter_mut().chain(log) {
@@ -386,7 +357,7 @@ impl HandNotices<'_> {
         }
     }
 
-    /// Takes away those of this hand that are no longer so. The log keeps them.
+    /// Removes notices of this hand that no longer apply. The log keeps them.
     pub(crate) fn withdraw(&mut self, over: impl Fn(&NoticeKind) -> bool) {
         let slot = self.hand.as_ref().map(|hand| hand.slot);
         let is_other = |hand: &HandLabel| slot.is_some_and(|slot| slot != hand.slot);
@@ -397,7 +368,7 @@ impl HandNotices<'_> {
 }
 
 impl Notices {
-    /// For what is about this hand of several; `None` = about the only one.
+    /// Returns a sink for notices about this hand; `None` = the only one.
     pub(crate) fn about(&mut self, hand: Option<&HandLabel>) -> HandNotices<'_> {
         HandNotices {
             hand: hand.cloned(),
@@ -405,8 +376,8 @@ impl Notices {
         }
     }
 
-    /// Adds one about no hand, or about the only one. The same cause again is counted, not added, and counts as the newest. A fault is only logged: the list
-    /// of faults asks for attention until it was seen.
+    /// Adds a notice about no hand, or about the only one. A repeated cause is counted and becomes the newest. A fault is only logged: the
+    /// list of faults shows it until it is marked as seen.
     pub fn push(&mut self, at: Moment, what: NoticeKind) {
         self.add(at, what, About::NoHand);
     }
@@ -430,7 +401,7 @@ impl Notices {
         self.kept.push_back(notice);
     }
 
-    /// Writes it into the log. The same cause right again is counted; after something else it is a line of its own.
+    /// Adds a log entry. An immediate repetition is counted; otherwise it is a separate entry.
     fn note(&mut self, at: Moment, what: &NoticeKind, about: About<'_>) {
         let newest = self.log.back_mut();
         if let Some(newest) = newest.filter(|last| last.is_same(what, about)) {
@@ -444,27 +415,27 @@ impl Notices {
         self.log.push_back(notice);
     }
 
-    /// True if there is nothing to read.
+    /// True if there are no open notices.
     pub fn is_empty(&self) -> bool {
         self.kept.is_empty()
     }
 
-    /// It was read. The log keeps it.
+    /// Dismisses a notice. The log keeps it.
     pub fn dismiss(&mut self, id: u64) {
         self.kept.retain(|notice| notice.id != id);
     }
 
-    /// Newest first.
+    /// Open notices, newest first.
     pub fn iter(&self) -> impl Iterator<Item = &Notice> {
         self.kept.iter().rev()
     }
 
-    /// All that was ever to be read, newest first, dismissed or not. Ids are the log's own.
+    /// All logged notices, newest first, dismissed or not. Their IDs belong to the log.
     pub fn log(&self) -> impl Iterator<Item = &Notice> {
         self.log.iter().rev()
     }
 
-    /// Entries of the log that went because there were too many.
+    /// Number of log entries dropped for lack of space.
     pub const fn log_dropped(&self) -> u64 {
         self.log_dropped
     }

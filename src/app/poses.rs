@@ -1,4 +1,4 @@
-//! The library with what goes on around it: undo, the dry run, what was added last. Sends nothing.
+//! The pose library and its view state: undo, dry run, newest entries. Sends nothing.
 
 use crate::app::notices::NoticeKind;
 use crate::inputs::pad::PadMap;
@@ -13,26 +13,26 @@ use crate::poses::preview::Preview;
 use crate::poses::starter::starter;
 use std::collections::BTreeSet;
 
-/// The poses of the user beside those that are shipped, and what goes on with them.
+/// The user's library with the shipped one, and its view state.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PoseState {
-    /// The user's own.
+    /// The user's own entries.
     pub library: PoseLibrary,
-    /// The dry run, if there is one.
+    /// The dry run, if active.
     pub preview: Option<Preview>,
-    /// The pose that was recalled last.
+    /// The last recalled pose.
     pub recalled: Option<PoseId>,
-    /// The pose that was made last, for the view to show.
+    /// The last added pose, for the view to show.
     pub newest: Option<PoseId>,
-    /// Why the last file was not taken.
+    /// Reason why the last file was rejected.
     pub refused: Option<NoticeKind>,
-    /// The sequence that was made last, for the view to show.
+    /// The last added sequence, for the view to show.
     pub newest_sequence: Option<SequenceId>,
     before: Option<PoseLibrary>,
 }
 
 impl PoseState {
-    /// With the library that was kept.
+    /// Creates the state with the stored library.
     pub fn new(library: PoseLibrary) -> Self {
         Self {
             library,
@@ -40,23 +40,23 @@ impl PoseState {
         }
     }
 
-    /// A pose of the user's or a shipped one.
+    /// A user's or shipped pose.
     pub fn pose(&self, id: PoseId) -> Option<&LibraryPose> {
         self.library.pose(id).or_else(|| starter().pose(id))
     }
 
-    /// A sequence of the user's or a shipped one.
+    /// A user's or shipped sequence.
     pub fn sequence(&self, id: SequenceId) -> Option<&Sequence> {
         self.library_of(id).sequence(id)
     }
 
-    /// A reaction of the user's or a shipped one.
+    /// A user's or shipped reaction.
     pub fn reaction(&self, id: ReactionId) -> Option<&Reaction> {
         let shipped = || starter().reaction(id);
         self.library.reaction(id).or_else(shipped)
     }
 
-    /// The library that has this sequence: the user's, or what is shipped.
+    /// The library that contains this sequence: the user's, else the shipped one.
     pub fn library_of(&self, id: SequenceId) -> &PoseLibrary {
         match self.library.sequence(id) {
             Some(_) => &self.library,
@@ -64,19 +64,19 @@ impl PoseState {
         }
     }
 
-    /// What is needed to play an entry of the user's or a shipped one.
+    /// Plan for playing a user's or shipped entry.
     pub fn plan(&self, entry: EntryId) -> Option<PlayPlan> {
         let shipped = || starter().plan(entry);
         self.library.plan(entry).or_else(shipped)
     }
 
-    /// What an entry of the user's or a shipped one is called.
+    /// Names of a user's or shipped entry.
     pub fn named(&self, entry: EntryId) -> Option<EntryNames<'_>> {
         let shipped = || starter().named(entry);
         self.library.named(entry).or_else(shipped)
     }
 
-    /// What is shipped and neither hidden nor overridden by one of the user's own by the same name.
+    /// Shipped entries that are neither hidden nor overridden by a user's entry of the same name.
     pub fn shipped(&self, hidden: &BTreeSet<String>) -> impl Iterator<Item = EntryId> {
         let name = |entry| starter().named(entry).map_or("", |names| names.text);
         let is_overridden = move |entry: EntryId| {
@@ -87,7 +87,7 @@ impl PoseState {
         all.filter(move |entry| !hidden.contains(name(*entry)) && !is_overridden(*entry))
     }
 
-    /// All poses: the user's own, then those that are shipped and shown.
+    /// All poses: the user's, then the visible shipped ones.
     pub fn poses(&self, hidden: &BTreeSet<String>) -> impl Iterator<Item = &LibraryPose> {
         let shipped = self.shipped(hidden).filter_map(|entry| match entry {
             EntryId::Pose(id) => starter().pose(id),
@@ -96,7 +96,7 @@ impl PoseState {
         self.library.poses.iter().chain(shipped)
     }
 
-    /// Those that the buttons of a gamepad name.
+    /// Poses assigned to the buttons of a gamepad.
     pub fn on_pad(&self, map: &PadMap, hidden: &BTreeSet<String>) -> PadPoses {
         let all: Vec<&LibraryPose> = self.poses(hidden).collect();
         let named = map.poses().filter_map(|name| {
@@ -106,8 +106,8 @@ impl PoseState {
         named.collect()
     }
 
-    /// What can be started with one press: poses but those that only demos need, then sequences and reactions; the user's own
-    /// before those that are shipped.
+    /// Entries that can be started with one press: poses except those used only by demos, then sequences and reactions; the
+    /// user's before the shipped ones.
     pub fn ready(&self, hidden: &BTreeSet<String>) -> Vec<EntryId> {
         let is_demo = |entry: &EntryId| match entry {
             EntryId::Pose(id) => self.pose(*id).is_some_and(LibraryPose::is_for_demos),
@@ -123,14 +123,14 @@ impl PoseState {
         ready
     }
 
-    /// What a key starts.
+    /// Entry started by a key.
     pub fn by_key(&self, key: EntryKey, hidden: &BTreeSet<String>) -> Option<EntryId> {
         let ready = self.ready(hidden);
         let has = |id: &EntryId| self.named(*id).is_some_and(|names| names.key == Some(key));
         ready.into_iter().find(has)
     }
 
-    /// True if a deletion or an import can be taken back.
+    /// True if a deletion or an import can be undone.
     pub const fn can_undo(&self) -> bool {
         self.before.is_some()
     }
@@ -174,7 +174,7 @@ impl PoseState {
         }
     }
 
-    /// Adds what a file holds; that can be taken back.
+    /// Merges an imported library; this can be undone.
     pub(crate) fn import(&mut self, library: PoseLibrary) {
         self.before = Some(self.library.clone());
         self.library.merge(library);

@@ -1,4 +1,4 @@
-//! Looking for hands: what the window shows of a scan, and the scan behind it. Never connects by itself.
+//! Scan for hands: its display, and the scan behind it. Never connects by itself.
 
 use crate::app::env::Env;
 use crate::hand::HandId;
@@ -9,16 +9,16 @@ use crate::link::scan::{
 use crate::transport::Endpoint;
 use std::sync::Arc;
 
-/// Hands kept: every id on one bus, and some more.
+/// Maximum number of listed hands: every ID on one bus, and some more.
 const FOUND_MAX: usize = 512;
-/// Remarks kept; the user reads a few.
+/// Maximum number of remarks: more than the user reads.
 const REMARKS_MAX: usize = 32;
-/// Events taken in one frame; the rest waits, and the scan waits for it.
+/// Maximum number of events processed per frame; the rest are queued, and the scan waits.
 const EVENTS_PER_FRAME: usize = 64;
-/// Ids asked when not all are.
+/// Number of IDs tried for [`IdRange::Few`].
 const FEW: usize = 10;
 
-/// Which ids are asked on every bus.
+/// Range of IDs tried on every bus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum IdRange {
     /// 1 to 10.
@@ -28,56 +28,54 @@ pub enum IdRange {
     All,
 }
 
-/// What the user wants to be looked through.
+/// Target of a scan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ScanTarget {
     /// All serial ports and CAN interfaces of this computer.
     Ports(IdRange),
-    /// This serial port, as a line or as a CAN adapter.
+    /// This serial port, as an RS485 line or as a CAN adapter.
     Port(String, IdRange),
     /// This CAN interface.
     Interface(String, IdRange),
-    /// These addresses and nothing else.
+    /// Only these network addresses.
     Hosts(Hosts),
 }
 
-/// Where a scan stands.
+/// Stage of a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ScanStage {
-    /// None was begun yet.
+    /// No scan was started yet.
     #[default]
     Never,
-    /// One is under way.
+    /// A scan is running.
     Running,
-    /// All was looked at.
+    /// The scan is complete.
     Done(ScanSummary),
-    /// The user ended it.
+    /// The user cancelled the scan.
     Cancelled,
 }
 
-/// What the window shows of the newest scan.
+/// State of the scan view.
 #[derive(Debug, Default)]
 pub struct ScanState {
-    /// Where it stands.
     pub stage: ScanStage,
-    /// What was asked for.
+    /// Requested target.
     pub wish: Option<ScanTarget>,
-    /// How far it is.
     pub progress: ScanProgress,
-    /// Places that it looks at.
+    /// Number of buses and addresses to scan.
     pub places: usize,
-    /// Hands, in the order in which they answered.
+    /// Hands found, in order of reply.
     pub found: Vec<FoundHand>,
-    /// What else there is to say: troubles, hints, and places that are held.
+    /// Other results: problems, hints, and ports in use.
     pub remarks: Vec<ScanEvent>,
-    /// Hands and remarks for which there was no room.
+    /// Number of hands and remarks dropped for lack of space.
     pub left_out: usize,
-    /// The scan itself, while it runs.
+    /// Handle of the running scan.
     handle: Option<ScanHandle>,
 }
 
 impl ScanState {
-    /// True while a scan is under way.
+    /// True while a scan is running.
     pub fn is_running(&self) -> bool {
         self.stage == ScanStage::Running
     }
@@ -93,7 +91,7 @@ impl ScanState {
         }
     }
 
-    /// Begins a scan; one that runs goes on instead. `held` are the hands that are connected now.
+    /// Starts a scan, unless one is running. `held` lists the hands that are connected now.
     pub(crate) fn begin(&mut self, wish: ScanTarget, held: Vec<Endpoint>, env: &Env) {
         if self.handle.is_some() {
             return;
@@ -132,14 +130,14 @@ impl ScanState {
         };
     }
 
-    /// Ends the scan that runs; what it found stays.
+    /// Cancels the running scan; its results stay.
     pub(crate) fn cancel(&mut self) {
         if self.handle.take().is_some() {
             self.stage = ScanStage::Cancelled;
         }
     }
 
-    /// Takes in what was found.
+    /// Applies scan events.
     pub(crate) fn drain(&mut self) {
         let Some(mut handle) = self.handle.take() else {
             return;

@@ -1,4 +1,5 @@
-//! What is kept from one start to the next. Never a setpoint: a plan of trials moves nothing before the user arms and starts it.
+//! Settings that persist between runs. Never a setpoint: a stored plan of trials moves nothing before the user arms and starts
+//! it.
 
 use crate::app::env::day_folder;
 use crate::app::layout::Layout;
@@ -15,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Dark or light.
+/// Colour theme.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Theme {
@@ -27,7 +28,7 @@ pub enum Theme {
 }
 
 impl Theme {
-    /// The other one.
+    /// The other theme.
     #[must_use]
     pub const fn other(self) -> Self {
         match self {
@@ -37,7 +38,7 @@ impl Theme {
     }
 }
 
-/// The language of the window.
+/// Language of the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Language {
@@ -48,7 +49,7 @@ pub enum Language {
 }
 
 impl Language {
-    /// The one for a system of this locale, such as `zh_CN` or `zh-Hans-CN`.
+    /// Language for a system locale such as `zh_CN` or `zh-Hans-CN`.
     #[must_use]
     pub fn of_locale(locale: &str) -> Self {
         match locale.split(['-', '_', '.']).next() {
@@ -57,7 +58,7 @@ impl Language {
         }
     }
 
-    /// The other one.
+    /// The other language.
     #[must_use]
     pub const fn other(self) -> Self {
         match self {
@@ -67,21 +68,21 @@ impl Language {
     }
 }
 
-/// How angles are written and typed.
+/// Unit in which angles are shown and entered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AngleUnit {
-    /// The register's own 0 to 1000.
+    /// Raw register value, 0 to 1000.
     #[default]
     Raw,
     /// Degrees of the joint.
     Degrees,
-    /// Percent of the way to open.
+    /// Percentage of opening.
     Percent,
 }
 
 impl AngleUnit {
-    /// The next one, round and round.
+    /// The next unit, cyclically.
     #[must_use]
     pub const fn next(self) -> Self {
         match self {
@@ -92,26 +93,19 @@ impl AngleUnit {
     }
 }
 
-/// How much time the plots show.
+/// Time span of the plots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PlotWindow {
-    /// Five seconds.
     S5,
-    /// Ten seconds.
     #[default]
     S10,
-    /// Thirty seconds.
     S30,
-    /// One minute.
     M1,
-    /// Five minutes.
     M5,
-    /// Ten minutes.
     M10,
-    /// Half an hour.
     M30,
-    /// An hour: all that is held.
+    /// One hour: the whole history.
     H1,
 }
 
@@ -128,7 +122,6 @@ impl PlotWindow {
         Self::H1,
     ];
 
-    /// Seconds shown.
     pub const fn seconds(self) -> f64 {
         match self {
             Self::S5 => 5.0,
@@ -161,7 +154,7 @@ pub enum PlotKind {
     Angle,
 }
 
-/// The plots that are shown, always at least one.
+/// The visible plots; always at least one.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "BTreeSet<PlotKind>")]
 pub struct ShownPlots(BTreeSet<PlotKind>);
@@ -196,17 +189,17 @@ impl From<BTreeSet<PlotKind>> for ShownPlots {
 }
 
 impl ShownPlots {
-    /// True if this plot is drawn.
+    /// True if this plot is visible.
     pub fn shows(&self, kind: PlotKind) -> bool {
         self.0.contains(&kind)
     }
 
-    /// How many are drawn.
+    /// Number of visible plots.
     pub fn count(&self) -> usize {
         self.0.len()
     }
 
-    /// Draws a plot or not. The last one stays.
+    /// Shows or hides a plot. The last one stays visible.
     pub fn set(&mut self, kind: PlotKind, on: bool) {
         if on {
             self.0.insert(kind);
@@ -216,7 +209,7 @@ impl ShownPlots {
     }
 }
 
-/// The plots that are drawn tall where there is room, the one that was grown last at the end; the others are sparklines.
+/// The two enlarged plots, the latest one last; the others are sparklines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "Vec<PlotKind>")]
 pub struct TallPlots([PlotKind; 2]);
@@ -236,7 +229,7 @@ impl From<Vec<PlotKind>> for TallPlots {
 }
 
 impl TallPlots {
-    /// Draws this one tall. The one that was grown before the last shrinks.
+    /// Enlarges a plot in place of the older of the two.
     pub fn grow(&mut self, kind: PlotKind) {
         let [_, last] = self.0;
         if last != kind {
@@ -244,7 +237,7 @@ impl TallPlots {
         }
     }
 
-    /// So many of the shown plots, those that were grown first of all.
+    /// Selects up to `count` visible plots, the enlarged ones first.
     pub fn of(self, shown: &ShownPlots, count: usize) -> Vec<PlotKind> {
         let [first, last] = self.0;
         let mut tall = Vec::new();
@@ -257,7 +250,7 @@ impl TallPlots {
     }
 }
 
-/// How much larger than designed everything is drawn, within what can be read and used.
+/// Zoom factor of the window, limited to 0.5 to 3.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(from = "f32", into = "f32")]
 pub struct Zoom(f32);
@@ -281,45 +274,45 @@ impl Default for Zoom {
     }
 }
 
-/// Hands that are remembered: as many as a window has at once.
+/// Maximum number of recent hands: as many as a window has at once.
 pub const RECENT_MAX: usize = 8;
-/// Hands whose name and side are kept. Of more, those that are not among the recent ones go.
+/// Maximum number of hands with stored name and side. Beyond it, those that are not among the recent ones are dropped.
 pub const KNOWN_MAX: usize = 64;
-/// Hands whose taring is kept; the oldest goes first.
+/// Maximum number of stored tares; the oldest is dropped first.
 pub const TARES_MAX: usize = 20;
 
-/// What the user says of one hand.
+/// User data of one hand.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct KnownHand {
-    /// What it is called; empty if it has no name.
+    /// Name; empty if none.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub name: String,
-    /// Left or right; `None` = as [`Settings::side`].
+    /// Side; `None` = as [`Settings::side`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub side: Option<Side>,
-    /// The day on which the user connected to it last, such as `2026-11-24`; empty if that is not known.
+    /// Day of the last connection by the user, such as `2026-11-24`; empty if unknown.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub last_day: String,
-    /// The blocks of known size that were measured with it.
+    /// Blocks of known size that were measured with the hand.
     #[serde(skip_serializing_if = "SizeBlocks::is_empty")]
     pub size_blocks: SizeBlocks,
-    /// Keys of a newer version, kept as they are.
+    /// Keys of a newer version, preserved on save.
     #[serde(flatten)]
     pub others: toml::Table,
 }
 
-/// What is recorded, and where.
+/// Settings of recordings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RecordingSettings {
-    /// Hands are recorded.
+    /// True if hands are recorded.
     pub record: bool,
-    /// Built-in hands, too.
+    /// True if built-in hands are recorded as well.
     pub record_simulated: bool,
-    /// Where recordings lie; `None` = in the user's documents.
+    /// Folder of the recordings; `None` = the user's documents.
     pub folder: Option<PathBuf>,
-    /// What all recordings together may need, gigabytes.
+    /// Maximum total size of all recordings in gigabytes.
     pub budget_gb: f64,
 }
 
@@ -335,7 +328,7 @@ impl Default for RecordingSettings {
 }
 
 impl RecordingSettings {
-    /// What all recordings together may need, in bytes.
+    /// Maximum total size of all recordings in bytes.
     pub fn budget_bytes(&self) -> u64 {
         #[expect(
             clippy::cast_possible_truncation,
@@ -347,87 +340,79 @@ impl RecordingSettings {
     }
 }
 
-/// What is kept from one start to the next. Unknown keys of the file survive in [`Self::others`].
+/// Settings that persist between runs. Unknown keys of the file survive in [`Self::others`].
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Settings {
-    /// The hand of last time, in the spelling of endpoints.
+    /// Endpoint of the last hand, as text.
     pub endpoint: Option<String>,
-    /// Hands that the user connected to, the newest first, in the same spelling.
+    /// Endpoints that the user connected to, newest first, as text.
     pub recent: Vec<String>,
-    /// Dark or light.
     pub theme: Theme,
-    /// The hand that is drawn where nobody said another of it: no register says which one it is.
+    /// Default side of a hand: no register reports it.
     pub side: Side,
-    /// What the user says of each hand, by its endpoint.
+    /// User data of each hand, by its endpoint.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub hands: BTreeMap<String, KnownHand>,
-    /// Language of the window.
     pub language: Language,
-    /// How angles are written and typed.
     pub angle_unit: AngleUnit,
-    /// Seconds that the plots show.
+    /// Time span of the plots.
     pub plot_window: PlotWindow,
-    /// The plots that are shown.
     pub plots: ShownPlots,
-    /// Those of them that are tall.
     pub tall_plots: TallPlots,
-    /// How gestures are started.
+    /// Interface used to start gestures.
     pub gesture_route: GestureRoute,
-    /// Names that the user gave to gestures, by number.
+    /// User-given names of gestures, by number.
     pub gesture_names: BTreeMap<String, String>,
-    /// Names of shipped poses, sequences and reactions that are not shown.
+    /// Names of hidden shipped poses, sequences and reactions.
     pub hidden_poses: BTreeSet<String>,
-    /// How the window is divided.
     pub layout: Layout,
-    /// How much larger than designed everything is drawn.
     pub zoom: Zoom,
-    /// What the user tared last, by the place and id of the hand.
+    /// Last tare of each hand, by its address and ID.
     pub tares: BTreeMap<String, KeptTare>,
-    /// What is read first while something moves.
+    /// Group that is polled first during motion.
     pub read_first: PollPriority,
-    /// What is recorded, and where.
     #[serde(rename = "sessions")]
     pub recordings: RecordingSettings,
-    /// The hand moves only while the user holds a key.
+    /// True if the hand may move only while the user holds a key.
     pub hold_to_run: bool,
-    /// An armed hand that is asked nothing for some minutes is disarmed.
+    /// True if an armed hand that receives no commands for some minutes is disarmed.
     pub disarm_idle: bool,
-    /// How far and how fast a hand follows a source.
+    /// Distance and speed limits of a hand that follows a source.
     pub follow: FollowLimits,
-    /// The first client of the gateway that writes may move the hand, without the user here who lets it. Only who edits the file
-    /// says so.
+    /// True if the first gateway client that writes gets control without the user granting it. Can be set only by editing the
+    /// file.
     pub first_client_moves: bool,
-    /// What the controls of a gamepad do, as a file of it says; as delivered if nothing changed that.
+    /// Gamepad mapping in its file format; `None` = default mapping.
     pub pad_map: Option<String>,
-    /// The plan of trials that was written last ([`crate::trials::plan_settings`]); of whatever form, so that a newer one spoils
-    /// nothing else.
+    /// Last edited plan of trials ([`crate::trials::plan_settings`]); untyped, so that a newer format does not invalidate other
+    /// keys.
     pub trial_plan: Option<toml::Value>,
-    /// Keys of a newer version, kept as they are.
+    /// Keys of a newer version, preserved on save.
     #[serde(flatten)]
     pub others: toml::Table,
 }
 
 impl Settings {
-    /// Whether a hand is recorded, built-in or not.
+    /// True if a hand, built-in or not, is recorded.
     pub const fn records(&self, is_simulated: bool) -> bool {
         self.recordings.record && (!is_simulated || self.recordings.record_simulated)
     }
 
-    /// What the controls of a gamepad do.
+    /// Effective gamepad mapping; the default if there is none or it is invalid.
     pub fn pad_map(&self) -> PadMap {
         let own = self.pad_map.as_deref();
         let own = own.and_then(|text| pad::file::read(text).ok());
         own.unwrap_or_else(PadMap::usual)
     }
 
-    /// Where recordings lie; `None` = nowhere.
+    /// Folder of the recordings; `None` if none is available.
     pub fn recordings_folder(&self, documents: Option<&Path>) -> Option<PathBuf> {
         let own = self.recordings.folder.clone();
         own.or_else(|| documents.map(day_folder::of_all))
     }
 
-    /// The hand of this time, for the next start and for one click.
+    /// Stores this hand as the last and most recent one.
     pub(crate) fn remember(&mut self, endpoint: &Endpoint) {
         let text = endpoint.to_string();
         self.recent.retain(|other| *other != text);
@@ -436,46 +421,46 @@ impl Settings {
         self.endpoint = Some(text);
     }
 
-    /// The day on which the user connected to this hand last.
+    /// Day of the last connection to this hand by the user.
     pub fn last_day(&self, endpoint: &Endpoint) -> Option<&str> {
         let day = &self.hands.get(&endpoint.to_string())?.last_day;
         (!day.is_empty()).then_some(day)
     }
 
-    /// Says on which day the user connected to a hand.
+    /// Sets the day of the last connection to a hand by the user.
     pub(crate) fn used_on(&mut self, endpoint: &Endpoint, day: String) {
         self.know_hand(endpoint, |known| known.last_day = day);
     }
 
-    /// Left or right, as the user said of this hand, or last of any.
+    /// Side of this hand; if not set for it, the default side.
     pub fn side_of(&self, endpoint: Option<&Endpoint>) -> Side {
         let known = endpoint.and_then(|endpoint| self.hands.get(&endpoint.to_string()));
         known.and_then(|known| known.side).unwrap_or(self.side)
     }
 
-    /// What the user calls this hand.
+    /// User-given name of this hand.
     pub fn hand_name(&self, endpoint: &Endpoint) -> Option<&str> {
         let name = &self.hands.get(&endpoint.to_string())?.name;
         (!name.is_empty()).then_some(name)
     }
 
-    /// Says of a hand that it is the left or the right one.
+    /// Sets the side of a hand.
     pub(crate) fn set_side_of(&mut self, endpoint: &Endpoint, side: Side) {
         self.know_hand(endpoint, |known| known.side = Some(side));
     }
 
-    /// Gives a hand a name of one line; empty takes it away.
+    /// Sets the name of a hand, reduced to one line; an empty name removes it.
     pub(crate) fn name_hand(&mut self, endpoint: &Endpoint, name: &str) {
         self.know_hand(endpoint, |known| known.name = clean(name));
     }
 
-    /// The blocks that were measured with this hand.
+    /// Blocks that were measured with this hand.
     pub fn size_blocks(&self, endpoint: Option<&Endpoint>) -> SizeBlocks {
         let known = endpoint.and_then(|endpoint| self.hands.get(&endpoint.to_string()));
         known.map_or_else(SizeBlocks::default, |known| known.size_blocks.clone())
     }
 
-    /// Keeps the blocks that were measured with a hand.
+    /// Stores the blocks that were measured with a hand.
     pub(crate) fn keep_size_blocks(&mut self, endpoint: &Endpoint, blocks: SizeBlocks) {
         self.know_hand(endpoint, |known| known.size_blocks = blocks);
     }
@@ -491,7 +476,7 @@ impl Settings {
         }
     }
 
-    /// Keeps what the user tared at a hand, or lets go of it.
+    /// Stores the tare of a hand; `None` removes it.
     pub(crate) fn keep_tare(&mut self, hand: String, kept: Option<KeptTare>) {
         match kept {
             Some(kept) => self.tares.insert(hand, kept),
@@ -504,13 +489,13 @@ impl Settings {
         }
     }
 
-    /// The name that the user gave to a gesture. Manual: 2.6.7 lists no names by number, so there are no others.
+    /// User-given name of a gesture. Manual: 2.6.7 lists no names by number, so there are no others.
     pub fn gesture_name(&self, gesture: Gesture) -> Option<&str> {
         let name = self.gesture_names.get(&gesture.get().to_string())?.trim();
         (!name.is_empty()).then_some(name)
     }
 
-    /// Gives a gesture a name of one line; empty takes it away.
+    /// Sets the name of a gesture, reduced to one line; an empty name removes it.
     pub fn name_gesture(&mut self, gesture: Gesture, name: &str) {
         let line = clean(name);
         let number = gesture.get().to_string();

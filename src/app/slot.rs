@@ -1,20 +1,20 @@
-//! Which of several hands: its slot in the window, and what it is called there.
+//! Identification of one of several hands: its slot in the window and its name.
 
 use crate::transport::Endpoint;
 use std::sync::Arc;
 
-/// The slot of a hand in the window, for as long as it is there. None is given twice in one run of the program.
+/// Slot of a hand in the window, while it is listed. IDs are not reused within a run of the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct SlotId(u32);
 
 impl SlotId {
-    /// The one that is given next.
+    /// The next ID.
     pub(crate) const fn next(self) -> Self {
         Self(self.0.saturating_add(1))
     }
 }
 
-/// Which hand, and what it is called: the user's name for it, else where it is.
+/// Slot and name of a hand: the user-given name, else the address.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct HandLabel {
     pub slot: SlotId,
@@ -22,7 +22,7 @@ pub struct HandLabel {
     pub name: Arc<str>,
 }
 
-/// What a hand without a name is called: where it is.
+/// Name of an unnamed hand: its address.
 pub(crate) fn place_name(endpoint: &Endpoint) -> String {
     match endpoint {
         Endpoint::Sim { .. } => endpoint.place_and_id().0,

@@ -1,5 +1,5 @@
 //! `hold`: the process that holds a hand if the program that moved it dies. It is started by that program and tied to it by its
-//! standard input; nobody starts it by hand.
+//! standard input; users do not start it themselves.
 
 use crate::cli::out::{AlreadyReported, say};
 use crate::cli::session;
@@ -13,21 +13,21 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::{Instant, sleep, timeout};
 
-/// So long the hand is tried for: its port may be busy, and its socket taken, until the system has cleared up.
+/// Maximum time to reach the hand: its port may be busy, and its socket in use, until the system has cleaned up.
 const REACH_TIMEOUT: Duration = Duration::from_secs(5);
-/// So long feedback may take to show rest after that.
+/// Maximum time after that until feedback shows rest.
 const REST_TIMEOUT: Duration = Duration::from_secs(5);
-/// How often a port that is busy is tried again.
+/// Retry interval for a busy port.
 const DIAL_INTERVAL: Duration = Duration::from_millis(10);
-/// A hand that closes the connection at once is dialled again after this, so many times; then as seldom as a hand needs that takes
-/// no connection for a while after the last one.
+/// Retry delay after a hand has closed the connection at once, and the number of such retries; then the delay for a hand that
+/// accepts no connection for a while after the last one.
 const RETRY_DELAY: Duration = Duration::from_millis(20);
 const RETRIES_AT_ONCE: u32 = 25;
 const RETRY_DELAY_LATER: Duration = Duration::from_millis(320);
-/// How often it is looked how far the link is.
+/// Polling interval of the link state.
 const POLL_INTERVAL: Duration = Duration::from_millis(2);
 
-/// Only where the joints are is read.
+/// Only the joint positions are read.
 const MOTION_ONLY: PollRates = PollRates {
     state_hz: 200.0,
     tactile_hz: 0.0,
@@ -41,16 +41,17 @@ pub(crate) struct HoldArgs {
     hand: Endpoint,
 }
 
-/// Waits for the end of the program that started this one. True if the hand is to be held then, as that program did not.
+/// Waits for the end of the program that started this one. Returns true if the hand must then be held because that
+/// program did not.
 pub(crate) fn is_needed() -> bool {
     live_on_the_pipe_alone();
     died_moving(std::io::stdin().lock())
 }
 
-/// What ends that program must not end this one: signals do not count, and nothing of it is kept open but standard error.
+/// Detaches from that program's end: blocks signals, and closes all inherited descriptors except the standard streams.
 #[cfg(unix)]
 fn live_on_the_pipe_alone() {
-    // No other thread runs yet. What cannot be done here was not needed to hold.
+    // No other thread runs yet. A failure here does not prevent holding.
     let _blocked = nix::sys::signal::SigSet::all().thread_block();
     let open = std::fs::read_dir("/proc/self/fd").into_iter().flatten();
     let inherited: Vec<i32> = open
@@ -65,7 +66,7 @@ fn live_on_the_pipe_alone() {
 #[cfg(not(unix))]
 fn live_on_the_pipe_alone() {}
 
-/// True if the pipe broke after the last word was that the hand may move.
+/// True if the pipe broke after the last message reported that the hand may move.
 fn died_moving(mut pipe: impl Read) -> bool {
     let (mut moves, mut words) = (false, [0; 64]);
     loop {
@@ -81,7 +82,7 @@ fn died_moving(mut pipe: impl Read) -> bool {
     }
 }
 
-/// Holds until feedback shows rest, and says how that went.
+/// Holds until feedback shows rest, and reports the outcome.
 pub(crate) async fn run(args: &HoldArgs) -> anyhow::Result<()> {
     let hand = &args.hand;
     let died = Instant::now();
@@ -112,7 +113,7 @@ pub(crate) async fn run(args: &HoldArgs) -> anyhow::Result<()> {
     Err(AlreadyReported.into())
 }
 
-/// Waits until the hand answers. It is told to stop again and again: what is said before it answers does not last.
+/// Waits until the hand answers. The stop is repeated: one sent before the hand answers is not retained.
 async fn reached(link: &LinkHandle) {
     loop {
         link.stop();
@@ -124,7 +125,7 @@ async fn reached(link: &LinkHandle) {
     }
 }
 
-/// Waits until feedback shows rest. A link that was lost meanwhile begins anew.
+/// Waits until feedback shows rest. If the link was lost meanwhile, the stop is repeated.
 async fn held(link: &LinkHandle) {
     loop {
         match link.status().hold {
@@ -136,7 +137,7 @@ async fn held(link: &LinkHandle) {
     }
 }
 
-/// Dials again at once where the port is still busy: the link itself would wait.
+/// Redials a busy port at once; the link itself would wait.
 struct Insistent(SystemDial);
 
 impl Dial for Insistent {

@@ -1,23 +1,23 @@
-//! Addresses that a command listens at: how they are written, and what the user is told of them.
+//! Listening addresses of a command: parsing, and messages to the user.
 
 use crate::cli::out::say;
 use anyhow::anyhow;
 use std::io;
 use std::net::SocketAddr;
 
-/// An address in numbers, with a port; 0 for any free one.
+/// A numeric address with a port; 0 selects a free one.
 pub(crate) fn address(text: &str) -> Result<SocketAddr, String> {
     text.parse().map_err(|_not_one| {
         "write an address in numbers and a port, for example 127.0.0.1:6000".to_owned()
     })
 }
 
-/// Nobody can listen there.
+/// Error of a failed listen.
 pub(crate) fn refused(at: SocketAddr, error: &io::Error) -> anyhow::Error {
     anyhow!("cannot listen on {at}: {error}; choose another address or port")
 }
 
-/// Warns of an address that other computers reach: what anyone there can do, in words.
+/// Warns about an address that other computers can reach; `can` describes what they could do.
 pub(crate) fn warn_if_reachable(at: SocketAddr, can: &str) {
     if !at.ip().is_loopback() {
         say(&format!(

@@ -1,4 +1,4 @@
-//! The command line: one file a command, each of which carries out its command and reports the outcome.
+//! The command line: one module per command, which carries it out and reports the outcome.
 
 mod about;
 mod args;
@@ -34,10 +34,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use tokio::runtime::Builder;
 
-/// The exit status of wrong usage, as clap gives it.
+/// Exit status of wrong usage, as clap defines it.
 const WRONG_USAGE: u8 = 2;
 
-/// Runs the command line. Errors go to standard error as one sentence each.
+/// Runs the command line. Errors are printed to standard error as one sentence each.
 ///
 /// The exit status is 0 when done, 1 on failure, 2 on wrong usage.
 pub fn run() -> ExitCode {
@@ -50,14 +50,14 @@ pub fn run() -> ExitCode {
     }));
     let status = match done {
         Ok(done) => status(done),
-        // Told when it happened.
+        // The panic hook has reported it.
         Err(_panic) => ExitCode::FAILURE,
     };
     out::finish_messages();
     status
 }
 
-/// The exit status of a command. Why it failed is said now, unless it was before.
+/// Exit status of a command. Its error is printed here, unless it was reported before.
 fn status(done: anyhow::Result<()>) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -74,7 +74,8 @@ fn status(done: anyhow::Result<()>) -> ExitCode {
     }
 }
 
-/// A panic on any thread stops each hand that may move, and is told in one sentence. Where a backtrace was asked for, it comes too.
+/// Installs the panic hook: a panic on any thread stops each hand that may move, and is reported in one sentence, with a backtrace
+/// if requested.
 fn tell_panics() {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
@@ -93,7 +94,7 @@ fn tell_panics() {
 
 fn obey(command: Command) -> anyhow::Result<()> {
     if let Command::Hold(args) = command {
-        // Before any thread runs: those of this process are to inherit what it does about signals.
+        // Before any thread is started: the threads of this process must inherit its signal mask.
         return if hold::is_needed() {
             wait_for(hold::run(&args))
         } else {
@@ -138,17 +139,17 @@ fn obey(command: Command) -> anyhow::Result<()> {
         Command::Hold(_) => Ok(()),
         Command::Help(args) => about::help::run(&mut out, &args, Cli::command()),
     };
-    // Output from before a failure is shown as well.
+    // Output written before a failure is shown as well.
     let shown = out.finish();
     done.and(shown)
 }
 
-/// Files, sockets and timers that a runtime and the command on it open at least. A runtime that cannot open its own does not say
-/// so in words.
+/// Minimum number of files, sockets and timers for a runtime and a command. A runtime that cannot open its own reports no clear
+/// error.
 #[cfg(unix)]
 const FILES_NEEDED: usize = 16;
 
-/// Whether so many more files may be open.
+/// Fails if this number of additional files cannot be opened.
 #[cfg(unix)]
 fn has_room_for_files() -> anyhow::Result<()> {
     let opened = || std::fs::File::open("/dev/null");
@@ -167,14 +168,14 @@ fn has_room_for_files() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Carries out a command on a runtime of one thread. Nothing on it waits for a disk or a reader of our output.
+/// Runs a command on a single-threaded runtime. Nothing on it waits for a disk or a reader of the output.
 fn wait_for(command: impl Future<Output = anyhow::Result<()>>) -> anyhow::Result<()> {
     has_room_for_files()?;
     let runtime = Builder::new_current_thread().enable_all().build();
     let runtime = runtime.context("cannot start the runtime")?;
     crate::link::priority::raise();
     let done = runtime.block_on(command);
-    // A name that is being resolved cannot be called back, and must not hold up the end.
+    // Name resolution in progress cannot be cancelled, and must not delay the exit.
     runtime.shutdown_background();
     done
 }

@@ -1,4 +1,4 @@
-//! Values as the user types them on the command line. The error is the sentence that clap shows.
+//! Parsers of values on the command line. Clap prints the error as it is.
 
 use crate::hand::kinematics::Side;
 use crate::hand::register::{self, REGISTERS, Register};
@@ -10,9 +10,9 @@ use std::path::Path;
 use std::str::FromStr;
 use std::time::Duration;
 
-/// How many known names are suggested for a wrong one.
+/// Number of known names suggested for a wrong one.
 const SUGGESTED: usize = 3;
-/// The longest time an option takes, s: a day.
+/// Maximum time of an option in seconds: a day.
 const SECONDS_MAX: f64 = 86_400.0;
 
 pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
@@ -28,13 +28,13 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
 /// A time in a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum RecordingTime {
-    /// So long after its start.
+    /// Time after the start.
     FromStart(Duration),
-    /// So long before its end.
+    /// Time before the end.
     BeforeEnd(Duration),
 }
 
-/// Seconds from the start of a recording, or behind a minus before its end.
+/// Parses seconds from the start of a recording, or with a minus sign before its end.
 pub(crate) fn recording_time(text: &str) -> Result<RecordingTime, String> {
     match text.strip_prefix('-') {
         Some(before) if !before.starts_with(['+', '-']) => {
@@ -45,7 +45,7 @@ pub(crate) fn recording_time(text: &str) -> Result<RecordingTime, String> {
     }
 }
 
-/// A number within bounds; `what` says what it should be.
+/// Parses a number in a range; `what` describes the expected value.
 pub(crate) fn number<T: FromStr + PartialOrd>(
     text: &str,
     range: RangeInclusive<T>,
@@ -55,7 +55,8 @@ pub(crate) fn number<T: FromStr + PartialOrd>(
     number.ok_or_else(|| format!("'{text}' is not {what}"))
 }
 
-/// A hand's URL. A body that it names has to be one: nobody would find out later why no hand answers.
+/// Parses a hand's URL. A body file that it names must be valid: otherwise the hand would fail to answer without an
+/// explanation.
 pub(crate) fn hand(text: &str) -> Result<Endpoint, String> {
     let endpoint: Endpoint = text
         .parse()
@@ -77,7 +78,7 @@ pub(crate) fn dof(text: &str) -> Result<Dof, String> {
     })
 }
 
-/// A speed at which something moves.
+/// A speed other than 0.
 pub(crate) fn moving(speed: Speed) -> Result<Speed, String> {
     if speed == Speed::MIN {
         return Err("at a speed of 0 nothing moves".into());
@@ -85,7 +86,7 @@ pub(crate) fn moving(speed: Speed) -> Result<Speed, String> {
     Ok(speed)
 }
 
-/// A force threshold that needs no consent of its own.
+/// A force threshold within the rating, which needs no extra consent.
 pub(crate) fn rated(force: Force) -> Result<Force, String> {
     if force > Force::RATED {
         let rated = Force::RATED.get();
@@ -127,11 +128,11 @@ pub(crate) fn force(text: &str) -> Result<Force, String> {
     Force::new(whole(text)?).map_err(|error| error.to_string())
 }
 
-/// Hand ids in the order they were named, each once.
+/// Hand IDs in the given order, without duplicates.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct HandIds(pub(crate) Vec<HandId>);
 
-/// A list of hand ids: `3`, `1,2,3`, `1-10`, or a mixture.
+/// Parses a list of hand IDs: `3`, `1,2,3`, `1-10`, or a mixture.
 pub(crate) fn hand_ids(text: &str) -> Result<HandIds, String> {
     let mut ids: Vec<u8> = Vec::new();
     for part in text.split(',').map(str::trim) {
@@ -158,7 +159,7 @@ fn hand_id(text: &str, list: &str) -> Result<u8, String> {
     })
 }
 
-/// The register of this name, in any letter case. The error names those that look most like it.
+/// Finds the register of this name, ignoring case. The error names the most similar ones.
 pub(crate) fn register(name: &str) -> Result<&'static Register, String> {
     let known = || REGISTERS.iter().map(|row| row.name);
     register::by_name(name).ok_or_else(|| {
@@ -169,7 +170,7 @@ pub(crate) fn register(name: &str) -> Result<&'static Register, String> {
     })
 }
 
-/// The known names that look most like this one, best first.
+/// The most similar known names, best first.
 pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let name = name.to_uppercase();
     let mut ranked: Vec<(usize, &str)> = known
@@ -183,7 +184,7 @@ pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> V
         .collect()
 }
 
-/// Letters to change, with a bonus for names that hold each other.
+/// Edit distance, with a bonus if one name contains the other.
 fn unlikeness(name: &str, known: &str) -> usize {
     let holds = name.len() > 2 && (known.contains(name) || name.contains(known));
     if holds {

@@ -1,4 +1,4 @@
-//! `quirks`: how a hand differs from others, printed or written to a file. Only reads from the hand.
+//! `quirks`: differences of a hand from others, printed or written to a file. Only reads from the hand.
 
 use crate::cli::out::Out;
 use crate::cli::out::file::{nothing_at, write_file};
@@ -24,7 +24,7 @@ pub(crate) struct QuirksArgs {
     pub(crate) out: Option<PathBuf>,
 }
 
-/// Identifies the hand and prints what was found.
+/// Identifies the hand and prints its quirks.
 pub(crate) async fn run(out: &mut Out, args: &QuirksArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.out {
         nothing_at(path, "--out")?;

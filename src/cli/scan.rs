@@ -1,5 +1,5 @@
-//! `scan`: which hands answer on this computer's ports and interfaces, or on those that are named, and at named network
-//! addresses. Writes nothing to any hand.
+//! `scan`: finds hands on this computer's ports and interfaces, or on named ones, and at named network addresses.
+//! Writes nothing to any hand.
 
 use crate::app::connect::SimDial;
 use crate::cli::out::{AlreadyReported, Out, WrongUsage, say};
@@ -20,9 +20,9 @@ use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::time::{MissedTickBehavior, interval};
 
-/// How often progress is printed.
+/// Interval of progress reports.
 const REPORT_INTERVAL: Duration = Duration::from_secs(5);
-/// Ids asked by default: a bus seldom has more hands, and each id costs about half a second a port.
+/// Number of IDs tried by default: a bus seldom has more hands, and each ID costs about half a second per port.
 const IDS_UP_TO: u8 = 10;
 
 #[derive(Debug, clap::Args)]
@@ -94,7 +94,7 @@ impl ScanArgs {
         }
     }
 
-    /// Several ranges together are bounded as one is.
+    /// Several ranges together have the same limit as one.
     fn check_hosts(&self) -> anyhow::Result<()> {
         let hosts: usize = self.tcp.iter().map(Hosts::count).sum();
         if hosts <= HOSTS_MAX {
@@ -176,7 +176,7 @@ impl ScanPrinter<'_> {
         self.out.flush()
     }
 
-    /// Says what is in the way at a place.
+    /// Reports a problem at a place.
     fn told(&mut self, what: &str, place: &str, words: &impl Display) -> anyhow::Result<()> {
         let words = words.to_string();
         say(&words);

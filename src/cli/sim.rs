@@ -1,4 +1,4 @@
-//! `sim`: simulated hands on wires that other programs can open, until the program is ended. How a hand behaves is decided in
+//! `sim`: simulated hands on wires that other programs can open, until the program is ended. Their behaviour is defined in
 //! [`crate::sim`].
 use crate::cli::out::Out;
 use crate::cli::parse::{HandIds, hand_ids};
@@ -14,11 +14,10 @@ use std::path::Path;
 use std::time::Duration;
 use tokio::time::{Instant, interval};
 
-/// The hand goes on when nobody asks, so that its first answer after an hour has nothing to catch up on.
+/// Update interval of the hands without requests, so that the first answer after an hour need not catch up.
 const LIVE_INTERVAL: Duration = Duration::from_millis(10);
 
-/// How long a hand stays silent during a power cycle. The manual gives no start-up time; the user at the switch takes about as
-/// long.
+/// Silence of a hand during a power cycle. The manual gives no start-up time; operating the switch takes a user about as long.
 const STARTS_UP: Duration = Duration::from_secs(1);
 
 #[derive(Debug, clap::Args)]
@@ -49,12 +48,12 @@ const SIM_HELP: &str = "\
 Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n  handscope sim --print-body > worn.toml\n  handscope sim --tcp 127.0.0.1:6000 --body worn.toml\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix, SIGUSR1 switches them off for a second, and 'power cycled' is printed once they are back; what was not saved is gone. SIGUSR2 lets their readings stand still while their joints go on, and the next one undoes it; 'feedback frozen' and 'feedback live' are printed.
 On Modbus TCP the unit id selects the hand; 255 means the first, and a single hand answers to every id.";
 
-/// What stands under the list of switches.
+/// Text below the list of options.
 pub(crate) fn help() -> String {
     format!("{SIM_HELP}\n\n{}", quirk_list())
 }
 
-/// Serves the hand until the user ends it.
+/// Serves the hands until the user ends it.
 pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     if args.print_body {
         return out.lines(file::print(&BodyParams::default()).trim_end().lines());
@@ -63,7 +62,7 @@ pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     let power = Interrupt::power_cut()?;
     let freeze = Interrupt::freeze()?;
     let hands = hands(args).context("no hand to simulate")?;
-    // All wires are there before any is announced: who waits for one may use all.
+    // All wires are ready before the first is announced: a client that waits for one may use all.
     let wires = args.wires.serve(&hands).await?;
     out.lines(wires.iter().map(ServedWire::ready))?;
     out.flush()?;
@@ -76,8 +75,7 @@ pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Switches all hands off and on at each signal for that, freezes or frees what they tell at each of the other, and says what was
-/// done.
+/// Power-cycles all hands at one signal, freezes or unfreezes their feedback at the other, and reports the action.
 async fn obey_signals(
     out: &mut Out,
     mut power: Interrupt,
@@ -106,7 +104,7 @@ async fn obey_signals(
     }
 }
 
-/// Separate hands, each with its own memory, body and random numbers.
+/// Creates the hands, each with its own memory, body and random numbers.
 fn hands(args: &SimArgs) -> Option<SimHands> {
     let begun = Instant::now();
     let seeds = (0..).map(|nth| args.seed.wrapping_add(nth));
@@ -132,7 +130,7 @@ async fn live(hands: &SimHands) {
     }
 }
 
-/// Hands that one process simulates: an RS485 bus carries 32 (TIA-485-A), and each costs computing time.
+/// Maximum number of simulated hands: an RS485 bus carries 32 (TIA-485-A), and each needs computing time.
 const SIM_HANDS_MAX: usize = 32;
 
 fn few_ids(text: &str) -> Result<HandIds, String> {
@@ -146,16 +144,16 @@ fn few_ids(text: &str) -> Result<HandIds, String> {
     Ok(ids)
 }
 
-/// Reads the file of a body.
+/// Reads a body file.
 fn body(path: &str) -> Result<Box<BodyParams>, String> {
     let body = file::read(Path::new(path)).map_err(|error| error.to_string())?;
     Ok(Box::new(body))
 }
 
-/// A switch and a position that it has.
+/// Name and value of a switch.
 type Quirk = (String, String);
 
-/// Reads `NAME=VALUE`.
+/// Parses `NAME=VALUE`.
 fn quirk(text: &str) -> Result<Quirk, String> {
     let (name, value) = text
         .split_once('=')
@@ -165,7 +163,7 @@ fn quirk(text: &str) -> Result<Quirk, String> {
     Ok((name.into(), value.into()))
 }
 
-/// A hand with these quirks; where a switch is set twice, the last one counts.
+/// A personality with these quirks; of a repeated switch, the last value counts.
 fn personality(quirks: &[Quirk]) -> Personality {
     let mut personality = Personality::default();
     for (name, value) in quirks {
@@ -175,7 +173,7 @@ fn personality(quirks: &[Quirk]) -> Personality {
     personality
 }
 
-/// All switches and positions, for the help text.
+/// All switches and values, for the help text.
 fn quirk_list() -> String {
     let mut text = String::from(
         "Quirks: what the hand does where the manual leaves a choice. The first value of each is the default.\n",

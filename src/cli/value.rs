@@ -5,7 +5,8 @@ use crate::hand::register::{self, Element, Register};
 use crate::hand::{Faults, Finger, Group, Status, TactileBlock};
 use serde_json::{Value, json};
 
-/// A register's bytes as a JSON value: a number, six numbers or words, or a fingertip. Null if the bytes do not fit it.
+/// A register's bytes as a JSON value: a number, a list of numbers or words, or a fingertip. Null if the length does
+/// not match.
 pub(crate) fn value_json(row: &Register, bytes: &[u8]) -> Value {
     if bytes.len() != usize::from(row.len) {
         return Value::Null;
@@ -50,7 +51,7 @@ pub(crate) fn value_text(row: &Register, bytes: &[u8]) -> String {
     line.trim_end().to_owned()
 }
 
-/// Elements stand apart; the faults of one joint stand together.
+/// Separates elements by `between`, and the faults of one joint by `+`.
 fn words(value: &Value, between: &str) -> String {
     match value {
         Value::Null => "-".into(),

@@ -1,4 +1,4 @@
-//! The wires that a hand is served on for other programs: which the user asks for, and a server on each.
+//! Wires on which a hand is served to other programs: the command line, and a server per wire.
 
 use crate::cli::listen;
 use crate::cli::parse::number;
@@ -52,19 +52,19 @@ pub(crate) struct WireArgs {
 
 /// A wire being served.
 pub(crate) struct ServedWire {
-    /// Kind and place, as they are announced.
+    /// Kind and place, as announced.
     name: String,
     /// Resolves only on failure.
     served: BoxFuture<'static, anyhow::Error>,
 }
 
 impl ServedWire {
-    /// The line that tells of it.
+    /// Line that reports readiness.
     pub(crate) fn ready(&self) -> String {
         format!("ready {}", self.name)
     }
 
-    /// `closed` is the error of a server that ends without one.
+    /// `closed` is the error text of a server that ends without an error.
     fn new(
         kind: &str,
         place: String,
@@ -83,7 +83,7 @@ impl ServedWire {
     }
 }
 
-/// What is spoken on a pseudo-terminal.
+/// Protocol on a pseudo-terminal.
 #[derive(Clone, Copy)]
 enum PtyProtocol {
     Rs485,
@@ -100,7 +100,7 @@ pub(crate) async fn failed(wires: Vec<ServedWire>) -> anyhow::Error {
 }
 
 impl WireArgs {
-    /// Serves the hands on all of them.
+    /// Serves the hands on all wires.
     pub(crate) async fn serve(&self, hands: &SimHands) -> anyhow::Result<Vec<ServedWire>> {
         let mut wires = Vec::new();
         if let Some(address) = self.tcp {

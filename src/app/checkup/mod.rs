@@ -1,4 +1,4 @@
-//! Check-ups in the window: the one that runs, and what the last one came to. What is measured and judged is in
+//! Check-ups in the window: the running one and the last result. Measurements and judgements are defined in
 //! [`crate::checkup`]. Draws nothing.
 
 pub mod state;

@@ -1,12 +1,12 @@
-//! Where files go that nobody is asked about: a folder of the day in the user's documents. Writes nothing.
+//! Destination of files that are saved without asking: a folder per day in the user's documents. Writes nothing.
 
 use directories::UserDirs;
 use std::path::{Path, PathBuf};
 
-/// Names another folder in place of the user's documents.
+/// Environment variable that overrides the user's documents folder.
 const VARIABLE: &str = "HANDSCOPE_DOCUMENTS";
 
-/// The user's documents; `None` if they have no home.
+/// The user's documents folder; `None` if the user has no home.
 pub fn documents() -> Option<PathBuf> {
     if let Some(own) = std::env::var_os(VARIABLE).filter(|own| !own.is_empty()) {
         return Some(own.into());
@@ -16,17 +16,17 @@ pub fn documents() -> Option<PathBuf> {
     Some(documents.unwrap_or_else(|| user.home_dir().join("Documents")))
 }
 
-/// The folder of all that nobody was asked about, in these documents.
+/// The program's folder in the documents folder.
 pub fn of_all(documents: &Path) -> PathBuf {
     documents.join("Handscope")
 }
 
-/// The folder of a day, `2026-11-21`, in these documents.
+/// The folder of a day, `2026-11-21`, in the documents folder.
 pub fn of_day(documents: &Path, day: &str) -> PathBuf {
     of_all(documents).join(day)
 }
 
-/// A path in this folder at which nothing lies: the name, or the name with a number before its ending, if it has one.
+/// Returns an unused path in this folder: the name, or the name with a number before its extension, if any.
 pub fn free_path(folder: &Path, name: &str) -> PathBuf {
     let (stem, ending) = name.split_at(name.rfind('.').unwrap_or(name.len()));
     let numbered = (2..).map(|number| format!("{stem}-{number}{ending}"));

@@ -1,4 +1,4 @@
-//! What the program stands on: its runtime and clock, how wires are opened, how files are asked for, and tasks beside the window.
+//! The program's environment: runtime, clock, opening of wires, file dialogs, and background tasks.
 
 pub mod day_folder;
 pub(crate) mod running;
@@ -12,32 +12,31 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What the program stands on.
+/// The program's environment.
 #[derive(Clone)]
 pub struct Env {
-    /// Where links live, tasks run and files are written.
+    /// Runtime for links, tasks and file access.
     pub runtime: tokio::runtime::Handle,
-    /// The program's clock.
     pub clock: Clock,
-    /// How wires are opened.
+    /// Opens wires.
     pub dial: Arc<dyn Dial>,
-    /// How gamepads are read.
+    /// Opens gamepads.
     pub pads: OpenPads,
-    /// Called when something new is there.
+    /// Called when there is something new to show.
     pub wake: Wake,
-    /// How the user is asked where a file should go.
+    /// Asks the user for file paths.
     pub files: Arc<dyn ChooseFile>,
-    /// How a file is shown in the system's file manager.
+    /// Reveals a file in the system's file manager.
     pub reveal: Reveal,
-    /// Where settings are kept; `None` = nowhere.
+    /// Path of the settings file; `None` = settings are not stored.
     pub settings_path: Option<PathBuf>,
-    /// The user's documents: what nobody was asked about goes into a folder of the day in them; `None` = nowhere.
+    /// The user's documents folder, for files saved without asking; `None` = none.
     pub documents: Option<PathBuf>,
-    /// What the window did not look at in time.
+    /// Number of task steps that the window missed.
     pub lost_steps: LostSteps,
 }
 
-/// Steps of tasks that the window did not look at in time. Copies are the same count.
+/// Number of task steps that the window did not read in time. Clones share the count.
 #[derive(Debug, Clone, Default)]
 pub struct LostSteps(Arc<AtomicU64>);
 
@@ -46,33 +45,34 @@ impl LostSteps {
         self.0.fetch_add(count, Ordering::Relaxed);
     }
 
-    /// How many since the last call.
+    /// Returns the count since the last call.
     pub(crate) fn take(&self) -> u64 {
         self.0.swap(0, Ordering::Relaxed)
     }
 }
 
-/// Shows a file in the system's file manager. Called off the window's thread; comes back once it is known whether that began.
+/// Reveals a file in the system's file manager. Called off the window's thread; returns once the start has succeeded or
+/// failed.
 pub type Reveal = Arc<dyn Fn(&Path) -> io::Result<()> + Send + Sync>;
 
-/// Where there is no file manager: says so.
+/// Used where there is no file manager; always fails.
 pub fn no_reveal() -> Reveal {
     Arc::new(|_| Err(io::Error::other("there is no file manager")))
 }
 
-/// Asks the user where a file should go. Called on the window's thread; what it gives is awaited elsewhere.
+/// Asks the user for a file path. Called on the window's thread; the result is awaited elsewhere.
 pub trait ChooseFile: Send + Sync + 'static {
-    /// Resolves to the chosen place; `None` if there was no choice. `suggested` is a file name.
+    /// Resolves to the chosen path; `None` if the user chose none. `suggested` is a file name.
     fn choose(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>>;
 
-    /// Resolves to a file that is there, to be read; `None` if there was no choice.
+    /// Resolves to an existing file to read; `None` if the user chose none.
     fn open(&self, suggested: &str) -> BoxFuture<'static, Option<PathBuf>>;
 
-    /// Resolves to a folder that is there, to put another into; `None` if there was no choice.
+    /// Resolves to an existing folder to create another in; `None` if the user chose none.
     fn folder(&self) -> BoxFuture<'static, Option<PathBuf>>;
 }
 
-/// Where nobody can be asked: nothing is ever chosen.
+/// Used where there are no dialogs; never chooses a path.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoChoice;
 

@@ -1,4 +1,4 @@
-//! A task that runs beside the window: its steps with their times, and its end.
+//! A background task of the window: its timestamped steps, and its result.
 
 use crate::app::env::{Env, LostSteps};
 use crate::hand::Moment;
@@ -7,10 +7,10 @@ use tokio::sync::broadcast;
 use tokio::sync::broadcast::error::TryRecvError;
 use tokio_util::task::AbortOnDrop;
 
-/// Steps that may wait for the window: five seconds of a hand that follows. A window that does not look for longer gets the newest.
+/// Capacity of the step queue: five seconds of a following hand. A window that does not read for longer gets the newest steps.
 const STEPS_MAX: usize = 1024;
 
-/// A task under way. Dropping it breaks it off.
+/// A running task. Dropping it aborts the task.
 #[derive(Debug)]
 pub(crate) struct Running<S, E> {
     steps: broadcast::Receiver<(Moment, S)>,
@@ -19,7 +19,7 @@ pub(crate) struct Running<S, E> {
     _task: AbortOnDrop,
 }
 
-/// Where a task tells its steps.
+/// Sender of a task's steps.
 pub(crate) struct Steps<S> {
     told: broadcast::Sender<(Moment, S)>,
     env: Env,
@@ -27,14 +27,14 @@ pub(crate) struct Steps<S> {
 
 impl<S> Steps<S> {
     pub(crate) fn tell(&self, step: S) {
-        // A receiver that is gone means that nobody wants to know.
+        // A dropped receiver means that the window no longer needs the steps.
         let _told = self.told.send((self.env.clock.now(), step)).is_ok();
         (self.env.wake)();
     }
 }
 
 impl<S: Clone + Send + 'static, E: Send + 'static> Running<S, E> {
-    /// Begins a task.
+    /// Starts a task.
     pub(crate) fn start<F>(env: &Env, task: impl FnOnce(Steps<S>) -> F) -> Self
     where
         F: Future<Output = E> + Send + 'static,
@@ -57,14 +57,14 @@ impl<S: Clone + Send + 'static, E: Send + 'static> Running<S, E> {
         }
     }
 
-    /// What was told since the last call, and the end once it is there. All steps come before the end.
+    /// Returns the steps since the last call, and the result once the task has ended. All steps come before the result.
     pub(crate) fn news(&mut self) -> (Vec<(Moment, S)>, Option<E>) {
         let end = BackgroundJob::take_from(&mut self.end);
         (waiting(&mut self.steps, &self.lost), end)
     }
 }
 
-/// All that waits; what had to go before it was looked at is counted.
+/// Returns all queued steps and counts those that were overwritten before they were read.
 fn waiting<T: Clone>(steps: &mut broadcast::Receiver<T>, lost: &LostSteps) -> Vec<T> {
     let mut all = Vec::new();
     loop {

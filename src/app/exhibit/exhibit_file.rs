@@ -1,4 +1,4 @@
-//! The file of an exhibition on disk, with the poses and the logo that it names. Read whole or not at all.
+//! Exhibition file on disk, with the pose file and the logo that it names. Loaded completely or not at all.
 
 use crate::app::env::Env;
 use crate::app::exhibit::{Exhibition, Logo};
@@ -13,15 +13,15 @@ use std::io::{Cursor, ErrorKind, Read as _};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Anything longer is no file of an exhibition.
+/// Maximum size of an exhibition file in bytes.
 const FILE_LEN_MAX: u64 = 64 * 1024;
-/// The same for a logo, and what it may have of rows and columns.
+/// Maximum size of a logo in bytes, and its maximum width and height in pixels.
 const LOGO_LEN_MAX: u64 = 4 * 1024 * 1024;
 const LOGO_SIZE_MAX: u32 = 2048;
-/// The name that is asked for.
+/// File name suggested in the dialog.
 const FILE_NAME: &str = "handscope-exhibit.toml";
 
-/// What is shown without a file.
+/// The built-in exhibition, shown without a file.
 pub fn built_in() -> Option<Exhibition> {
     file::built_in().map(|plan| Exhibition {
         plan: Arc::new(plan),
@@ -30,15 +30,15 @@ pub fn built_in() -> Option<Exhibition> {
     })
 }
 
-/// Asks for a file and reads it.
+/// Asks for an exhibition file and reads it.
 pub(crate) fn open(env: &Env) -> BackgroundJob<Result<Exhibition, NoticeKind>> {
     open::open(None, FILE_NAME, env, read)
 }
 
-/// Reads a file of an exhibition, and what it names.
+/// Reads an exhibition file and the files that it names.
 ///
 /// # Errors
-/// [`FileError`]: what cannot be read, and where.
+/// [`FileError`] if a file cannot be read, with the location.
 pub fn read(path: &Path) -> Result<Exhibition, FileError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     toml_file::load(path, FILE_LEN_MAX, |text| {
@@ -67,11 +67,11 @@ pub fn read(path: &Path) -> Result<Exhibition, FileError> {
     })
 }
 
-/// A file with a PIN is for its person alone.
+/// Rejects a file with a PIN that users other than its owner can access.
 #[cfg(unix)]
 fn is_private(path: &Path) -> Result<(), FileError> {
     use std::os::unix::fs::PermissionsExt as _;
-    // Others, or a group, that may read or write.
+    // Read and write permissions of group and others.
     const OTHERS: u32 = 0o066;
     let mode = std::fs::metadata(path)?.permissions().mode();
     if mode & OTHERS == 0 {
@@ -82,7 +82,7 @@ fn is_private(path: &Path) -> Result<(), FileError> {
     let path = if path.chars().all(is_plain) {
         path
     } else {
-        // As a shell wants it.
+        // Quoted for a shell.
         format!("'{}'", path.replace('\'', "'\\''"))
     };
     Err(FileError {
@@ -91,20 +91,20 @@ fn is_private(path: &Path) -> Result<(), FileError> {
     })
 }
 
-/// Who may read a file is not asked here.
+/// File permissions are not checked on this platform.
 #[cfg(not(unix))]
 fn is_private(_path: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// A file that is named lies below the folder of the one that names it, also where links lead.
+/// Rejects a named file that lies outside the folder of the exhibition file, after resolving links.
 fn stays_inside(folder: &Path, named: &NamedFile<'_>) -> Result<(), FileError> {
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")
     } else {
         folder
     };
-    // What is not there is told when it is read.
+    // A missing file is reported when it is read.
     let (Ok(folder), Ok(file)) = (folder.canonicalize(), named.path.canonicalize()) else {
         return Ok(());
     };
@@ -142,7 +142,7 @@ fn pixels(path: &Path) -> Result<Logo, png::DecodingError> {
     let mut bytes = vec![0; reader.output_buffer_size().unwrap_or_default()];
     let info = reader.next_frame(&mut bytes)?;
     bytes.truncate(info.buffer_size());
-    // One gray and one opacity a pixel, where the picture has no colours.
+    // Gray and opacity per pixel: the picture has no colours.
     let rgba: Vec<u8> = match info.color_type.samples() {
         2 => {
             let pixels = bytes.as_chunks().0.iter();

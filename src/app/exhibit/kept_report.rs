@@ -1,4 +1,5 @@
-//! The report of the day, kept in a file and on a page beside it, off the window's thread. A restart counts on.
+//! The report of the day, stored in a file with an HTML page next to it, in the background. Counting resumes after a
+//! restart.
 
 use crate::app::env::day_folder;
 use crate::app::files::open::put_aside;
@@ -16,33 +17,33 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::runtime::Handle;
 
-/// A report is written so often at most: what a crash loses is one minute.
+/// Minimum interval between writes: a crash loses at most one minute.
 const WRITE_EVERY: Duration = Duration::from_secs(60);
-/// A day of a hundred pieces is a tenth of this; anything longer is no report.
+/// Maximum size of a report in bytes: ten times a day of a hundred pieces.
 const FILE_LEN_MAX: u64 = 256 * 1024;
 
-/// What lies there of the day, and what the user should know about the file.
+/// Stored report of the day, and a notice for the user about the file.
 type ReadReport = (Option<DayReport>, Option<NoticeKind>);
 
-/// The report of today, and what its file holds of it. Without documents nothing is kept.
+/// Today's report and its file. Without a documents folder nothing is stored.
 #[derive(Debug)]
 pub struct KeptReport {
     today: DayReport,
     documents: Option<PathBuf>,
     runtime: Handle,
-    /// What the file holds, or will in a moment.
+    /// Contents of the file, including a write in progress.
     kept: DayReport,
     reading: Option<BackgroundJob<ReadReport>>,
     writing: Option<BackgroundJob<Result<(), NotSaved>>>,
     begun: Option<Moment>,
-    /// The file of the day was read, or there was none, or it was set aside. Before that it stays as it is.
+    /// True once the file of the day was read, was missing, or was set aside. Until then it must not be overwritten.
     may_write: bool,
     unreadable: Option<NoticeKind>,
     not_saved: Option<NoticeKind>,
 }
 
 impl KeptReport {
-    /// Reads and counts nothing before the first [`KeptReport::tick`].
+    /// Creates an empty report; reads and counts nothing before the first [`KeptReport::tick`].
     pub(crate) fn new(documents: Option<PathBuf>, runtime: Handle) -> Self {
         Self {
             today: DayReport::default(),
@@ -58,22 +59,22 @@ impl KeptReport {
         }
     }
 
-    /// What was counted today.
+    /// Today's counts.
     pub const fn today(&self) -> &DayReport {
         &self.today
     }
 
-    /// Why something is in no file, if that is so.
+    /// Notices about reading and saving that have failed.
     pub fn troubles(&self) -> impl Iterator<Item = &NoticeKind> {
         self.unreadable.iter().chain(&self.not_saved)
     }
 
-    /// Counts something, after the first [`KeptReport::tick`].
+    /// Counts an event. Call [`KeptReport::tick`] first.
     pub(crate) fn count(&mut self, event: &ExhibitEvent) {
         self.today.count(event);
     }
 
-    /// Looks at the hand at this time since 1970; reads and writes what is due.
+    /// Records the state of the hand at this time since 1970; reads and writes files when due.
     pub(crate) fn tick(&mut self, hand: &Hand, since_1970: Duration, now: Moment) {
         self.take_ended();
         let day = calendar::day(since_1970);
@@ -94,7 +95,7 @@ impl KeptReport {
         }
     }
 
-    /// Writes what is not written yet. True when all is in the file, or cannot be.
+    /// Writes unsaved changes. Returns true once everything is saved, or cannot be.
     pub(crate) fn flush(&mut self, now: Moment) -> bool {
         self.take_ended();
         if !self.is_busy() && self.today != self.kept {
@@ -103,7 +104,7 @@ impl KeptReport {
         !self.is_busy()
     }
 
-    /// True while something is read or written.
+    /// True while a read or write is in progress.
     pub(crate) const fn is_busy(&self) -> bool {
         self.reading.is_some() || self.writing.is_some()
     }
@@ -134,14 +135,14 @@ impl KeptReport {
         }
     }
 
-    /// Where the report of the day lies; its page lies beside it.
+    /// Path of the day's report; its page lies next to it.
     fn path(&self) -> Option<PathBuf> {
         let (documents, day) = (self.documents.as_deref()?, &self.today.day);
         Some(day_folder::of_day(documents, day).join(format!("exhibit-{day}.toml")))
     }
 
     fn write(&mut self, now: Moment) {
-        // One that fails is not tried again before something changes.
+        // A failed write is not repeated until something changes.
         self.kept = self.today.clone();
         self.begun = Some(now);
         if let Some(path) = self.path().filter(|_| self.may_write) {
@@ -172,7 +173,7 @@ impl KeptReport {
                 self.not_saved = Some(NoticeKind::not_saved(path, &error));
             }
             Some(Ok(())) => {
-                // What was missing is written now, if it was of the same day.
+                // A successful write clears the failure of the same day.
                 let day = self.path();
                 self.not_saved.take_if(|told| match told {
                     NoticeKind::NotSaved { path, .. } => Some(path.with_extension("toml")) == day,
@@ -183,7 +184,7 @@ impl KeptReport {
     }
 }
 
-/// The report of the day that lies here, if any does. One that cannot be read is set aside, and that is told.
+/// Loads the report of the day, if there is one. An unreadable file is set aside, with a notice.
 fn load(path: &Path, day: &str) -> ReadReport {
     let read = || -> Result<Option<DayReport>, FileError> {
         let text = read_text(path, FILE_LEN_MAX)?;
@@ -205,7 +206,7 @@ fn save(path: &Path, report: &DayReport) -> Result<(), NotSaved> {
     put(&path.with_extension("html"), page)
 }
 
-/// What was read or written changes nothing that is shown.
+/// A no-op wake: reading and writing do not change the display.
 fn nobody() -> Arc<dyn Fn() + Send + Sync> {
     Arc::new(|| ())
 }

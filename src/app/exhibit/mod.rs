@@ -1,4 +1,4 @@
-//! The exhibition that is shown in place of the window: what it shows, what the user may do in it.
+//! The exhibition shown in place of the window: its contents and the user's actions.
 
 pub mod exhibit_file;
 pub mod kept_report;

@@ -1,4 +1,4 @@
-//! The file that keeps wrong PINs of an exhibition over a restart, beside the settings.
+//! The file in which wrong PINs of an exhibition outlast a restart, next to the settings.
 
 use crate::exhibit::pin::{TRIES, WrongPins};
 use crate::store::FileText;
@@ -8,7 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 const FORMAT: &str = "handscope-exhibit-pin";
-/// Anything longer is no such file.
+/// Maximum size in bytes.
 const FILE_LEN_MAX: u64 = 4096;
 
 #[derive(Serialize, Deserialize)]
@@ -19,12 +19,12 @@ struct PinRow {
     waited: bool,
 }
 
-/// Where it lies.
+/// Path of the file.
 pub(crate) fn beside(settings: &Path) -> PathBuf {
     settings.with_file_name("exhibit-pin.toml")
 }
 
-/// What it holds. Without a file nothing was wrong; with one that cannot be read it was as much as one wait is due.
+/// Loads the count. A missing file means none; an unreadable file counts as enough wrong PINs for a wait.
 pub(crate) fn load(path: &Path) -> WrongPins {
     if matches!(path.try_exists(), Ok(false)) {
         return WrongPins::default();
@@ -44,10 +44,10 @@ pub(crate) fn load(path: &Path) -> WrongPins {
     }
 }
 
-/// Its text.
+/// Serializes the count.
 ///
 /// # Errors
-/// What the writer of the format says.
+/// The error of the TOML serializer.
 pub(crate) fn text(wrong: &WrongPins) -> io::Result<String> {
     let row = PinRow {
         format: FORMAT.into(),

@@ -1,4 +1,4 @@
-//! Saving to a file that the user chooses: how the place is asked for, and what is written there. Never blocks the window.
+//! Saving exports to files: choice of the path, and the contents. Never blocks the window.
 
 use crate::app::env::Env;
 use crate::app::env::day_folder;
@@ -19,38 +19,38 @@ use crate::trials::overshoot_file;
 use std::io;
 use std::sync::Arc;
 
-/// The form of an exported list of frames.
+/// Format of an exported list of frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TrafficForm {
-    /// A table with a head, for spreadsheets.
+    /// Table with a header row, for spreadsheets.
     Csv,
-    /// One JSON object a line.
+    /// One JSON object per line.
     JsonLines,
 }
 
-/// What is to be saved.
+/// Contents to export.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Export {
     /// Frames of the wire, in this order.
     Traffic(TrafficForm, Vec<Arc<Frame>>),
-    /// What the plots show, as comma-separated values.
+    /// Plotted values, as CSV.
     Plots(Table),
-    /// What was recorded around a fault, as comma-separated values.
+    /// Recording of a fault, as CSV.
     Recording(Table),
-    /// A finished picture of the plots, as the bytes of a PNG file.
+    /// Picture of the plots, as the bytes of a PNG file.
     Picture(Vec<u8>),
-    /// The page of a check-up.
+    /// Report page of a check-up.
     Checkup(Box<CheckupReport>),
     /// Poses and sequences.
     Poses(PoseLibrary),
-    /// What a hand keeps, as it was read.
+    /// Persistent parameters of a hand, as read.
     Params(Box<ParamsFile>),
-    /// What trials measured of a hand.
+    /// Measured overshoot of a hand.
     Overshoot(Arc<OvershootMap>),
 }
 
 impl Export {
-    /// The name that is suggested for the file.
+    /// Suggested file name.
     pub const fn file_name(&self) -> &'static str {
         match self {
             Self::Traffic(TrafficForm::Csv, _) => "handscope-traffic.csv",
@@ -65,7 +65,7 @@ impl Export {
         }
     }
 
-    /// Entries in it; a picture is one.
+    /// Number of entries; a picture counts as one.
     pub fn entries(&self) -> usize {
         match self {
             Self::Traffic(_, frames) => frames.len(),
@@ -102,8 +102,8 @@ fn frame_lines(form: TrafficForm, frames: &[Arc<Frame>]) -> String {
     text
 }
 
-/// Writes into the folder of the day in the user's documents, under a name that is free; where there are none, asks for
-/// a place. What to tell the user of it.
+/// Saves under an unused name in the day's folder in the user's documents; without a documents folder, asks for a path.
+/// Yields the notice for the user.
 pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
     let chosen = match &env.documents {
         Some(documents) => {
@@ -129,9 +129,9 @@ pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
     })
 }
 
-/// Reads pieces on for as long as one frame of the window may take; the rest waits for the next one.
+/// Reads traffic for as long as one frame of the window permits; the rest waits for the next frame.
 pub(crate) fn read_on(traffic: &mut Traffic, now: crate::hand::Moment) {
-    /// As much as half of a full ring: opening the view shows it in two frames.
+    /// Half of a full ring: opening the view shows it in two frames.
     const ROUNDS: usize = 5;
     for _ in 0..ROUNDS {
         if !traffic.read_some(now) {

@@ -1,4 +1,4 @@
-//! Files of the program: settings, poses, what was found about hands, and what the user exports.
+//! Files of the program: settings, poses, findings about hands, and exports.
 
 pub mod export;
 pub(crate) mod open;

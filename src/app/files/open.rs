@@ -1,4 +1,4 @@
-//! Opening a file that the user chooses, away from the window's thread, and what becomes of one that cannot be read.
+//! Opens a file chosen by the user, in the background, and sets unreadable files aside.
 
 use crate::app::env::Env;
 use crate::app::notices::NoticeKind;
@@ -6,7 +6,7 @@ use crate::store::{BackgroundJob, FileError, on_thread, set_aside};
 use std::future::ready;
 use std::path::{Path, PathBuf};
 
-/// Reads a file: at a place that was typed, else one that is asked for by this name.
+/// Reads the file at the typed path, else asks the user for one, suggesting this name.
 pub(crate) fn open<T: Send + 'static>(
     typed: Option<PathBuf>,
     suggested: &str,
@@ -26,7 +26,7 @@ pub(crate) fn open<T: Send + 'static>(
     })
 }
 
-/// Puts a file of this program's own aside, as it is, because it could not be read.
+/// Sets an unreadable file of this program aside, unchanged.
 pub(crate) fn put_aside(path: &Path, error: FileError) -> NoticeKind {
     NoticeKind::FileIgnored {
         path: path.to_owned(),

@@ -1,4 +1,4 @@
-//! Files of poses on disk: read at start and for import, bounded, off the window's thread. Knows no setpoint.
+//! Pose files on disk: read at start and for import, size-limited, off the window's thread. Knows no setpoint.
 
 use crate::app::files::open::put_aside;
 use crate::app::notices::NoticeKind;
@@ -7,34 +7,34 @@ use crate::poses::library::PoseLibrary;
 use crate::store::{FileError, last_of, toml_file};
 use std::path::{Path, PathBuf};
 
-/// Five hundred poses are a quarter of this; anything longer is not a file of poses.
+/// Maximum size of a pose file in bytes: four times that of five hundred poses.
 const FILE_LEN_MAX: u64 = 1024 * 1024;
-/// The file's name, beside the settings and for export.
+/// File name for export.
 pub const FILE_NAME: &str = "handscope-poses.toml";
 
-/// Where poses lie, beside these settings.
+/// Path of the pose file next to these settings.
 pub fn path_beside(settings: &Path) -> PathBuf {
     settings.with_file_name("poses.toml")
 }
 
-/// Reads a file of poses.
+/// Reads a pose file.
 ///
 /// # Errors
-/// [`FileError`]: what cannot be read, and where.
+/// [`FileError`] if the file cannot be read, with the location.
 pub fn read(path: &Path) -> Result<PoseLibrary, FileError> {
     toml_file::load(path, FILE_LEN_MAX, file::read)
 }
 
-/// The file's text.
+/// Serializes the library.
 ///
 /// # Errors
-/// What the writer of the format says.
+/// The error of the serializer.
 pub fn text(library: &PoseLibrary) -> std::io::Result<String> {
     file::write(library).map_err(std::io::Error::other)
 }
 
-/// The library that was kept, and what the user should know about its file. An unreadable file is put aside and the
-/// last good one taken.
+/// Loads the stored library, with a notice for the user about its file. An unreadable file is set aside and the last
+/// good one is loaded.
 pub fn load(path: &Path) -> (PoseLibrary, Option<NoticeKind>) {
     if !path.exists() {
         return (PoseLibrary::default(), None);

@@ -1,4 +1,4 @@
-//! Settings on disk: read at start, written whole and off the window's thread. Knows no setpoint.
+//! Settings on disk: read at start, written completely, off the window's thread. Knows no setpoint.
 
 use crate::app::files::open::put_aside;
 use crate::app::notices::NoticeKind;
@@ -6,26 +6,26 @@ use crate::app::settings::Settings;
 use crate::store::toml_file::{self, FileText};
 use std::path::{Path, PathBuf};
 
-/// A settings file is a page of text; anything longer is not ours.
+/// Maximum size of a settings file in bytes; a valid one is a page of text.
 const FILE_LEN_MAX: u64 = 1024 * 1024;
-/// Where settings lie on this system; `None` if the user has no home.
+/// Default path of the settings on this system; `None` if the user has no home.
 pub fn default_path() -> Option<PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "handscope")?;
     Some(folders.config_dir().join("settings.toml"))
 }
 
-/// What was found.
+/// Result of loading settings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Loaded {
-    /// The settings in force.
+    /// Effective settings.
     pub settings: Settings,
-    /// True if they are the file's.
+    /// True if they come from the file.
     pub found: bool,
-    /// What the user should know about the file.
+    /// Notice for the user about the file.
     pub notice: Option<NoticeKind>,
 }
 
-/// Reads settings. A missing file means the defaults. A bad one too, and it is kept under another name.
+/// Loads settings. A missing or invalid file yields the defaults; an invalid one is set aside under another name.
 pub fn load(path: &Path) -> Loaded {
     if matches!(path.try_exists(), Ok(false)) {
         return Loaded::default();
@@ -44,15 +44,15 @@ pub fn load(path: &Path) -> Loaded {
     }
 }
 
-/// The settings as they are; `None` where there are none, or they cannot be read. The file stays where it is.
+/// Reads the settings without touching the file; `None` if they are missing or unreadable.
 pub fn peek(path: &Path) -> Option<Settings> {
     toml_file::load(path, FILE_LEN_MAX, |text| FileText::plain(text).parse()).ok()
 }
 
-/// The file's text.
+/// Serializes the settings.
 ///
 /// # Errors
-/// What the writer of the format says.
+/// The error of the TOML serializer.
 pub fn text(settings: &Settings) -> std::io::Result<String> {
     toml::to_string_pretty(settings).map_err(std::io::Error::other)
 }

@@ -1,4 +1,4 @@
-//! What a hand keeps, as the window shows and changes it.
+//! Persistent parameters of a hand, as the window shows and changes them.
 
 pub mod state;
 pub(crate) mod work;

@@ -1,4 +1,4 @@
-//! What is known of the rows that a hand keeps: read back, staged, saved, and the outcomes of the last writes. Sends nothing.
+//! Known state of a hand's persistent parameters: read, staged, saved, and the outcomes of the last writes. Sends nothing.
 
 use crate::app::env::running::Running;
 use crate::app::notices::NoticeKind;
@@ -25,114 +25,114 @@ use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// A value read this long ago may have been changed by someone else since; it is shown as old.
+/// Age from which a value is shown as stale: another client may have changed it since.
 pub const OUTDATED_AGE: Duration = Duration::from_secs(60);
-/// Switching between views does not make the program read the same rows again within this time.
+/// Minimum time before opening the view reads the same rows again.
 pub const REREAD_DELAY: Duration = Duration::from_secs(2);
 
-/// After this long, opening the view counts as looking anew.
+/// Opening the view after at least this long without it counts as a new visit.
 const LOOKED_AWAY: Duration = Duration::from_millis(500);
 
-/// What is being done.
+/// Current operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Doing {
     #[default]
     Nothing,
-    /// Rows are read.
+    /// Rows are being read.
     Reading,
-    /// Staged rows are written and read back.
+    /// Staged rows are being written and read back.
     Applying,
-    /// The backup is written.
+    /// The backup is being written.
     BackingUp,
-    /// SAVE was sent; its result is awaited.
+    /// SAVE was sent; its result is pending.
     Saving,
 }
 
-/// What waits for the user's confirmation.
+/// A write that awaits the user's confirmation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WriteQuestion {
-    /// What would be done.
+    /// Requested write.
     pub what: WriteRequest,
-    /// Why confirmation is needed.
+    /// Reasons why confirmation is required.
     pub dangers: Vec<Danger>,
-    /// What was staged before, and is again where it is declined.
+    /// Rows that were staged before; restored if the user declines.
     pub staged_before: Params,
 }
 
-/// What the user asked to write.
+/// Write requested by the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum WriteRequest {
-    /// These rows, into the hand's memory.
+    /// Write these rows to the hand's memory.
     Apply(Params),
-    /// What the hand holds, into its flash; what is staged is applied first.
+    /// Save the hand's parameters to its flash; staged rows are applied first.
     Save,
 }
 
-/// How a SAVE ended.
+/// Result of a SAVE.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum SaveEnd {
-    /// With this result from the hand, or without one.
+    /// SAVE was sent, with or without a reply from the hand.
     Told(Saved),
     /// The backup or the record could not be written: no SAVE was sent.
     NoBackup(BackupError),
-    /// The hand was gone: no SAVE was sent.
+    /// The hand was not reachable: no SAVE was sent.
     NotAsked(RequestError),
-    /// What was staged did not all come into force: no SAVE was sent.
+    /// Not all staged rows were applied: no SAVE was sent.
     NotApplied,
-    /// With this result, which could not be recorded.
+    /// SAVE was sent with this result, which could not be recorded.
     NotNoted(Saved, SystemError),
 }
 
-/// What is known of the rows that a hand keeps.
+/// Known state of a hand's persistent parameters.
 #[derive(Debug, Default)]
 pub struct ParamsState {
     live: BTreeMap<ParamId, (Value, Moment)>,
-    /// What was read first, before this program changed anything.
+    /// Values of the first read, before any change by this program.
     first: Params,
     pub(crate) staged: Params,
     pub(crate) outcomes: BTreeMap<ParamId, RowOutcome>,
-    /// When all rows were read last.
+    /// Time of the last complete read.
     pub read_at: Option<Moment>,
-    /// Whether a reading was begun since the hand was found.
+    /// True once a read has been started since the hand was found.
     pub(crate) is_asked: bool,
     pub(crate) lost_at: Option<Moment>,
     looked_at: Option<Moment>,
-    /// What is being done.
+    /// Current operation.
     pub doing: Doing,
-    /// Why the last reading is incomplete.
+    /// Reason why the last read is incomplete.
     pub trouble: Option<RequestError>,
-    /// What waits for the user's confirmation.
+    /// Write that awaits the user's confirmation.
     pub question: Option<WriteQuestion>,
-    /// The values that undo the last apply.
+    /// Values that undo the last apply.
     pub undo: Params,
-    /// How the last SAVE of this session ended, and when.
+    /// Result and time of the last SAVE in this session.
     pub save: Option<(SaveEnd, Moment)>,
-    /// The files of this hand; none where nothing is kept.
+    /// Files of this hand; `None` if nothing is stored.
     pub files: Option<Backups>,
-    /// What this program saved last.
+    /// Last save by this program.
     pub known: Known,
-    /// Why that could not be read.
+    /// Reason why `known` could not be read.
     pub unreadable: Option<FileError>,
     /// Backups, oldest first.
     pub backups: Vec<Backup>,
-    /// A file that is compared with the hand.
+    /// File that is compared with the hand.
     pub compared: Option<Compared>,
-    /// Why the last file was not opened.
+    /// Reason why the last file was not opened.
     pub file_refused: Option<NoticeKind>,
-    /// What is saved once the running apply is over, and with which dangers.
+    /// Save to perform after the running apply, with the dangers that the user has accepted.
     pub(crate) save_next: Option<Vec<Danger>>,
-    /// What runs.
+    /// Running task.
     pub(crate) task: Option<Running<ParamStep, ParamsEnd>>,
-    /// The files are being read.
+    /// Listing of the files in progress.
     pub(crate) listing: Option<BackgroundJob<FilesRead>>,
-    /// The hand whose files were looked at last.
+    /// Hand whose files were listed last.
     pub(crate) listed: Option<Endpoint>,
-    /// A file that is looked at is being chosen and read.
+    /// File to compare that is being chosen and read.
     pub(crate) opening: Option<BackgroundJob<Result<(PathBuf, ParamsFile), NoticeKind>>>,
 }
 
 impl ParamsState {
-    /// Nothing is known of the rows of the next connection.
+    /// Resets the state for the next connection.
     pub(crate) fn at_next_connection(self) -> Self {
         Self {
             listed: self.listed,
@@ -140,7 +140,7 @@ impl ParamsState {
         }
     }
 
-    /// Why the rows cannot be read now.
+    /// Reason why the rows cannot be read now.
     pub fn read_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
         if link.state.is_live() {
             self.is_busy().then_some(ParamRefusal::Busy)
@@ -149,34 +149,34 @@ impl ParamsState {
         }
     }
 
-    /// Why nothing that is kept may be written now.
+    /// Reason why persistent parameters cannot be written now.
     pub fn write_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
         let busy = || self.is_busy().then_some(ParamRefusal::Busy);
         rest_refusal(link).or_else(busy)
     }
 
-    /// Why what is staged cannot be applied now.
+    /// Reason why the staged rows cannot be applied now.
     pub fn apply_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
         let nothing = self.to_apply().is_empty();
         self.write_refusal(link)
             .or_else(|| nothing.then_some(ParamRefusal::NothingStaged))
     }
 
-    /// Why the last apply cannot be undone now.
+    /// Reason why the last apply cannot be undone now.
     pub fn undo_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
         let nothing = self.undo.is_empty();
         self.write_refusal(link)
             .or_else(|| nothing.then_some(ParamRefusal::NothingToUndo))
     }
 
-    /// Why the hand's parameters cannot be written to its flash now.
+    /// Reason why the hand's parameters cannot be saved to its flash now.
     pub fn save_refusal(&self, link: &LinkStatus) -> Option<ParamRefusal> {
         self.save_refusal_with(&Params::default(), link)
     }
 
-    /// The same where these values are staged first.
+    /// The same if these values are staged first.
     pub fn save_refusal_with(&self, more: &Params, link: &LinkStatus) -> Option<ParamRefusal> {
-        // A SAVE whose result is in doubt may be tried again, and what was never saved here may be elsewhere than in flash.
+        // A SAVE with a doubtful result may be repeated, and without a known save the flash may differ from the hand.
         let is_known = self.known.saved.is_some() && self.known.doubtful.is_none();
         let before = self.before_changes(&self.live_params());
         let after = self.to_save().with(more);
@@ -190,7 +190,7 @@ impl ParamsState {
         self.write_refusal(link).or(refused.map(|(_, why)| why))
     }
 
-    /// How fresh a row's value is, on a link that is live or not.
+    /// Freshness of a row's value on a link that is live or not.
     pub fn freshness(&self, id: ParamId, is_live: bool, now: Moment) -> Freshness {
         let Some((_, at)) = self.live(id) else {
             return Freshness::Unknown;
@@ -203,12 +203,12 @@ impl ParamsState {
         }
     }
 
-    /// What was read last, if anything was on this connection, and when.
+    /// Last value read on this connection and its time; `None` if the row was not read.
     pub fn live(&self, id: ParamId) -> Option<(Value, Moment)> {
         self.live.get(&id).copied()
     }
 
-    /// All that was read.
+    /// All values read.
     pub fn live_params(&self) -> Params {
         let mut params = Params::default();
         for (id, (value, _)) in &self.live {
@@ -217,47 +217,47 @@ impl ParamsState {
         params
     }
 
-    /// Takes what a recording says was read.
+    /// Replaces the read values by those of a recording.
     pub(crate) fn take_recorded(&mut self, params: &Params, at: Moment) {
         let known = |id: ParamId| Some((id, (params.get(id)?, at)));
         self.live = ParamId::all().into_iter().filter_map(known).collect();
     }
 
-    /// The staged value of a row, if there is one.
+    /// Staged value of a row, if any.
     pub fn staged(&self, id: ParamId) -> Option<Value> {
         self.staged.get(id)
     }
 
-    /// All that is staged.
+    /// All staged values.
     pub const fn all_staged(&self) -> &Params {
         &self.staged
     }
 
-    /// What Apply would write. Rows that decide where the hand answers are changed in a dialog instead.
+    /// Rows that Apply would write. Rows that determine the hand's address are changed in a dialog instead.
     pub fn to_apply(&self) -> Params {
         self.staged.only(|id| !id.is_place())
     }
 
-    /// What a SAVE makes last: what the hand holds, with what is staged.
+    /// Rows that a SAVE would write: the hand's values with the staged ones.
     pub fn to_save(&self) -> Params {
         self.live_params().with(&self.to_apply())
     }
 
-    /// What the hand wakes up with as far as this program knows: what it saved last, else what it read first. Of rows that
-    /// were never read it is what the hand holds.
+    /// Presumed power-up values: those last saved by this program, else those first read. For rows that were never read,
+    /// the values in `holds`.
     pub fn before_changes(&self, holds: &Params) -> Params {
         let saved = self.known.saved.as_ref().map(|file| &file.params);
         let read = holds.with(&self.first);
         saved.map_or_else(|| read.clone(), |saved| read.with(saved))
     }
 
-    /// The rows that a SAVE would change for the next power-up, as far as this program knows.
+    /// Rows that a SAVE would change for the next power-up, as far as this program knows.
     pub fn unsaved(&self) -> Vec<ParamDifference> {
         let before = self.before_changes(&self.live_params());
         before.differences(&self.to_save())
     }
 
-    /// The joints that would wake up hitting harder than before, or harder at once.
+    /// Joints that would close harder after the next power-up, or immediately.
     pub(crate) fn save_dangers(&self, overshoot: &OvershootMap) -> Vec<Danger> {
         let (live, after) = (self.live_params(), self.to_save());
         let mut all = worse(&self.before_changes(&live), &after, overshoot);
@@ -269,7 +269,7 @@ impl ParamsState {
         all
     }
 
-    /// What this program saved last.
+    /// Value last saved by this program.
     pub fn saved(&self, id: ParamId) -> Option<Value> {
         self.known.saved.as_ref()?.params.get(id)
     }
@@ -279,7 +279,7 @@ impl ParamsState {
         self.outcomes.get(&id)
     }
 
-    /// True while something is running.
+    /// True while an operation is running.
     pub fn is_busy(&self) -> bool {
         self.doing != Doing::Nothing
     }
@@ -292,22 +292,22 @@ impl ParamsState {
         others.iter().flatten().any(differs)
     }
 
-    /// Notes that the user looks at the rows. True if they should now be read: when the view is opened, and when a hand is found
-    /// while it is open.
+    /// Notes that the user is viewing the rows. Returns true if they should be read now: when the view is opened, and when a
+    /// hand is found while it is open.
     pub(crate) fn look(&mut self, now: Moment) -> bool {
         let before = self.looked_at.replace(now);
         let comes = before.is_none_or(|at| now.since(at) > LOOKED_AWAY);
         !self.is_asked || comes && self.is_due(now)
     }
 
-    /// True if the rows are worth reading again.
+    /// True if the rows should be read again.
     pub fn is_due(&self, now: Moment) -> bool {
         let lost = self.lost_at;
         let young = |at: Moment| now.since(at) < REREAD_DELAY && lost.is_none_or(|lost| lost < at);
         !self.is_asked || !self.read_at.is_some_and(young)
     }
 
-    /// Stages a value, or drops it. Values that may not be written are not staged.
+    /// Stages a value, or removes it with `None`. Values that must not be written are not staged.
     pub(crate) fn stage(&mut self, id: ParamId, value: Option<Value>) {
         match value {
             None => self.staged.forget(id),
@@ -322,7 +322,7 @@ impl ParamsState {
         self.outcomes.clear();
     }
 
-    /// Takes values that were read.
+    /// Applies a block of values that was read.
     pub(crate) fn take(&mut self, span: Span, bytes: &[u8], at: Moment) {
         let mut read = Params::default();
         read.take(span, bytes);
@@ -334,8 +334,8 @@ impl ParamsState {
         }
     }
 
-    /// Takes the outcome of writing a row. A row that the hand refused, dropped or took otherwise shows the hand's value
-    /// again; one of which nothing is known stays staged and is not known any more.
+    /// Applies the outcome of writing a row. A row that the hand rejected, ignored or changed shows the hand's value
+    /// again; an unverified one stays staged, and its live value becomes unknown.
     pub(crate) fn written(&mut self, row: RowOutcome, at: Moment) {
         match (&row.verdict, row.holds) {
             (RowVerdict::NotSent(_), _) => {}
@@ -352,76 +352,76 @@ impl ParamsState {
         self.outcomes.insert(row.id, row);
     }
 
-    /// True if all that was staged is in force.
+    /// True if all staged rows were applied.
     pub(crate) fn is_applied(&self) -> bool {
         let mut ends = self.outcomes.values();
         self.to_apply().is_empty() && ends.all(|end| end.verdict == RowVerdict::Applied)
     }
 
-    /// True while a SAVE is under way.
+    /// True while a SAVE is in progress.
     pub fn is_saving(&self) -> bool {
         self.doing == Doing::Saving
     }
 
-    /// When the hand comes back it may be another one, or have been switched off: earlier readings are old.
+    /// Marks earlier readings as stale: after reconnecting, the hand may be a different one or have been power-cycled.
     pub(crate) const fn link_lost(&mut self, now: Moment) {
         self.lost_at = Some(now);
         self.is_asked = false;
     }
 }
 
-/// One thing that the user asks for.
+/// A user request.
 #[derive(Debug, Clone, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum ParamAction {
     /// Read all rows. Writes nothing.
     Read,
-    /// Write the staged rows, except those that decide where the hand answers, and read them back.
+    /// Write the staged rows, except those that determine the hand's address, and read them back.
     Apply,
-    /// Put back what the last apply changed, in the same way.
+    /// Restore the rows that the last apply changed, in the same way.
     Undo,
-    /// Write the hand's parameters to its flash, after a backup.
+    /// Save the hand's parameters to its flash, after a backup.
     Save,
-    /// Stage these values and ask for the same. Declined, they are not staged any more.
+    /// Stage these values and save. If the user declines, they are unstaged.
     SaveWith(Params),
-    /// Confirm: go on in spite of the dangers shown.
+    /// Confirm: continue despite the dangers shown.
     Agree,
     /// Decline: nothing is written.
     Decline,
-    /// Stage the hand's current speeds and forces as the defaults after power-up. Writes nothing.
+    /// Stage the hand's current speeds and forces as the power-up defaults. Writes nothing.
     CopyLive,
-    /// Drop everything that is staged.
+    /// Unstage everything.
     UnstageAll,
     /// Ask for a path, and write a parameter file there.
     Dump,
-    /// Compare a parameter file with the hand: a backup or one whose path was typed, else one that is asked for. Writes nothing.
+    /// Compare a parameter file with the hand: at the given path, else ask the user for one. Writes nothing.
     Open(Option<PathBuf>),
-    /// Tick a row of the file, or not.
+    /// Toggle the selection of a row of the file.
     Tick(ParamId),
-    /// Stage the rows that are ticked. Writes nothing.
+    /// Stage the selected rows. Writes nothing.
     StageTicked,
     CloseFile,
 }
 
-/// Why not.
+/// Reason for a refusal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ParamRefusal {
     /// No hand answers.
     NoHand,
-    /// Setpoints pass.
+    /// The hand is armed.
     Armed,
     /// A stop is being confirmed.
     Holding,
-    /// A joint moves.
+    /// A joint is moving.
     Moving,
-    /// Whether the hand rests is not known.
+    /// It is unknown if the hand is at rest.
     RestUnknown,
-    /// Something is under way.
+    /// An operation is in progress.
     Busy,
-    /// Nothing is staged that can be applied.
+    /// No staged row can be applied.
     NothingStaged,
     /// The last apply changed nothing, or there was none.
     NothingToUndo,
-    /// The hand holds what was saved last.
+    /// The hand's values equal those last saved.
     NothingToSave,
     /// There is no folder for the backup.
     NoFolder,
@@ -429,7 +429,7 @@ pub enum ParamRefusal {
     NothingRead,
 }
 
-/// Why nothing may be done now that needs a hand that is there, disarmed and at rest.
+/// Reason why an operation is refused that requires a connected, disarmed hand at rest.
 pub const fn rest_refusal(link: &LinkStatus) -> Option<ParamRefusal> {
     match (link.state, link.rest) {
         (LinkState::Offline | LinkState::Identifying, _) => Some(ParamRefusal::NoHand),
@@ -443,17 +443,17 @@ pub const fn rest_refusal(link: &LinkStatus) -> Option<ParamRefusal> {
     }
 }
 
-/// A file that is compared with the hand.
+/// File compared with the hand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
     pub name: String,
-    /// What it holds.
+    /// Contents of the file.
     pub file: ParamsFile,
     ticked: BTreeSet<ParamId>,
 }
 
 impl Compared {
-    /// Ticks the rows in which the hand differs. A row that says where a hand is found belongs to one hand, so only the user ticks it.
+    /// Selects the rows in which the hand differs. Address rows are specific to one hand, so only the user selects them.
     pub fn new(name: String, file: ParamsFile, live: &Params) -> Self {
         let differ = live.differences(&file.params).into_iter();
         let ticked = differ.map(|row| row.id).filter(|id| !id.is_place());
@@ -464,25 +464,25 @@ impl Compared {
         }
     }
 
-    /// Whether a row is ticked.
+    /// True if a row is selected.
     pub fn is_ticked(&self, id: ParamId) -> bool {
         self.ticked.contains(&id)
     }
 
-    /// Ticks a row that the file holds, or takes the tick away.
+    /// Toggles the selection of a row that the file contains.
     pub fn tick(&mut self, id: ParamId) {
         if self.file.params.get(id).is_some() && !self.ticked.remove(&id) {
             self.ticked.insert(id);
         }
     }
 
-    /// The rows that are ticked.
+    /// Selected rows.
     pub fn chosen(&self) -> Params {
         self.file.params.only(|id| self.is_ticked(id))
     }
 }
 
-/// How a task ended.
+/// Result of a task.
 #[derive(Debug)]
 pub(crate) enum ParamsEnd {
     Read(ReadRows),
@@ -490,7 +490,7 @@ pub(crate) enum ParamsEnd {
     Saved(Result<SaveReport, TaskError>),
 }
 
-/// What the files of a hand hold.
+/// Contents of a hand's files.
 #[derive(Debug)]
 pub(crate) struct FilesRead {
     pub(crate) files: Backups,

@@ -1,5 +1,5 @@
-//! What the user asks about the rows that a hand keeps, and the tasks that do it. Reads before it writes; asks before what
-//! could hurt.
+//! Handling of parameter requests, and the tasks that carry them out. Reads before it writes; asks before dangerous
+//! changes.
 
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
@@ -29,20 +29,20 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Speed and force in force are read all the time; older ones are not copied.
+/// Maximum age of speeds and forces to be copied; they are read continuously.
 const COPY_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// The hand whose parameters are read or written, and how tasks on it are started.
+/// The hand whose parameters are read or written, and the environment for its tasks.
 #[derive(Clone, Copy)]
 pub(crate) struct ParamsHand<'a> {
     pub(crate) connection: &'a Connection,
-    /// What trials measured of it.
+    /// Measured overshoot of the hand.
     pub(crate) overshoot: &'a Arc<OvershootMap>,
     pub(crate) env: &'a Env,
 }
 
 impl ParamsState {
-    /// Carries out what the user asked for.
+    /// Handles a user request.
     pub(crate) fn act(
         &mut self,
         action: ParamAction,
@@ -106,7 +106,7 @@ impl ParamsState {
                 }
             }
             ParamAction::CloseFile => self.compared = None,
-            // Carried out by the program, which has the files.
+            // Handled by the program, which owns the files.
             ParamAction::Dump => {}
         }
     }
@@ -134,14 +134,14 @@ impl ParamsState {
         }
     }
 
-    /// Reads the rows because somebody looks at them, if it is due.
+    /// Reads the rows when their view is shown, if due.
     pub(crate) fn look_at(&mut self, hand: ParamsHand<'_>, now: Moment) {
         if self.look(now) && self.read_refusal(&hand.connection.status).is_none() {
             self.read_rows(hand);
         }
     }
 
-    /// Starts what reads or writes rows, if there is a link.
+    /// Starts a task that reads or writes rows, if there is a link.
     fn start<F>(
         &mut self,
         doing: Doing,
@@ -177,7 +177,7 @@ impl ParamsState {
         });
     }
 
-    /// Shows what a SAVE would change.
+    /// Asks the user to confirm a SAVE, with its dangers.
     fn ask_save(&mut self, staged_before: Params, overshoot: &OvershootMap) {
         self.question = Some(WriteQuestion {
             what: WriteRequest::Save,
@@ -209,7 +209,7 @@ impl ParamsState {
         }
     }
 
-    /// Takes in what tasks and files gave, and keeps the files of the hand of now at hand.
+    /// Applies results of tasks and file reads, and lists the files of the current hand.
     pub(crate) fn tick(&mut self, hand: ParamsHand<'_>, ctx: &mut Ctx<'_>) {
         let connection = hand.connection;
         let (link, now) = (&connection.status, ctx.now);
@@ -250,12 +250,12 @@ impl ParamsState {
             return;
         }
         let files = Backups::new(&folder, hand);
-        // The built-in hand begins as it was delivered: whatever was saved in an earlier one is gone.
+        // The built-in hand starts with factory values: saves of an earlier one are void.
         let forgets = hand.is_sim() && self.listed.as_ref() != Some(hand);
         self.listed = Some(hand.clone());
         let list = on_thread(move || {
             if forgets {
-                // What cannot be forgotten is shown with its date.
+                // A record that cannot be removed is shown with its date.
                 let _forgotten = files.forget_saved();
             }
             Ok(FilesRead::of(files))

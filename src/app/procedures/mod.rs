@@ -1,4 +1,4 @@
-//! What is done to a hand only under a card: a change of its place, a return to the factory's parameters, a calibration.
+//! Procedures guided by a card: change of the hand's address, reset to factory parameters, calibration.
 
 pub mod procedure;
 pub mod work;

@@ -1,4 +1,4 @@
-//! Cards at work: opening one, deciding on it, and what its task tells.
+//! Operation of cards: opening, decisions, and the steps of the task.
 
 use crate::app::ctx::Ctx;
 use crate::app::env::running::Running;
@@ -25,7 +25,7 @@ use std::sync::Arc;
 use tokio::sync::{mpsc, oneshot};
 
 impl Procedures {
-    /// Opens the card of a change. Where the wire could not follow the hand, there is none.
+    /// Opens the card of an address change. None is opened if the wire could not follow the hand.
     pub(crate) fn open_place_change(
         &mut self,
         id: ParamId,
@@ -63,7 +63,7 @@ impl Procedures {
         }));
     }
 
-    /// Opens the card of a return to the factory's parameters.
+    /// Opens the card of a reset to factory parameters.
     pub(crate) fn open_reset(&mut self, connection: &Connection) {
         if let Some(hand) = connection.endpoint.as_ref().filter(|_| self.card.is_none()) {
             self.card = Some(Procedure::Reset(ResetProcedure {
@@ -86,12 +86,12 @@ impl Procedures {
         }
     }
 
-    /// The user goes elsewhere: the card closes, and nothing more is done for it.
+    /// Closes the card and aborts its task when the user leaves.
     pub(crate) fn close(&mut self) {
         *self = Self::default();
     }
 
-    /// Carries out what the user decided on the card.
+    /// Handles the user's decision on the card.
     pub(crate) fn act(
         &mut self,
         action: ProcedureAction,
@@ -114,7 +114,7 @@ impl Procedures {
                     ProcedureAction::Save => (card.saves.take(), true),
                     ProcedureAction::LeaveUnsaved => (card.saves.take(), false),
                 };
-                // A task that is over has no ears.
+                // A finished task no longer listens.
                 let _heard = answer.map(|answer| answer.send(agrees));
             }
             (_, Procedure::Reset(_) | Procedure::Calibrate(_)) => {}
@@ -131,7 +131,7 @@ impl Procedures {
             Some(folder) => Ok(Backups::new(folder, hand)),
             None => Err(TaskError::NoBackup(BackupError::NoFolder)),
         };
-        // A task asks for one place, and waits until it is there.
+        // A task requests one address at a time and waits for its link.
         let (requests, requested) = mpsc::channel(1);
         let mut reach = Asking {
             requests,
@@ -179,12 +179,12 @@ impl Procedures {
         self.requested = Some(requested);
     }
 
-    /// Where the task under the card wants the link now.
+    /// Link request of the card's task, if pending.
     pub(crate) fn wants_link(&mut self) -> Option<GoRequest> {
         self.requested.as_mut()?.try_recv().ok()
     }
 
-    /// Looks at the readings while a calibration asks whether the hand is ready for it.
+    /// Updates the preconditions while a calibration card waits for its start.
     pub(crate) fn watch(&mut self, sample: &HandSample) {
         if let Some(Procedure::Calibrate(card)) = &mut self.card
             && card.stage == ProcedureStage::Asking
@@ -193,7 +193,7 @@ impl Procedures {
         }
     }
 
-    /// Takes in what the task under the card told. True once it is over.
+    /// Applies the steps of the card's task. Returns true once it has ended.
     pub(crate) fn take_news(
         &mut self,
         params: &mut ParamsState,
@@ -237,7 +237,7 @@ impl Procedures {
         }
     }
 
-    /// Where the hand is once a change of its place is over: not where it was looked for on the way.
+    /// Address of the hand after an address change has ended; not one that was only tried on the way.
     pub(crate) fn home(&self) -> Option<Endpoint> {
         let Some(Procedure::Place(card)) = &self.card else {
             return None;
@@ -246,7 +246,7 @@ impl Procedures {
     }
 }
 
-/// What the hand holds in a row by which it is found: as read back last, else as it said when the link began.
+/// Current value of an address row: as last read back, else as reported when the link was opened.
 pub fn held_now(id: ParamId, link: &LinkStatus, params: &ParamsState) -> Option<Value> {
     let told = match id {
         ParamId::HandId => link.quirks.hand_id,
@@ -258,7 +258,7 @@ pub fn held_now(id: ParamId, link: &LinkStatus, params: &ParamsState) -> Option<
     read.or(told)
 }
 
-/// The hand at another address on the network; as it is where its wire is none.
+/// Endpoint of the hand at another network address; unchanged for other wires.
 fn at_address(hand: &Endpoint, wanted: Value) -> Endpoint {
     let mut place = hand.clone();
     if let (Endpoint::Tcp { host, .. }, Value::Address(address)) = (&mut place, wanted) {

@@ -1,16 +1,16 @@
-//! Faults now and before, joint by joint, latched until the user has seen them. Words are in `hand`.
+//! Current and past faults per joint, latched until the user marks them as seen. Texts are in `hand`.
 //!
-//! The rule: a new fault is unseen, and only the user's act marks it as seen, one entry or all. Opening the
-//! list is not enough, and neither is clearing errors: a fault that ended before anybody read it is worth a word. What
-//! comes again is unseen again.
+//! The rule: a new fault is unseen, and only the user's action marks it as seen, one entry or all. Opening the list is
+//! not enough, and neither is clearing errors: a fault that ended before the user noticed it must still be shown. A
+//! recurring fault is unseen again.
 
 use crate::hand::{Dof, Fault, Group, Groups, HandSample, Moment, Status};
 use std::time::Duration;
 
-/// Entries that can be: per joint eight fault bits and three protective codes. One entry each, so it cannot grow.
+/// Maximum number of entries: eight fault bits and three protective codes per joint, one entry each.
 pub const FAULT_ENTRIES_MAX: usize = 6 * (8 + 3);
 
-/// What is wrong.
+/// Kind of a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum FaultKind {
     /// A bit of ERROR (manual 2.6.18).
@@ -20,7 +20,7 @@ pub enum FaultKind {
 }
 
 impl FaultKind {
-    /// Stable lower-case name, as session files have it.
+    /// Stable lower-case name, as used in session files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Fault(fault) => fault.name(),
@@ -28,15 +28,15 @@ impl FaultKind {
         }
     }
 
-    /// The fault or protective code of this name.
+    /// Fault or protective code with this name.
     pub fn named(name: &str) -> Option<Self> {
         let faults = (0..8).map(|bit| Self::Fault(Fault::from_bit(bit)));
         let codes = (0..8).map(|raw| Self::Status(Status::from_raw(raw)));
         faults.chain(codes).find(|kind| kind.name() == name)
     }
 
-    /// Whether CLEAR_ERROR can clear it (manual 2.6.3); `None` where the manual does not say: unknown bits, and status
-    /// codes, which follow from the faults.
+    /// True if CLEAR_ERROR can clear it (manual 2.6.3); `None` if the manual does not specify it: unknown bits, and
+    /// status codes, which follow from the faults.
     pub const fn clearable(self) -> Option<bool> {
         match self {
             Self::Fault(fault) => fault.clearable(),
@@ -45,55 +45,54 @@ impl FaultKind {
     }
 }
 
-/// Why CLEAR_ERROR would clear nothing now.
+/// Reason why CLEAR_ERROR would have no effect now.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum NothingToClear {
-    /// Nothing is wrong.
+    /// There is no active fault.
     NoFault,
-    /// What is wrong ends by itself when the drive is cool, and not before.
+    /// The active faults end by themselves once the drive has cooled down.
     OnlyHeat,
 }
 
-/// One thing that is or was wrong with one joint.
+/// A current or past fault of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FaultEntry {
-    /// The joint.
     pub dof: Dof,
     pub what: FaultKind,
-    /// When it came for the first time.
+    /// First occurrence.
     pub first: Moment,
-    /// When it came, this time.
+    /// Start of the latest occurrence.
     pub since: Moment,
-    /// When the hand last said so.
+    /// Time of the last report that the fault is active.
     pub last: Moment,
-    /// When the hand first said that it is over; `None` while it lasts.
+    /// Time of the first report that the fault is over; `None` while active.
     pub until: Option<Moment>,
-    /// Times it came.
+    /// Number of occurrences.
     pub count: u32,
-    /// The user said that they have seen it, this time.
+    /// True if the user has marked the latest occurrence as seen.
     pub seen: bool,
 }
 
 impl FaultEntry {
-    /// True while it lasts.
+    /// True while the fault lasts.
     pub const fn is_active(&self) -> bool {
         self.until.is_none()
     }
 
-    /// How long it lasts, or lasted when it came last.
+    /// Duration of the latest occurrence so far.
     pub fn lasted(&self, now: Moment) -> Duration {
         self.until.unwrap_or(now).since(self.since)
     }
 }
 
-/// Faults now and before.
+/// Current and past faults.
 #[derive(Debug, Clone, Default)]
 pub struct FaultList {
     entries: Vec<FaultEntry>,
 }
 
 impl FaultList {
-    /// Takes in what the hand says now. True if something is wrong that was not wrong before.
+    /// Applies a sample. Returns true if a fault is active that was not active before.
     pub fn update(&mut self, sample: &HandSample, fresh: Groups, now: Moment) -> bool {
         let mut news = false;
         if let Some(faults) = sample.faults.filter(|_| fresh.contains(Group::Faults)) {
@@ -110,7 +109,7 @@ impl FaultList {
         }
         if let Some(statuses) = sample.status.filter(|_| fresh.contains(Group::Status)) {
             for (dof, status) in statuses.value.iter() {
-                // A drive that reports faults stops because of them: that is one story and not two.
+                // A drive with reported faults stops because of them: its status adds no second entry.
                 let explained = sample.faults.is_some_and(|all| !all.value[dof].is_empty());
                 if status.is_protective() && !explained {
                     news |= self.see(dof, FaultKind::Status(*status), now);
@@ -125,26 +124,26 @@ impl FaultList {
         news
     }
 
-    /// The user has seen this one.
+    /// Marks one fault as seen.
     pub fn see_one(&mut self, dof: Dof, what: FaultKind) {
         for entry in &mut self.entries {
             entry.seen |= entry.dof == dof && entry.what == what;
         }
     }
 
-    /// The user has seen all of them.
+    /// Marks all faults as seen.
     pub fn see_all(&mut self) {
         for entry in &mut self.entries {
             entry.seen = true;
         }
     }
 
-    /// Those that no user has seen yet, lasting or over, newest first.
+    /// Entries that the user has not marked as seen, active or over, newest first.
     pub fn unseen(&self) -> impl Iterator<Item = &FaultEntry> {
         self.iter().filter(|entry| !entry.seen)
     }
 
-    /// Why CLEAR_ERROR would clear nothing; `None` if it clears something, or may.
+    /// Reason why CLEAR_ERROR would have no effect; `None` if it has or may have one.
     pub fn nothing_to_clear(&self) -> Option<NothingToClear> {
         let mut any = false;
         for entry in self.entries.iter().filter(|entry| entry.is_active()) {
@@ -160,7 +159,7 @@ impl FaultList {
         })
     }
 
-    /// What lasts first, then what is over and unseen, then the rest; the newest first within each.
+    /// All entries: active ones first, then unseen past ones, then the rest; each group newest first.
     pub fn iter(&self) -> impl Iterator<Item = &FaultEntry> {
         let mut sorted: Vec<&FaultEntry> = self.entries.iter().collect();
         sorted.sort_by_key(|entry| {
@@ -170,12 +169,12 @@ impl FaultList {
         sorted.into_iter()
     }
 
-    /// What lasts, newest first.
+    /// Active faults, newest first.
     pub fn active(&self) -> impl Iterator<Item = &FaultEntry> {
         self.iter().filter(|entry| entry.is_active())
     }
 
-    /// True if it was not active before.
+    /// Records an occurrence. Returns true if the fault was not active before.
     fn see(&mut self, dof: Dof, what: FaultKind, now: Moment) -> bool {
         let known = self
             .entries

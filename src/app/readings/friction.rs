@@ -1,43 +1,43 @@
-//! How the grip of a fingertip stands against slipping, for a friction that the user chose. Draws nothing.
+//! Slip margin of a fingertip's grip, for a friction coefficient chosen by the user. Draws nothing.
 
 use crate::hand::TactileBlock;
 
-/// Below this normal force a ratio of forces says nothing, in newtons.
+/// Normal force in newtons below which the ratio of forces is meaningless.
 const CONTACT_N: f32 = 0.2;
-/// Margin up to which a grip counts as near to slipping.
+/// Margin up to which a grip counts as close to slipping.
 pub(crate) const NEAR: f32 = 0.2;
-/// A state is left only when the margin is this much beyond the limit at which it was entered.
+/// A state is left only when the margin exceeds its entry limit by this amount.
 const HYSTERESIS: f32 = 0.06;
 
-/// The forces of a grip.
+/// Ratio of the forces of a grip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum FrictionUse {
-    /// Nothing known.
+    /// No reading.
     Unknown,
-    /// Too little force to say.
+    /// The normal force is too small for a ratio.
     Loose,
-    /// Tangential over normal force.
+    /// Tangential divided by normal force.
     Ratio(f32),
 }
 
-/// What they come to.
+/// Slip state of a grip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum FrictionState {
-    /// Nothing known.
+    /// No reading.
     #[default]
     Unknown,
     /// No contact.
     Loose,
     /// Far from slipping.
     Firm,
-    /// Near to slipping.
+    /// Close to slipping.
     Near,
     /// Beyond the friction: the alarm.
     Slips,
 }
 
 impl FrictionUse {
-    /// As the newest block says.
+    /// Computes the ratio from the newest block.
     pub(crate) fn of(block: Option<&TactileBlock>) -> Self {
         let forces = block.and_then(|block| block.normal().zip(block.tangential()));
         match forces {
@@ -47,7 +47,7 @@ impl FrictionUse {
         }
     }
 
-    /// How much of the friction is left, 1 = all, below 0 = more than there is.
+    /// Remaining share of the friction: 1 = all, below 0 = exceeded.
     pub(crate) fn margin(self, friction: f32) -> Option<f32> {
         match self {
             Self::Ratio(ratio) if friction > 0.0 => Some(1.0 - ratio / friction),
@@ -57,7 +57,7 @@ impl FrictionUse {
 }
 
 impl FrictionState {
-    /// What comes after this state. A margin that wavers around a limit does not make the alarm flicker.
+    /// Next state. Hysteresis prevents the alarm from flickering when the margin varies around a limit.
     pub(crate) fn next(self, grip: FrictionUse, friction: f32) -> Self {
         let Some(margin) = grip.margin(friction) else {
             return match grip {

@@ -1,5 +1,5 @@
-//! What is read of a hand, and the readers of that: faults and what happened around them, peaks, taring, friction. A live hand and
-//! a replayed recording have the same.
+//! Readings of a hand and what is derived from them: faults and their recordings, peaks, tare, friction. Used for live hands and
+//! replayed recordings alike.
 
 pub mod fault_recorder;
 pub mod faults;
@@ -19,48 +19,48 @@ use crate::history::{History, MarkKind};
 use crate::transport::Endpoint;
 use std::time::Duration;
 
-/// How much a shown value can be trusted.
+/// Freshness of a shown value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Freshness {
-    /// Never read on this connection: shown as "-".
+    /// Never read on this connection; shown as "-".
     Unknown,
-    /// From a live link and young.
+    /// Recent, from a live link.
     Live,
-    /// Older than about three readings of this wire take, or the link is gone: greyed out, with its age.
+    /// Older than about three reading intervals, or the link is lost; greyed out, with its age.
     Stale,
 }
 
-/// What was read on one connection.
+/// Readings of one connection.
 #[derive(Debug, Default)]
 pub struct Readings {
-    /// The newest of everything the hand said, with its times. Kept when the link is lost, and then old.
+    /// Newest values from the hand, with their times. Retained, as stale values, when the link is lost.
     pub sample: HandSample,
-    /// How often angles, and with them what else tells the motion, are read.
+    /// Reading interval of the angles and the other motion values.
     pub pace: ReadingPace,
-    /// How often a fingertip is read.
+    /// Reading interval of each fingertip.
     pub tip_pace: PerFinger<ReadingPace>,
-    /// What the tactile channels are counted from.
+    /// Zero points of the tactile channels.
     pub tare: Tare,
-    /// The highest forces of the last seconds.
+    /// Peak forces of the last seconds.
     pub peaks: ForcePeaks,
-    /// Faults now and before.
+    /// Current and past faults.
     pub faults: FaultList,
-    /// What is gripped.
+    /// Grip estimate.
     pub grip: GripEstimator,
 }
 
-/// What was measured of a hand, over as many connections as it was connected.
+/// Measurements of a hand across connections.
 #[derive(Debug, Default)]
 pub struct Measured {
-    /// What was measured over the last minutes.
+    /// Measurements of the last minutes.
     pub history: History,
-    /// What happened around faults. Goes on with the next hand.
+    /// Recordings around faults. They are retained when the hand changes.
     pub recorder: FaultRecorder,
     of: Option<Endpoint>,
 }
 
 impl Readings {
-    /// Takes a reading, dated `at`; gives the faults that are new with it.
+    /// Applies a sample received at `at`; returns the faults that are new with it.
     pub(crate) fn take(
         &mut self,
         sample: &HandSample,
@@ -89,18 +89,18 @@ impl Readings {
         self.faults.active().filter(is_new).copied().collect()
     }
 
-    /// How fresh a value asked for at `asked` is now, on a link that is live or not.
+    /// Freshness of a value requested at `asked`, on a link that is live or not.
     pub fn freshness(&self, asked: Option<Moment>, is_live: bool, now: Moment) -> Freshness {
         freshness(asked, self.pace, is_live, now)
     }
 
-    /// The same for the reading of a fingertip.
+    /// Freshness of a fingertip's reading.
     pub fn tip_freshness(&self, finger: Finger, is_live: bool, now: Moment) -> Freshness {
         let asked = self.sample.tactile[finger].map(|block| block.asked);
         freshness(asked, self.tip_pace[finger], is_live, now)
     }
 
-    /// The pose that the hand has, if all six angles are known, live and fresh.
+    /// The current pose, if all six angles are known, live and fresh.
     pub fn pose_now(&self, is_live: bool, now: Moment) -> Option<PerDof<Angle>> {
         let angle = self.sample.angle?;
         let is_fresh = self.freshness(Some(angle.asked), is_live, now) == Freshness::Live;
@@ -118,12 +118,12 @@ fn freshness(asked: Option<Moment>, pace: ReadingPace, is_live: bool, now: Momen
 }
 
 impl Measured {
-    /// The hand is left; it was called so.
+    /// Finishes the recording of the hand, which had this name, when it is disconnected.
     pub(crate) fn leave(&mut self, name: &str, now: Moment) {
         self.recorder.another_hand(&self.history, name, now);
     }
 
-    /// This hand is connected. One that is another only by its place goes on where it was.
+    /// Starts measuring this hand. If only its address has changed, the history continues.
     pub(crate) fn begin(&mut self, hand: &Endpoint, is_moved: bool) {
         if self.of.as_ref() != Some(hand) {
             self.of = Some(hand.clone());
@@ -133,7 +133,7 @@ impl Measured {
         }
     }
 
-    /// Adds a reading dated `at`, and the faults that are new with it.
+    /// Adds a sample received at `at`, and the faults that are new with it.
     pub(crate) fn take(
         &mut self,
         sample: &HandSample,
@@ -151,16 +151,16 @@ impl Measured {
     }
 }
 
-/// Nothing is old sooner.
+/// Minimum age at which a value counts as stale.
 pub const STALE_AFTER_LEAST: Duration = Duration::from_millis(250);
-/// Everything is old then.
+/// Age at which every value counts as stale.
 pub const STALE_AFTER_MOST: Duration = Duration::from_secs(3);
-/// Readings that may be missed.
+/// Number of reading intervals that may be missed.
 const MISSED: u32 = 3;
-/// Intervals that are looked at.
+/// Number of intervals considered.
 const INTERVALS: usize = 4;
 
-/// The last intervals between readings.
+/// The most recent intervals between readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ReadingPace {
     last: Option<Moment>,
@@ -168,7 +168,7 @@ pub struct ReadingPace {
 }
 
 impl ReadingPace {
-    /// Something was asked for at this moment, and came.
+    /// Records a successful reading that was requested at this moment.
     pub fn take(&mut self, asked: Moment) {
         if let Some(last) = self.last.replace(asked) {
             self.intervals.rotate_left(1);
@@ -178,7 +178,7 @@ impl ReadingPace {
         }
     }
 
-    /// From which age on it is old.
+    /// Age from which the reading counts as stale.
     pub fn stale_after(&self) -> Duration {
         let longest = self.intervals.iter().max().copied().unwrap_or_default();
         (longest * MISSED).clamp(STALE_AFTER_LEAST, STALE_AFTER_MOST)

@@ -1,22 +1,21 @@
-//! The highest force of each joint over the last seconds: what a glance at a moving bar misses.
+//! Peak force of each joint over the last seconds: a moving bar is too fast to read.
 
 use crate::hand::{HandSample, Moment, PerDof};
 use std::time::Duration;
 
-/// How long a peak stays.
+/// Time for which a peak is held.
 pub const PEAK_HOLD: Duration = Duration::from_secs(3);
 
-/// The held peaks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ForcePeaks(PerDof<Option<(i16, Moment)>>);
 
 impl ForcePeaks {
-    /// The highest force of this joint in g, and when it was; `None` before the first reading.
+    /// Peak force of this joint in g and its time; `None` before the first reading.
     pub fn get(&self, dof: crate::hand::Dof) -> Option<(i16, Moment)> {
         self.0[dof]
     }
 
-    /// Takes in a new reading of the forces. Readings that are not documented are left out.
+    /// Applies a new force reading. Undocumented values are ignored.
     pub(crate) fn update(&mut self, sample: &HandSample) {
         let Some(force) = sample.force else { return };
         for (dof, peak) in self.0.iter_mut() {

@@ -1,47 +1,46 @@
-//! What the tactile channels are counted from: the first reading of an untouched fingertip, or the one that the user chose.
-//! Changes no reading.
+//! Zero points of the tactile channels: the first reading of an untouched fingertip, or one chosen by the user. Readings
+//! themselves are unchanged.
 
 use crate::hand::{Finger, HandSample, Moment, PerFinger};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-/// From this normal force on a fingertip counts as touched, in newtons: its own noise stays below.
+/// Normal force in newtons from which a fingertip counts as touched; its noise stays below.
 pub const TOUCHED_N: f32 = 0.3;
 
-/// The reading of one fingertip that its channels are counted from.
+/// Zero point of one fingertip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TareZero {
     /// The eight channels, counts.
     pub raw: [u32; 8],
-    /// When it was received.
+    /// Time at which the reading was received.
     pub at: Moment,
-    /// Where it comes from.
     pub source: Source,
 }
 
-/// Where the zero of a fingertip comes from.
+/// Source of a fingertip's zero point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
-    /// The first reading of the untouched fingertip.
+    /// First reading of the untouched fingertip.
     First,
-    /// The user tared it.
+    /// Tared by the user.
     Person,
-    /// The user tared it in an earlier session, so long before [`TareZero::at`].
+    /// Tared by the user in an earlier session, this long before [`TareZero::at`].
     Kept(Duration),
 }
 
-/// A taring as it is kept from one start to the next.
+/// Persistent form of a tare.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct KeptTare {
-    /// When, in seconds since 1970.
+    /// Time of the tare in seconds since 1970.
     pub unix_s: u64,
-    /// The eight channels of the fingertips that were tared, counts, by the finger's name.
+    /// The eight channels of each tared fingertip in counts, by the finger's name.
     pub tips: BTreeMap<String, [u32; 8]>,
 }
 
-/// A taring that was kept, and how old it was when the hand was found.
+/// A stored tare, and its age when the hand was found.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Offer {
     kept: KeptTare,
@@ -49,34 +48,34 @@ struct Offer {
     at: Moment,
 }
 
-/// The zeros of all fingertips, and those before the last taring.
+/// Zero points of all fingertips, and those before the last tare.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Tare {
     zeros: PerFinger<Option<TareZero>>,
     before: Option<PerFinger<Option<TareZero>>>,
-    /// Looked for once a connection.
+    /// `None` until the stored tare has been looked up for this connection.
     offer: Option<Option<Offer>>,
 }
 
 impl Tare {
-    /// What this fingertip is counted from; `None` before it was read untouched.
+    /// Zero point of this fingertip; `None` before it was read untouched.
     pub fn zero(&self, finger: Finger) -> Option<TareZero> {
         self.zeros[finger]
     }
 
-    /// When the user tared last, if one did and it was not undone.
+    /// Time of the user's last tare; `None` if there was none or it was undone.
     pub fn chosen_at(&self) -> Option<Moment> {
         let chosen = self.zeros.iter().filter_map(|(_, zero)| *zero);
         let chosen = chosen.filter(|zero| zero.source == Source::Person);
         chosen.map(|zero| zero.at).max()
     }
 
-    /// Whether there is a taring to take back.
+    /// True if there is a tare to undo.
     pub const fn can_undo(&self) -> bool {
         self.before.is_some()
     }
 
-    /// Takes the first reading of each untouched fingertip as its zero.
+    /// Uses the first reading of each untouched fingertip as its zero point.
     pub(crate) fn begin(&mut self, sample: &HandSample) {
         for (finger, zero) in self.zeros.iter_mut() {
             if zero.is_none() && load(sample, finger).is_none() {
@@ -85,8 +84,8 @@ impl Tare {
         }
     }
 
-    /// Counts these fingertips from their newest reading. A fingertip without reading keeps what it had. Nothing is
-    /// changed where one is touched: that one, and what presses it in newtons.
+    /// Tares these fingertips to their newest readings. A fingertip without a reading keeps its zero point. If one is
+    /// touched, nothing changes and the error holds that finger and its force in newtons.
     pub(crate) fn tare(
         &mut self,
         fingers: impl IntoIterator<Item = Finger>,
@@ -116,12 +115,12 @@ impl Tare {
         Ok(())
     }
 
-    /// True once it was looked for what is kept of the hand.
+    /// True once the stored tare has been looked up.
     pub(crate) const fn was_offered(&self) -> bool {
         self.offer.is_some()
     }
 
-    /// Offers what is kept of the hand, if there is something. `since_1970` and `now` are the same moment.
+    /// Offers the stored tare of the hand, if any. `since_1970` and `now` are the same moment.
     pub(crate) fn offer(&mut self, kept: Option<KeptTare>, since_1970: Duration, now: Moment) {
         let offer = |kept: KeptTare| Offer {
             age: since_1970.saturating_sub(Duration::from_secs(kept.unix_s)),
@@ -131,14 +130,14 @@ impl Tare {
         self.offer = Some(kept.map(offer));
     }
 
-    /// How old the taring is that is offered; `None` if there is none.
+    /// Age of the offered tare; `None` if none is offered.
     pub fn offered(&self, now: Moment) -> Option<Duration> {
         let offer = self.offer.as_ref()?.as_ref()?;
         Some(offer.age + now.since(offer.at))
     }
 
-    /// Counts these fingertips from what was kept, where it was. Nothing is changed where one is touched: that one, and
-    /// what presses it in newtons.
+    /// Tares these fingertips to the stored values, if any. If one is touched, nothing changes and the error holds that
+    /// finger and its force in newtons.
     pub(crate) fn take_kept(
         &mut self,
         fingers: impl IntoIterator<Item = Finger>,
@@ -158,7 +157,7 @@ impl Tare {
         })
     }
 
-    /// What the user chose, to be kept; else what was kept before. `since_1970` and `now` are the same moment.
+    /// Tare to store: the user's, else the one stored before. `since_1970` and `now` are the same moment.
     pub(crate) fn to_keep(&self, since_1970: Duration, now: Moment) -> Option<KeptTare> {
         let Some(at) = self.chosen_at() else {
             let offer = self.offer.as_ref()?.as_ref();
@@ -174,7 +173,7 @@ impl Tare {
         })
     }
 
-    /// Takes the last taring back, once.
+    /// Undoes the last tare, once.
     pub(crate) fn undo(&mut self) {
         if let Some(before) = self.before.take() {
             self.zeros = before;
@@ -182,7 +181,7 @@ impl Tare {
     }
 }
 
-/// What presses a fingertip that is touched, in newtons.
+/// Normal force on a touched fingertip in newtons; `None` if untouched.
 fn load(sample: &HandSample, finger: Finger) -> Option<f32> {
     let normal = sample.tactile[finger]?.value.normal()?;
     (normal >= TOUCHED_N).then_some(normal)

@@ -1,4 +1,4 @@
-//! What the user says of a recording, in a small file beside it: its name, a star, notes. The recording itself is never changed.
+//! User metadata of a recording, in a small file next to it: name, star, notes. The recording itself is never changed.
 
 use crate::hand::Moment;
 use crate::record::EventKind;
@@ -9,42 +9,41 @@ use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Bytes of such a file: some thousand notes.
+/// Maximum size of the metadata file in bytes: room for about a thousand notes.
 const FILE_LEN_MAX: u64 = 1024 * 1024;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RecordingNote {
-    /// Microseconds of the recording's own clock.
+    /// Timestamp in microseconds on the recording's own clock.
     pub at_micros: u64,
-    /// What was noted.
     pub words: String,
 }
 
-/// What the user says of a recording.
+/// User metadata of a recording.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RecordingAbout {
-    /// Its name; empty if it has none.
+    /// Name given by the user; empty if none.
     pub name: String,
-    /// Kept, whatever the budget says.
+    /// True if the recording is exempt from the storage budget.
     pub star: bool,
-    /// The notes as the user left them, in place of those in the recording; `None` if nobody changed them.
+    /// Notes edited by the user, which replace those in the recording; `None` if they are unedited.
     pub notes: Option<Vec<RecordingNote>>,
-    /// Keys of a later version, kept as they are.
+    /// Keys from a later version, preserved on save.
     #[serde(flatten)]
     pub others: toml::Table,
 }
 
 impl RecordingAbout {
-    /// Where it stands beside a recording.
+    /// Path of the metadata file of a recording.
     pub fn path(recording: &Path) -> PathBuf {
         recording.with_extension("toml")
     }
 
-    /// Reads it; nothing is said of a recording without such a file.
+    /// Loads the metadata; a recording without a metadata file gets the default.
     ///
     /// # Errors
-    /// [`FileError`]: what cannot be read, and where.
+    /// [`FileError`] if the file cannot be read, with the location.
     pub fn load(recording: &Path) -> Result<Self, FileError> {
         let path = Self::path(recording);
         if matches!(path.try_exists(), Ok(false)) {
@@ -53,20 +52,20 @@ impl RecordingAbout {
         toml_file::load(&path, FILE_LEN_MAX, |text| FileText::plain(text).parse())
     }
 
-    /// Writes it. A file there that cannot be read is put aside.
+    /// Saves the metadata. An existing file that cannot be read is set aside.
     ///
     /// # Errors
-    /// What the system says.
+    /// The I/O error of the system.
     pub fn save(&self, recording: &Path) -> io::Result<()> {
         let text = toml::to_string_pretty(self).map_err(io::Error::other)?;
         if Self::load(recording).is_err() {
-            // Whatever the user wrote there by hand is kept under another name.
+            // Preserves manual edits under another name.
             let _aside = set_aside(&Self::path(recording));
         }
         replace(&Self::path(recording), text.as_bytes())
     }
 
-    /// The notes in force: the user's, else those of the recording.
+    /// Effective notes: the user's, else those in the recording.
     pub fn notes(&self, marks: &[FileMark]) -> Vec<RecordingNote> {
         if let Some(notes) = &self.notes {
             return notes.clone();
@@ -80,7 +79,7 @@ impl RecordingAbout {
             .collect()
     }
 
-    /// True if the budget must leave the recording alone.
+    /// True if the budget must not delete the recording.
     pub fn is_kept(&self, notes_recorded: u64) -> bool {
         let notes = self
             .notes

@@ -1,5 +1,5 @@
-//! Which recordings go when they need more room than they may: the oldest first, none that the user cares for, and by themselves
-//! only what was told long enough before.
+//! Selects the recordings to delete when they exceed the storage budget: the oldest first, none that the user has marked. A
+//! recording is deleted automatically only a day after its deletion was announced.
 
 use crate::app::recordings::about::RecordingAbout;
 use crate::app::recordings::item::RecordingItem;
@@ -11,25 +11,25 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// A recording is deleted by itself this long after that was told, at the earliest: the user comes back the next day and can say no.
+/// Minimum time between the announcement and the automatic deletion: the user has until the next day to object.
 pub const DELETION_NOTICE: Duration = Duration::from_secs(24 * 3600);
-/// Beside the recordings: what was told of them.
+/// File next to the recordings that lists the announced deletions.
 const FILE_NAME: &str = "to-delete.toml";
-/// Some thousand recordings.
+/// Maximum size in bytes: room for about a thousand recordings.
 const FILE_LEN_MAX: u64 = 1024 * 1024;
 
-/// A recording that is to make room, and since when that is told.
+/// A recording scheduled for deletion, and the time of the announcement.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PlannedDeletion {
-    /// The file, or the first of several.
+    /// The recording's file, or the first of several.
     pub path: PathBuf,
-    /// The size of all when it was told: one that grew since is another.
+    /// Total size when announced. A recording that has grown since counts as a different one.
     pub bytes: u64,
-    /// When it was told, in seconds since 1970.
+    /// Time of the announcement, in seconds since 1970.
     pub told_unix_s: u64,
 }
 
-/// What was told of a folder's recordings, as a file.
+/// File format of a folder's announced deletions.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 struct ToldFile {
@@ -37,28 +37,29 @@ struct ToldFile {
     recordings: Vec<PlannedDeletion>,
 }
 
-/// How much room there is, and what must stay.
+/// Storage limit, and the files that must not be deleted.
 #[derive(Debug)]
 pub struct RecordingRoom<'a> {
-    /// What all recordings together may need, bytes.
+    /// Maximum total size of all recordings in bytes.
     pub limit: u64,
     /// Files that are being recorded or replayed.
     pub in_use: &'a [PathBuf],
 }
 
 impl PlannedDeletion {
-    /// From when on it goes by itself, in seconds since 1970.
+    /// Earliest time of automatic deletion, in seconds since 1970.
     pub const fn due_unix_s(&self) -> u64 {
         self.told_unix_s.saturating_add(DELETION_NOTICE.as_secs())
     }
 
-    /// The same as the clock of this computer shows it, `2026-11-22 09:30`.
+    /// The due time in local time, `2026-11-22 09:30`.
     pub fn due(&self) -> String {
         let (day, time) = calendar::local(Duration::from_secs(self.due_unix_s()));
         format!("{day} {time}")
     }
 
-    /// Deletes the files and what was said of it, unless it changed since or the user cares for it by now. True if it is gone.
+    /// Deletes the recording and its metadata, unless it has changed or the user has marked it since. Returns true if it was
+    /// deleted.
     pub(crate) fn carry_out(&self) -> io::Result<bool> {
         let sizes = parts::of(&self.path).into_iter();
         let sizes = sizes.map(|file| std::fs::metadata(file).map(|about| about.len()));
@@ -68,7 +69,7 @@ impl PlannedDeletion {
             Err(error) => return Err(error),
         };
         let about = RecordingAbout::load(&self.path);
-        // What cannot be read may be a star.
+        // Unreadable metadata may contain a star.
         if !is_same || about.map_or(true, |about| about.is_kept(0)) {
             return Ok(false);
         }
@@ -76,18 +77,19 @@ impl PlannedDeletion {
     }
 }
 
-/// Deletes a recording, its last file first, and what was said of it.
+/// Deletes a recording, its last file first, and its metadata.
 pub(crate) fn delete(recording: &Path) -> io::Result<()> {
     for file in parts::of(recording).iter().rev() {
         std::fs::remove_file(file)?;
     }
-    // Not each recording has one.
+    // Not every recording has a metadata file.
     let _said = std::fs::remove_file(RecordingAbout::path(recording));
     Ok(())
 }
 
-/// The recordings that go so that no more is left than there is room, `items` being the oldest last. One that is in use, has a
-/// star, a name or notes stays. Of what was `told` before, the time is kept, unless the file changed or a clock was set back.
+/// Selects the recordings to delete until the rest fits the limit; `items` is sorted newest first. Recordings that are in use
+/// or have a star, a name or notes are exempt. An earlier announcement keeps its time, unless the file has changed or the
+/// clock was set back.
 pub fn plan(
     items: &[RecordingItem],
     room: &RecordingRoom<'_>,
@@ -119,7 +121,7 @@ pub fn plan(
     planned
 }
 
-/// What of a plan was told long enough before: only what `told`, as it was read from the disk, says.
+/// The planned deletions that are due: only those in the list of announcements read from disk.
 pub fn due(
     planned: &[PlannedDeletion],
     told: &[PlannedDeletion],
@@ -129,7 +131,8 @@ pub fn due(
     planned.iter().filter(is_due).cloned().collect()
 }
 
-/// What was told of the recordings of this folder. Where that cannot be read, nothing was: it is told again.
+/// Loads the announced deletions of a folder. If the file is unreadable, the list is empty and they are announced
+/// again.
 pub(crate) fn load_told(folder: &Path) -> Vec<PlannedDeletion> {
     let path = told_path(folder);
     let read = toml_file::load(&path, FILE_LEN_MAX, |text| FileText::plain(text).parse());
@@ -137,13 +140,13 @@ pub(crate) fn load_told(folder: &Path) -> Vec<PlannedDeletion> {
         .unwrap_or_default()
 }
 
-/// Keeps what was told of the recordings of this folder.
+/// Saves the announced deletions of a folder.
 pub(crate) fn save_told(folder: &Path, recordings: Vec<PlannedDeletion>) -> io::Result<()> {
     let text = toml::to_string_pretty(&ToldFile { recordings }).map_err(io::Error::other)?;
     replace(&told_path(folder), text.as_bytes())
 }
 
-/// Where that stands.
+/// Path of the file with the announced deletions.
 pub(crate) fn told_path(folder: &Path) -> PathBuf {
     folder.join(FILE_NAME)
 }
@@ -236,7 +239,7 @@ mod tests {
         check(told("a", 10, NOW_S - DAY_S), true, NOW_S - DAY_S);
         check(told("a", 10, NOW_S - DAY_S + 1), false, NOW_S - DAY_S + 1);
         check(told("a", 10, 0), true, 0);
-        // Another recording was told, another size, or at a time that is still to come.
+        // Announced for another recording, with another size, or at a future time.
         check(told("b", 10, 0), false, NOW_S);
         check(told("a", 9, 0), false, NOW_S);
         check(told("a", 10, NOW_S + 1), false, NOW_S);

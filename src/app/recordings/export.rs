@@ -1,4 +1,4 @@
-//! A recording, or a stretch of it, in a format of others: written off the window's thread into the folder of the day.
+//! Exports a recording, or a time range of it, to another format, in the background, into the day's folder.
 
 use crate::app::env::{Env, day_folder};
 use crate::app::notices::NoticeKind;
@@ -13,21 +13,21 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Frames a second of a data set, as cameras have it.
+/// Frame rate of a data set in frames per second; typical for cameras.
 const FPS: u32 = 30;
 
-/// A format of others.
+/// Export format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RecordingForm {
-    /// A table as text.
+    /// Text table.
     Csv,
-    /// A table.
+    /// Parquet table.
     Parquet,
-    /// A folder for ROS 2.
+    /// Folder for ROS 2.
     Rosbag,
-    /// A folder for learners, without video.
+    /// LeRobot data set folder, without video.
     LeRobot,
-    /// A recording file again, whole and with its own index.
+    /// Recording file, complete with its own index.
     Mcap,
 }
 
@@ -40,7 +40,7 @@ impl RecordingForm {
         Self::Mcap,
     ];
 
-    /// What stands behind the recording's name.
+    /// Suffix of the exported file's name.
     const fn ending(self) -> &'static str {
         match self {
             Self::Csv => ".csv",
@@ -51,7 +51,7 @@ impl RecordingForm {
         }
     }
 
-    /// Writes what is wanted of a recording; how many rows, messages or frames are in it.
+    /// Writes the export and returns the number of rows, messages or frames.
     fn write(self, source: Source<'_>, to: &Path) -> Result<u64, ExportError> {
         let place = Destination::from(to);
         let written = match self {
@@ -72,29 +72,27 @@ impl RecordingForm {
     }
 }
 
-/// What is to be written.
+/// A requested export.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RecordingExport {
-    /// The recording.
     pub path: PathBuf,
     pub form: RecordingForm,
-    /// From and to; `None` = all of it.
+    /// Start and end of the time range; `None` = the whole recording.
     pub stretch: Option<(Moment, Moment)>,
 }
 
-/// How far an export is.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ExportProgress {
     pub export: RecordingExport,
-    /// Of all that is to be read.
+    /// Share of the source read so far, 0 to 100.
     pub percent: u8,
 }
 
-/// An export under way.
+/// An export in progress.
 pub(crate) struct RunningExport {
     export: RecordingExport,
     percent: Arc<AtomicU8>,
-    /// What to tell the user once it is done.
+    /// Yields the notice for the user when the export ends.
     pub(crate) job: Option<BackgroundJob<NoticeKind>>,
 }
 
@@ -108,14 +106,14 @@ impl RunningExport {
 }
 
 impl RecordingExport {
-    /// What it is called: after the recording.
+    /// File name of the export, derived from the recording's.
     fn file_name(&self) -> String {
         let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
         let part = if self.stretch.is_some() { "-part" } else { "" };
         format!("{stem}{part}{}", self.form.ending())
     }
 
-    /// Writes it; what to tell the user of it.
+    /// Writes the export and returns the notice for the user.
     fn write(&self, to: PathBuf, percent: &AtomicU8) -> NoticeKind {
         let made = to.parent().map(std::fs::create_dir_all);
         if let Some(Err(error)) = made {
@@ -154,7 +152,7 @@ impl RecordingExport {
         }
     }
 
-    /// Begins it.
+    /// Starts the export in the background.
     pub(crate) fn begin(self, env: &Env) -> RunningExport {
         let name = self.file_name();
         let folder = env.documents.as_ref().map(|documents| {

@@ -1,5 +1,4 @@
-//! The folder that recordings go into: chosen by the user, and made if it is not there; and a recording shown in it by the system's
-//! file manager.
+//! Choice of the recordings folder, created if missing; and revealing a recording in the system's file manager.
 
 use crate::app::env::Env;
 use crate::app::notices::NoticeKind;
@@ -8,7 +7,7 @@ use std::future::ready;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// The folder that was typed, else one that is asked for. It exists once it is there.
+/// Returns the typed folder or asks the user for one, and creates it if missing.
 pub(crate) fn choose(
     typed: Option<PathBuf>,
     env: &Env,
@@ -29,11 +28,11 @@ pub(crate) fn choose(
     })
 }
 
-/// Shows a file; what to tell the user if that cannot be done.
+/// Reveals a file in the file manager; an error carries the notice for the user.
 pub(crate) fn reveal(path: PathBuf, env: &Env) -> BackgroundJob<Result<(), NoticeKind>> {
     let (reveal, place) = (Arc::clone(&env.reveal), path.clone());
     let shown = on_thread(move || {
-        // A file manager that is asked for what is gone shows its own riddle, or nothing.
+        // A file manager given a missing path shows a cryptic error, or nothing.
         std::fs::metadata(&place)?;
         reveal(&place)
     });

@@ -1,14 +1,14 @@
-//! Which recording holds a stretch of time: the one that is replayed, or one that was recorded since the program began, whose
-//! moments are the program's own.
+//! Finds the recording that contains a time range: the replayed one, or one recorded since the program started, which uses
+//! the program's clock.
 
 use crate::app::recordings::list::{RecordingAction, RecordingsState, Timeline};
 use crate::hand::Moment;
 use std::time::Duration;
 
-/// So much is shown before what the user wants to see.
+/// Lead-in shown before the requested range.
 const BEFORE: Duration = Duration::from_secs(2);
 
-/// What replays a stretch of a hand again and again, from a little before it; `None` if no recording holds its beginning.
+/// Action that replays a time range of a hand in a loop, with a short lead-in; `None` if no recording contains its start.
 pub fn replay_of(
     recordings: &RecordingsState,
     replayed: Option<&Timeline>,

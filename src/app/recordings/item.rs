@@ -1,4 +1,4 @@
-//! One recording of the list: what is known of a file without reading it whole.
+//! One recording of the list: its summary, without reading the file as a whole.
 
 use crate::app::recordings::about::{RecordingAbout, RecordingNote};
 use crate::hand::{Dof, Moment, PerDof, Quantity};
@@ -12,50 +12,49 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Columns of the strip of force.
+/// Number of columns of the force strip.
 pub const STRIP: usize = 300;
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordingItem {
-    /// The file, or the first of several: a long recording has one for each hour.
+    /// The recording's file, or the first of several: a long recording has one per hour.
     pub path: PathBuf,
-    /// All its files, in the order of time.
+    /// All files, in chronological order.
     pub files: Vec<PathBuf>,
-    /// The size of all.
+    /// Total size of all files.
     pub bytes: u64,
-    /// What it began with.
+    /// Header of the recording.
     pub opening: Opening,
-    /// The moment of its own clock that it begins at.
+    /// First moment, on the recording's own clock.
     pub first: Moment,
-    /// How long it is.
     pub length: Duration,
-    /// How much there is of what.
+    /// Numbers of entries by kind.
     pub counts: Counts,
-    /// What happened.
+    /// Events in the recording.
     pub marks: Vec<FileMark>,
-    /// Greatest force of any joint over its length, in grams; NaN where nothing was read.
+    /// Maximum force of any joint per column, in grams; NaN where nothing was read.
     pub strip: Vec<f32>,
-    /// Angles of the joints in the same columns; none where none was read.
+    /// Joint angles in the same columns; `None` where no angle was read.
     pub poses: Arc<Vec<PerDof<Option<i16>>>>,
-    /// True if the recording was ended as it should be.
+    /// True if the recording was closed properly.
     pub closed: bool,
-    /// What the user says of it.
+    /// User metadata.
     pub about: RecordingAbout,
 }
 
 impl RecordingItem {
-    /// Reads what is known of the files of one recording, and tells which of them cannot be read.
+    /// Reads the summary of one recording, and returns the files that cannot be read.
     pub fn read(files: &[PathBuf]) -> (Option<Self>, Vec<(PathBuf, OpenError)>) {
         let (file, unread) = RecordingFile::open_all(files);
         let item = file.map(|file| {
-            // What the user said of it must not keep the recording from being seen.
+            // Unreadable metadata must not hide the recording.
             let about = RecordingAbout::load(file.path()).unwrap_or_default();
             Self::of(&file, about)
         });
         (item, unread)
     }
 
-    /// Of an open file.
+    /// Summarizes an open file.
     pub fn of(file: &RecordingFile, about: RecordingAbout) -> Self {
         let overview = file.overview();
         let span = (file.first(), file.last());
@@ -75,7 +74,7 @@ impl RecordingItem {
         }
     }
 
-    /// When it began by the clock of this computer, `2026-11-22 10:30`; `-` if nobody knows.
+    /// Start time in local time, `2026-11-22 10:30`; `-` if unknown.
     pub fn began(&self) -> String {
         if self.opening.is_imported() {
             return "-".into();
@@ -84,7 +83,7 @@ impl RecordingItem {
         format!("{day} {time}")
     }
 
-    /// Its name, or that of its file.
+    /// User-given name, else the file name.
     pub fn title(&self) -> String {
         if !self.about.name.is_empty() {
             return self.about.name.clone();
@@ -93,12 +92,12 @@ impl RecordingItem {
         stem.to_string_lossy().into_owned()
     }
 
-    /// True if one of its files is among these.
+    /// True if `paths` contains one of its files.
     pub fn is_in(&self, paths: &[PathBuf]) -> bool {
         self.files.iter().any(|file| paths.contains(file))
     }
 
-    /// The joints that its trials closed.
+    /// Joints that the recorded trials closed.
     pub fn tried(&self) -> Vec<Dof> {
         let trials = self
             .marks
@@ -111,22 +110,22 @@ impl RecordingItem {
         all.filter(|dof| named.contains(dof.name())).collect()
     }
 
-    /// The moment of its own clock after a part of its length.
+    /// Moment at a fraction (0 to 1) of the length, on the recording's own clock.
     pub fn moment(&self, part: f64) -> Moment {
         self.first.plus(self.length.mul_f64(part.clamp(0.0, 1.0)))
     }
 
-    /// How many marks of a kind there are.
+    /// Number of marks of a kind.
     pub fn count(&self, kind: EventKind) -> usize {
         self.marks.iter().filter(|mark| mark.kind == kind).count()
     }
 
-    /// The notes in force.
+    /// Effective notes.
     pub fn notes(&self) -> Vec<RecordingNote> {
         self.about.notes(&self.marks)
     }
 
-    /// True if these words, in small letters, stand somewhere in what is known of it.
+    /// True if the title, start time, hand, notes and marks together contain all of these words, ignoring case.
     pub fn matches(&self, words: &str) -> bool {
         let notes = self.notes().into_iter().map(|note| note.words);
         let marks = self.marks.iter().map(|mark| mark.words.clone());
@@ -139,7 +138,7 @@ impl RecordingItem {
     }
 }
 
-/// The greatest force of all joints, column by column.
+/// Maximum force over all joints, column by column.
 pub fn strip(overview: &Overview, span: (Moment, Moment)) -> Vec<f32> {
     let mut all = vec![f32::NAN; STRIP];
     for (columns, row) in columns(overview, span) {
@@ -152,7 +151,7 @@ pub fn strip(overview: &Overview, span: (Moment, Moment)) -> Vec<f32> {
     all
 }
 
-/// The angles of the joints, column by column: the middle of what they were in the last second there.
+/// Joint angles, column by column: the midpoint of the range in the last second of the column.
 fn poses(overview: &Overview, span: (Moment, Moment)) -> Vec<PerDof<Option<i16>>> {
     let mut all = vec![PerDof::splat(None); STRIP];
     for (columns, row) in columns(overview, span) {
@@ -173,7 +172,7 @@ fn poses(overview: &Overview, span: (Moment, Moment)) -> Vec<PerDof<Option<i16>>
     all
 }
 
-/// Which columns each second of an overview stands in.
+/// Maps each second of an overview to its columns.
 fn columns(
     overview: &Overview,
     (first, last): (Moment, Moment),

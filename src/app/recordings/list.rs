@@ -1,4 +1,4 @@
-//! Which recordings there are. They are looked for off the window's thread, and what was read of a file that did not change is kept.
+//! The list of recordings. It is scanned in the background; the summary of an unchanged file is reused.
 
 use crate::app::env::Env;
 use crate::app::recordings::about::RecordingNote;
@@ -14,64 +14,63 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Recordings that are listed: some for each working day of two years. Beyond, the oldest are not.
+/// Maximum number of listed recordings: a few per working day for two years. Older ones are not listed.
 pub const SESSIONS_MAX: usize = 2000;
-/// Recordings of this run of the program that are remembered: one each few minutes of a working day. The oldest go first.
+/// Maximum number of remembered recordings of this run: one every few minutes of a working day. The oldest are dropped
+/// first.
 pub(crate) const OWN_MAX: usize = 100;
-/// A file that is being recorded is read again once it grew by this part of itself.
+/// A file that is being recorded is read again after growing by one part in this many.
 const GROWS_BY: u64 = 10;
 
-/// A recording made since the program began.
+/// A recording made since the program started.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OwnRecording {
-    /// The file.
     pub path: PathBuf,
-    /// The hand, in the spelling of endpoints.
+    /// Endpoint of the hand, as text.
     pub hand: String,
-    /// When it began.
     pub first: Moment,
-    /// Until when it was recorded, as of now.
+    /// Last moment recorded so far.
     pub last: Moment,
 }
 
 impl OwnRecording {
-    /// True if it holds this moment of a hand.
+    /// True if the recording contains this moment of the hand.
     pub(crate) fn holds(&self, hand: &str, at: Moment) -> bool {
         self.hand == hand && (self.first..=self.last).contains(&at)
     }
 }
 
-/// What the view of recordings shows.
+/// State of the recordings view.
 #[derive(Debug, Default, Clone)]
 pub struct RecordingsState {
-    /// The newest first.
+    /// Recordings, newest first.
     pub items: Arc<Vec<RecordingItem>>,
-    /// Where they lie; `None` = nowhere.
+    /// Folder of the recordings; `None` = none set.
     pub folder: Option<PathBuf>,
-    /// No folder was chosen in a dialog: its path can be typed.
+    /// True if the folder dialog returned no folder: the path can be typed instead.
     pub asks_folder: bool,
-    /// They are being looked for.
+    /// True while a scan is running.
     pub looks: bool,
-    /// Files there that could not be read, and why.
+    /// Unreadable files, with the reasons.
     pub unread: Arc<Vec<(PathBuf, String)>>,
-    /// The recording that is to be deleted, once the user agrees.
+    /// Recording whose deletion awaits confirmation.
     pub to_delete: Option<PathBuf>,
-    /// What the budget has no room for, the oldest first.
+    /// Recordings over the storage budget, oldest first.
     pub planned: Vec<PlannedDeletion>,
     /// Files that are being recorded.
     pub recorded: Vec<PathBuf>,
-    /// What was recorded since the program began, the oldest first.
+    /// Recordings made since the program started, oldest first.
     pub own: Vec<OwnRecording>,
-    /// Counts how often they were looked for.
+    /// Number of completed scans.
     pub looked: u64,
-    /// The time since 1970 when that was done last: what is today.
+    /// Time of the last scan since 1970; defines today.
     pub looked_at: Duration,
-    /// What is being written in formats of others.
+    /// Exports in progress.
     pub exports: Vec<ExportProgress>,
 }
 
 impl RecordingsState {
-    /// How long a recording is; one that this program records grows from frame to frame.
+    /// Length of a recording; that of one being recorded by this program grows every frame.
     pub fn length(&self, item: &RecordingItem) -> Duration {
         let mut own = self.own.iter();
         let own = own.find(|own| own.path == item.path && self.recorded.contains(&own.path));
@@ -79,16 +78,16 @@ impl RecordingsState {
     }
 }
 
-/// What looking for recordings found.
+/// Result of a scan.
 #[derive(Debug)]
 pub(crate) struct Looked {
     pub(crate) items: Vec<RecordingItem>,
     pub(crate) unread: Vec<(PathBuf, String)>,
-    /// What was told before of recordings that are to make room.
+    /// Previously announced deletions.
     pub(crate) told: Vec<PlannedDeletion>,
 }
 
-/// Looks for recordings in this folder and the folders of days in it.
+/// Scans this folder and its day folders for recordings.
 pub(crate) fn look(
     folder: PathBuf,
     known: Arc<Vec<RecordingItem>>,
@@ -139,8 +138,8 @@ fn find(folder: &Path, known: &[RecordingItem]) -> Looked {
     }
 }
 
-/// True if files of this size in all need not be read again: they were ended, or grew little since and go on. What goes on is
-/// read whole.
+/// True if files of this total size need not be read again: the recording is closed and unchanged, or still open and has
+/// grown only a little. An open recording has to be read whole.
 fn is_known(item: &RecordingItem, bytes: u64) -> bool {
     if item.closed {
         return item.bytes == bytes;
@@ -150,7 +149,7 @@ fn is_known(item: &RecordingItem, bytes: u64) -> bool {
     grew < item.bytes / GROWS_BY && item.files.last().is_some_and(goes_on)
 }
 
-/// True if a file ends as it begins: MCAP files that were ended do.
+/// True if the last 8 bytes equal the first 8, the mark of a closed MCAP file.
 fn is_ended(path: &Path) -> io::Result<bool> {
     let mut file = File::open(path)?;
     let (mut first, mut last) = ([0; 8], [0; 8]);
@@ -160,92 +159,91 @@ fn is_ended(path: &Path) -> io::Result<bool> {
     Ok(first == last)
 }
 
-/// What the user asks about recordings.
+/// User requests concerning recordings.
 #[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum RecordingAction {
-    /// Record hands from now on, or no longer.
+    /// Turn recording of hands on or off.
     Record(bool),
-    /// Record built-in hands, too, or no longer.
+    /// Turn recording of built-in hands on or off.
     RecordSimulated(bool),
-    /// Record into this folder from the next recording on; without a path the user is asked for one.
+    /// Use this folder from the next recording on; without a path, ask the user for one.
     ChooseFolder(Option<PathBuf>),
-    /// Record into the user's documents again.
+    /// Use the user's documents folder again.
     DefaultFolder,
-    /// Look again which recordings there are.
+    /// Scan again.
     Look,
-    /// Replay this file: one of the list, or any other.
+    /// Replay this file, from the list or elsewhere.
     Open(PathBuf),
-    /// Replay this file from the first of two moments on, the stretch between them again and again.
+    /// Replay this file in a loop between two moments, starting at the first.
     OpenAt(PathBuf, (Moment, Moment)),
-    /// Go back to the live hand.
+    /// Return to the live hand.
     Close,
-    /// Show where this file lies, in the system's file manager.
+    /// Reveal this file in the system's file manager.
     Reveal(PathBuf),
-    /// Write a recording, or a stretch of it, in a format of others.
+    /// Export a recording, or a time range of it.
     Export(RecordingExport),
-    /// Give a recording a name; empty takes it away.
+    /// Rename a recording; an empty name removes it.
     Name(PathBuf, String),
-    /// Give a recording a star, or take it away.
+    /// Set or remove the star of a recording.
     Star(PathBuf, bool),
-    /// Ask whether this recording is to be deleted.
+    /// Request confirmation to delete this recording.
     AskDelete(PathBuf),
-    /// Delete the recording that was asked about.
+    /// Delete the recording that awaits confirmation.
     Delete,
-    /// Delete nothing.
+    /// Cancel the deletion.
     KeepIt,
-    /// Delete what the budget has no room for, now.
+    /// Delete the recordings over the storage budget now.
     MakeRoom,
-    /// Give a star to all that the budget has no room for.
+    /// Star all recordings over the storage budget.
     KeepPlanned,
-    /// Show this moment.
+    /// Seek to this moment.
     Seek(Moment),
-    /// Let time go on, or stop it.
+    /// Play or pause.
     Run(bool),
-    /// How fast time goes, 0.1 to 10.
+    /// Playback speed, 0.1 to 10.
     Pace(f32),
-    /// Go to the next reading, or to the one before.
+    /// Step to the next reading (true) or the previous one (false).
     Step(bool),
-    /// Play this stretch again and again, or all once.
+    /// Loop over this time range, or play all once.
     Loop(Option<(Moment, Moment)>),
-    /// Draw this recording over the replayed one, or none any more.
+    /// Overlay this recording on the replayed one, or remove the overlay.
     Beside(Option<PathBuf>),
-    /// Align both: this moment of the replayed recording with that moment of the other.
+    /// Align the overlay: this moment of the replayed recording with that moment of the other.
     Align(Moment, Moment),
-    /// Change the words of the note at a moment; of no words, take it away.
+    /// Edit the note at a moment; an empty text removes it.
     EditNote(Moment, String),
 }
 
-/// What the time line of a replayed recording shows.
+/// Contents of the time line of a replayed recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Timeline {
-    /// The file.
     pub path: PathBuf,
-    /// The recording's name, or that of its file.
+    /// User-given name, else the file name.
     pub title: String,
-    /// When it began, as [`RecordingItem::began`](crate::app::recordings::RecordingItem::began) tells it.
+    /// Start time, in the format of [`RecordingItem::began`](crate::app::recordings::RecordingItem::began).
     pub began: String,
-    /// The hand's endpoint.
+    /// Endpoint of the hand, as text.
     pub hand: String,
     pub first: Moment,
     pub last: Moment,
-    /// The moment that is shown.
+    /// Moment that is shown.
     pub at: Moment,
-    /// Time goes on.
+    /// True while playing.
     pub runs: bool,
-    /// How fast.
+    /// Playback speed, 1 = real time.
     pub pace: f32,
-    /// The stretch that is played again and again.
+    /// Time range that is looped.
     pub looped: Option<(Moment, Moment)>,
-    /// What happened.
+    /// Events in the recording.
     pub marks: Arc<Vec<FileMark>>,
-    /// The notes in force.
+    /// Effective notes.
     pub notes: Arc<Vec<RecordingNote>>,
-    /// Greatest force over its length.
+    /// Maximum force over the length.
     pub strip: Arc<Vec<f32>>,
-    /// The moment that was asked for is not shown yet.
+    /// True while the requested moment is not shown yet.
     pub waits: bool,
-    /// Whether a part of the file cannot be read.
+    /// True if a part of the file cannot be read.
     pub damaged: bool,
-    /// The live hand behind it is armed, moves, or has a fault: said beside the way back.
+    /// True if the live hand is armed, moving, or has a fault; shown next to the button that returns to it.
     pub live_needs_eyes: bool,
 }

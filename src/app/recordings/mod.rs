@@ -1,4 +1,4 @@
-//! Recordings on disk: the one being made, the list of those there are, and one that is replayed.
+//! Recordings on disk: the one being made, the list of existing ones, and the replayed one.
 
 pub mod about;
 pub mod budget;

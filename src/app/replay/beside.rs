@@ -1,4 +1,4 @@
-//! Reads a second recording, to be drawn over the one that is replayed. Off the window's thread.
+//! Reads a second recording, to be overlaid on the replayed one, in the background.
 
 use crate::app::env::Env;
 use crate::app::notices::NoticeKind;
@@ -11,7 +11,7 @@ use crate::record::file::{OpenError, RecordingFile};
 use crate::store::{BackgroundJob, on_thread};
 use std::path::PathBuf;
 
-/// Reads a recording, to be aligned at its beginning with this moment.
+/// Reads a recording and aligns its start with this moment.
 pub(crate) fn read(
     path: PathBuf,
     own: Moment,

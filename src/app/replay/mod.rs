@@ -1,4 +1,4 @@
-//! A recording that is replayed in place of the live hands, and what is done with recordings.
+//! Replay of a recording in place of the live hands, and operations on recordings.
 
 pub(crate) mod beside;
 pub(crate) mod player;

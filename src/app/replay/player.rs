@@ -1,4 +1,4 @@
-//! Replays a recording: which moment is shown, how time goes on, and what is read ahead. Reads files off the window's thread.
+//! Recording player: the moment shown, playback, and read-ahead. Reads files off the window's thread.
 
 use crate::app::action::Action;
 use crate::app::env::Env;
@@ -24,42 +24,42 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Read ahead while time goes on, in seconds of the recording at its own pace.
+/// Read-ahead during playback, in seconds of the recording at speed 1.
 const AHEAD: Duration = Duration::from_secs(2);
-/// A step looks this far for the next reading, at most.
+/// Maximum distance to the next reading for a step.
 const STEP_TIMEOUT: Duration = Duration::from_secs(5);
-/// A frame that took longer is no reason to leap.
+/// Maximum advance per frame: a slow frame must not cause a jump.
 const FRAME_MAX: Duration = Duration::from_millis(250);
-/// Slowest and fastest.
+/// Minimum and maximum playback speed.
 pub(crate) const PACES: (f32, f32) = (0.1, 10.0);
 
-/// A file that was opened, and the hand as it was soon after the beginning, or at the beginning of the stretch that is wanted.
+/// An opened file, and the state of the hand shortly after the start, or at the start of the requested range.
 pub(crate) struct Opened {
     file: Arc<RecordingFile>,
     found: HandThen,
     stretch: Option<(Moment, Moment)>,
 }
 
-/// The hand as it was at a moment.
+/// State of the hand at a moment.
 type HandThen = (Moment, Box<Recorded>);
 
-/// The moment that is wanted.
+/// Seek target.
 #[derive(Debug, Clone, Copy)]
 enum SeekTarget {
     At(Moment),
-    /// The reading of the angles after this moment.
+    /// The first reading of the angles after this moment.
     After(Moment),
     Before(Moment),
 }
 
-/// A recording that is replayed.
+/// A recording being replayed.
 pub(crate) struct RecordingPlayer {
     file: Arc<RecordingFile>,
     about: RecordingAbout,
-    /// Everything the window shows of it.
+    /// Everything the window shows of the recording.
     pub(crate) state: State,
     tap: WireTap,
-    /// When it was looked at last, in the program's time.
+    /// Time of the last tick, on the program's clock.
     ticked: Moment,
     wanted: Option<SeekTarget>,
     seeking: Option<BackgroundJob<io::Result<HandThen>>>,
@@ -69,7 +69,7 @@ pub(crate) struct RecordingPlayer {
     beside: Option<BackgroundJob<Result<BesideRecording, NoticeKind>>>,
 }
 
-/// Opens a file near its beginning or at a stretch of it, off the window's thread.
+/// Opens a file near its start or at a time range, in the background.
 pub(crate) fn open(
     path: PathBuf,
     stretch: Option<(Moment, Moment)>,
@@ -95,7 +95,7 @@ pub(crate) fn open(
     BackgroundJob::start(&env.runtime, &env.wake, open)
 }
 
-/// The hand at the moment that is wanted.
+/// Reads the state of the hand at the seek target.
 fn find(file: &RecordingFile, wanted: SeekTarget) -> io::Result<HandThen> {
     let one = Duration::from_micros(1);
     let earlier = |at: Moment, by| Moment::from_duration(at.since(Moment::ZERO).saturating_sub(by));
@@ -113,7 +113,7 @@ fn find(file: &RecordingFile, wanted: SeekTarget) -> io::Result<HandThen> {
     Ok((at, Box::new(Recorded::at(file, at)?)))
 }
 
-/// When the angles were read first or last in a stretch.
+/// Time of the first or last reading of the angles in a time range.
 fn reading(
     file: &RecordingFile,
     (from, to): (Moment, Moment),
@@ -136,7 +136,7 @@ fn reading(
 }
 
 impl RecordingPlayer {
-    /// Begins to replay a file, standing still.
+    /// Creates a player for an opened file, paused.
     pub(crate) fn new(opened: Opened, live: &State) -> Self {
         let Opened {
             file,
@@ -185,22 +185,22 @@ impl RecordingPlayer {
         player
     }
 
-    /// True if this file is replayed, or another of the same recording.
+    /// True if this file belongs to the replayed recording.
     pub(crate) fn holds(&self, path: &Path) -> bool {
         self.file.paths().any(|file| file == path)
     }
 
-    /// The file that is replayed, or the first of several.
+    /// The replayed file, or the first of several.
     pub(crate) fn path(&self) -> &Path {
         self.file.path()
     }
 
-    /// What the user says of it, where it is in no list.
+    /// User metadata of a recording that is not in the list.
     pub(crate) const fn about_mut(&mut self) -> &mut RecordingAbout {
         &mut self.about
     }
 
-    /// What of an action the program carries out while this is shown. A note is one of the recording.
+    /// Filters an action during replay; returns it if the program should handle it. A note is added to the recording.
     pub(crate) fn pass(&mut self, action: Action) -> Option<Action> {
         match action {
             Action::Note(at, words) => {
@@ -218,7 +218,7 @@ impl RecordingPlayer {
         }
     }
 
-    /// Tells the user something while this is shown.
+    /// Shows a notice in the replay.
     pub(crate) fn tell(&mut self, what: NoticeKind) {
         self.state.notices.push(self.state.now, what);
     }
@@ -231,7 +231,7 @@ impl RecordingPlayer {
         self.state.now
     }
 
-    /// Shows the hand as it was found.
+    /// Shows the hand in the given state.
     fn take_found(&mut self, (at, recorded): HandThen) {
         *self.state.hands.shown_mut() = recorded.hand;
         self.state.notices = recorded.notices;
@@ -241,7 +241,7 @@ impl RecordingPlayer {
         self.show(at);
     }
 
-    /// Lets the views show this moment.
+    /// Moves the views to this moment.
     fn show(&mut self, at: Moment) {
         self.state.now = at;
         if let Some(line) = self.line() {
@@ -249,7 +249,7 @@ impl RecordingPlayer {
         }
     }
 
-    /// Lets time go on, and takes in what was read.
+    /// Advances playback, and applies completed reads.
     pub(crate) fn tick(&mut self, live: &State, env: &Env) {
         let passed = live.now.since(self.ticked);
         self.ticked = live.now;
@@ -267,7 +267,7 @@ impl RecordingPlayer {
         self.read_ahead(env);
         let side = self.file.opening().side;
         let shown = self.state.hands.shown_mut();
-        // In place of the live hand that was shown, which the views go on with.
+        // The views continue with the slot of the live hand that was shown.
         (shown.label.slot, shown.side) = (live.hand().label.slot, side);
         let waits = self.seeking.is_some();
         if let Some(line) = self.line() {
@@ -311,7 +311,7 @@ impl RecordingPlayer {
         }
     }
 
-    /// Goes on by so much of the program's time.
+    /// Advances by this much of the program's time.
     fn run(&mut self, passed: Duration) {
         let (ahead_until, last) = (self.ahead_until, self.file.last());
         let is_seeking = self.seeking.is_some();
@@ -320,7 +320,7 @@ impl RecordingPlayer {
         };
         let end = line.looped.map_or(last, |(_, end)| end);
         let step = passed.min(FRAME_MAX).mul_f32(line.pace);
-        // What is not read yet cannot be shown: time waits for it.
+        // Playback waits for entries that have not been read yet.
         let next = line.at.plus(step).min(ahead_until.max(line.at)).min(end);
         let begin = line.looped.map(|(begin, _)| begin);
         let is_over = next >= end;
@@ -368,7 +368,7 @@ impl RecordingPlayer {
         self.reading = Some((wanted, job));
     }
 
-    /// Carries out what the user asks about the replayed recording.
+    /// Handles the user's requests for the replayed recording.
     pub(crate) fn act(&mut self, action: &RecordingAction, env: &Env) {
         let (first, last) = (self.file.first(), self.file.last());
         let within = |at: Moment| at.clamp(first, last);
@@ -409,7 +409,7 @@ impl RecordingPlayer {
                     (beside.own, beside.other) = (*own, *other);
                 }
             }
-            // They are about the list, about files, or about what is recorded now.
+            // Actions on the list, on files, or on the recording being made.
             RecordingAction::Record(_)
             | RecordingAction::RecordSimulated(_)
             | RecordingAction::ChooseFolder(_)
@@ -441,13 +441,13 @@ impl RecordingPlayer {
         }
     }
 
-    /// Goes to the beginning of a stretch, and plays that again and again.
+    /// Seeks to the start of a time range and loops over it.
     pub(crate) fn show_stretch(&mut self, stretch: (Moment, Moment), env: &Env) {
         self.act(&RecordingAction::Loop(Some(stretch)), env);
         self.act(&RecordingAction::Seek(stretch.0), env);
     }
 
-    /// Changes the note of a moment, adds one, or takes it away; gives all notes as they are then.
+    /// Edits, adds or removes the note at a moment; returns all notes after the change.
     pub(crate) fn edit_note(&mut self, at: Moment, words: &str) -> Option<Vec<RecordingNote>> {
         let words: String = words.trim().chars().take(NOTE_MAX).collect();
         let line = self.line()?;

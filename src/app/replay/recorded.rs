@@ -1,4 +1,4 @@
-//! The state of the window at a moment of a recording: everything is taken in as it was when it was heard.
+//! State of the window at a moment of a recording, restored by applying its entries as when they were received.
 
 use crate::app::hand::RecordedMover;
 use crate::app::hands::Hand;
@@ -16,15 +16,15 @@ use std::io;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-/// So much before the moment is taken in reading by reading: the longest the user looks at closely. What is older comes from the
+/// Time before the moment that is applied entry by entry: the longest span inspected in detail. Older data comes from the
 /// overview, second by second.
 const CLOSE: Duration = Duration::from_secs(30);
-/// A recording of this length is drawn reading by reading over another.
+/// Maximum length of an overlaid recording that is drawn reading by reading.
 const CLOSE_WHOLE: Duration = Duration::from_secs(600);
-/// A recording of this length is taken in whole.
+/// Maximum length of a recording that is applied completely.
 const WHOLE: Duration = Duration::from_secs(60);
 
-/// A hand as it was, and what was told of it then.
+/// The recorded hand and its notices.
 #[derive(Debug, Default)]
 pub(crate) struct Recorded {
     pub(crate) hand: Hand,
@@ -32,7 +32,7 @@ pub(crate) struct Recorded {
     pub(crate) tap: WireTap,
 }
 
-/// What recorded entries are taken into.
+/// Target for applying recorded entries.
 pub(crate) struct Shown<'a> {
     pub(crate) hand: &'a mut Hand,
     pub(crate) notices: &'a mut Notices,
@@ -40,10 +40,10 @@ pub(crate) struct Shown<'a> {
 }
 
 impl Recorded {
-    /// The hand of a file at a moment.
+    /// Restores the hand of a file at a moment.
     ///
     /// # Errors
-    /// What the system says.
+    /// The I/O error of the system.
     pub(crate) fn at(file: &RecordingFile, at: Moment) -> io::Result<Self> {
         let mut from = file.first();
         if at.since(from) > WHOLE {
@@ -52,7 +52,7 @@ impl Recorded {
         Self::between(file, from, at)
     }
 
-    /// The hand of a file at a moment, taken in reading by reading from another moment on.
+    /// Restores the hand at a moment, applying entries from another moment on.
     fn between(file: &RecordingFile, from: Moment, at: Moment) -> io::Result<Self> {
         let mut recorded = Self::new(file);
         if from > file.first() {
@@ -75,10 +75,11 @@ impl Recorded {
         Ok(recorded)
     }
 
-    /// The hand of a file at its end, with all of what was measured: reading by reading, or second by second in a long recording.
+    /// Restores the hand at the end of a file with all measurements: reading by reading, or second by second for a long
+    /// recording.
     ///
     /// # Errors
-    /// What the system says.
+    /// The I/O error of the system.
     pub(crate) fn whole(file: &RecordingFile) -> io::Result<Self> {
         if file.last().since(file.first()) <= CLOSE_WHOLE {
             return Self::between(file, file.first(), file.last());
@@ -99,7 +100,7 @@ impl Recorded {
         recorded
     }
 
-    /// What is before a moment, from the overview.
+    /// Applies the overview up to a moment.
     fn take_overview(&mut self, file: &RecordingFile, until: Moment) {
         let longest = Duration::from_secs(crate::history::HISTORY_SECONDS.into());
         let from = Moment::from_duration(until.since(Moment::ZERO).saturating_sub(longest));
@@ -120,7 +121,7 @@ impl Recorded {
 }
 
 impl Shown<'_> {
-    /// Takes in one entry, at its own time.
+    /// Applies one entry at its own time.
     pub(crate) fn take(&mut self, entry: &Entry) {
         let at = entry.at();
         match entry {
@@ -172,7 +173,7 @@ impl Shown<'_> {
     }
 }
 
-/// The mark that plots have for what happened.
+/// Plot mark for an event.
 fn mark_kind(kind: EventKind, words: &str) -> Option<MarkKind> {
     match kind {
         EventKind::Note => MarkKind::note(words),

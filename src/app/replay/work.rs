@@ -1,5 +1,4 @@
-//! Carries out what is asked about recordings, and lets what was begun go on. Files are read, written and deleted off the window's
-//! thread.
+//! Handles recording requests and continues started operations. Files are read, written and deleted off the window's thread.
 
 use crate::app::env::Env;
 use crate::app::hands::Hand;
@@ -19,43 +18,43 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What goes on with recordings.
+/// Operations on recordings in progress.
 #[derive(Default)]
 pub(crate) struct ReplayWork {
-    /// The recording that is replayed.
+    /// Player of the replayed recording.
     pub(crate) player: Option<RecordingPlayer>,
     opening: Option<BackgroundJob<Result<Opened, NoticeKind>>>,
     looking: Option<BackgroundJob<Looked>>,
     look_again: bool,
-    /// A recording began since the last look: what was told long enough before makes room for it.
+    /// True if a recording has started since the last scan: deletions that are due make room for it.
     makes_room: bool,
-    /// What is to go was told in this run of the program.
+    /// True once planned deletions have been announced in this run of the program.
     has_told: bool,
-    /// The files that the user opened last, to be replayed and beside it.
+    /// Files that the user opened last: the replayed one and the overlay.
     opened: [Option<PathBuf>; 2],
     choosing_folder: Option<BackgroundJob<Result<PathBuf, NoticeKind>>>,
     revealing: Option<BackgroundJob<Result<(), NoticeKind>>>,
-    /// Recordings that are being written in formats of others.
+    /// Exports in progress.
     exporting: Vec<RunningExport>,
-    /// What is to be written or deleted, one after the other: of two words about a recording the later must be the last in its file.
+    /// Pending writes and deletions, performed in order: of two edits of a recording, the later must end up in its file.
     to_write: VecDeque<FileWork>,
     writing: Option<FilesWritten>,
 }
 
-/// One thing that is to be done with files.
+/// A file operation.
 enum FileWork {
-    /// Write what the user says of this recording.
+    /// Write the user metadata of this recording.
     Save(PathBuf, RecordingAbout),
     /// Delete this recording.
     Delete(PathBuf),
-    /// Delete these recordings, as far as nobody cares for them by now.
+    /// Delete these recordings, except those that the user has marked by now.
     MakeRoom(Vec<PlannedDeletion>),
-    /// Keep what was told of the recordings of this folder.
+    /// Save the announced deletions of this folder.
     Tell(PathBuf, Vec<PlannedDeletion>),
 }
 
 impl ReplayWork {
-    /// Takes in what was read, and lets a replay go on.
+    /// Applies completed operations, and advances the replay.
     pub(crate) fn tick(&mut self, state: &mut State, env: &Env) {
         if let Some(looked) = BackgroundJob::take_from(&mut self.looking) {
             self.take_looked(looked, state);
@@ -74,7 +73,7 @@ impl ReplayWork {
         }
     }
 
-    /// Looks at what there is once a recording begins, so that there is room for it.
+    /// Updates the lists of recordings being made, and scans when one starts, to make room for it.
     fn follow_recordings(&mut self, state: &mut State) {
         let State {
             hands,
@@ -106,7 +105,7 @@ impl ReplayWork {
         recordings.recorded = recorded;
     }
 
-    /// Tells what has no room, and deletes what was told long enough before a recording that begins.
+    /// Applies a scan: announces planned deletions, and deletes those that are due when a recording starts.
     fn take_looked(&mut self, looked: Looked, state: &mut State) {
         let recordings = &mut state.recordings;
         recordings.items = Arc::new(looked.items);
@@ -139,7 +138,7 @@ impl ReplayWork {
         }
     }
 
-    /// What the user should know of what is planned: when that changes, and once in each run of the program.
+    /// Notice about planned deletions: when they change, and once in each run of the program.
     fn what_to_tell(&mut self, state: &State, is_new: bool) -> Option<NoticeKind> {
         let planned = &state.recordings.planned;
         if !is_new && self.has_told {
@@ -186,7 +185,7 @@ impl ReplayWork {
         }
     }
 
-    /// What was written is told where the user looks: in the live window or in the replay.
+    /// Shows notices of finished exports where the user will see them: in the live window or in the replay.
     fn take_exported(&mut self, state: &mut State) {
         let mut told = Vec::new();
         self.exporting.retain_mut(|running| {
@@ -203,13 +202,13 @@ impl ReplayWork {
         state.recordings.exports = progress.collect();
     }
 
-    /// From the next recording on; the recordings of that folder are listed at once.
+    /// Changes the folder from the next recording on; its recordings are listed immediately.
     fn record_into(&mut self, folder: Option<PathBuf>, state: &mut State) {
         state.settings.recordings.folder = folder;
         (state.recordings.asks_folder, self.look_again) = (false, true);
     }
 
-    /// One file after the other.
+    /// Continues with pending file operations, one at a time.
     fn go_on_writing(&mut self, state: &mut State, env: &Env) {
         match BackgroundJob::take_from(&mut self.writing) {
             Some(Ok(deleted)) => {
@@ -236,12 +235,12 @@ impl ReplayWork {
         }
     }
 
-    /// True once everything that the user said of recordings is in its file.
+    /// True once all user metadata has been written.
     pub(crate) fn is_written(&self) -> bool {
         self.writing.is_none() && self.to_write.is_empty()
     }
 
-    /// Carries out what the user asks.
+    /// Handles a user request.
     pub(crate) fn act(&mut self, action: RecordingAction, state: &mut State, env: &Env) {
         match action {
             RecordingAction::Record(on) => state.settings.recordings.record = on,
@@ -309,7 +308,7 @@ impl ReplayWork {
         }
     }
 
-    /// Opens a file, unless it is shown already and only another stretch of it is wanted.
+    /// Opens a file, unless it is already shown and only another time range is requested.
     fn open(&mut self, path: PathBuf, stretch: Option<(Moment, Moment)>, env: &Env) {
         let shown = self.player.as_mut().filter(|player| player.holds(&path));
         if let (Some(player), Some(stretch)) = (shown, stretch) {
@@ -319,7 +318,7 @@ impl ReplayWork {
         self.opening = Some(player::open(path, stretch, env));
     }
 
-    /// Looks for recordings again.
+    /// Scans for recordings.
     fn look(&mut self, state: &mut State, env: &Env) {
         let folder = state.settings.recordings_folder(env.documents.as_deref());
         state.recordings.folder.clone_from(&folder);
@@ -329,7 +328,7 @@ impl ReplayWork {
         }
     }
 
-    /// Changes what the user says of a recording, on screen at once and in its file.
+    /// Changes the user metadata of a recording, on screen immediately and in its file.
     fn say(&mut self, state: &mut State, path: &Path, change: impl FnOnce(&mut RecordingAbout)) {
         let items: &mut Vec<RecordingItem> = Arc::make_mut(&mut state.recordings.items);
         let listed = items.iter_mut().find(|item| item.path == path);
@@ -345,7 +344,7 @@ impl ReplayWork {
     }
 }
 
-/// How many recordings were deleted with that.
+/// Yields the number of deleted recordings.
 type FilesWritten = BackgroundJob<Result<usize, NoticeKind>>;
 
 fn save(path: PathBuf, about: RecordingAbout, env: &Env) -> FilesWritten {
@@ -386,7 +385,7 @@ fn tell(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritt
     BackgroundJob::start(&env.runtime, &env.wake, save)
 }
 
-/// True while something goes on at a live hand that the user must see.
+/// True while a live hand needs the user's attention.
 fn is_busy(state: &State) -> bool {
     let is_busy = |hand: &Hand| {
         let asks = hand.procedures.card.is_some() || hand.params.question.is_some();

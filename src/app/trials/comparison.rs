@@ -1,5 +1,5 @@
-//! Trials of several sessions side by side: rows, lines, what the settings come to, and whether they may be taken
-//! together. Reckoned when something changed, not each frame. Draws nothing.
+//! Comparison of trials across sessions: rows, lines, scores of the settings, and whether sessions may be pooled.
+//! Computed on change, not every frame. Draws nothing.
 
 use crate::app::trials::lines::{JointLines, TrialQuantity};
 use crate::app::trials::state::{SessionId, SessionTrial, TrialSession, TrialsState};
@@ -9,61 +9,61 @@ use crate::trials::best::{Score, best, scores};
 use crate::trials::session::SessionHead;
 use crate::trials::{Criterion, JointMetrics, TrialSetting, TrialSummary};
 
-/// Sessions that are shown at once: as many as there are kinds of strokes that an eye tells apart.
+/// Maximum number of sessions shown at once: the number of distinguishable line styles.
 pub const SHOWN_MAX: usize = 4;
-/// Lines that are drawn at once; more are a carpet.
+/// Maximum number of lines drawn at once; more are unreadable.
 pub const LINES_MAX: usize = 200;
-/// Points of all lines that are drawn at once: some milliseconds a frame without a graphics card.
+/// Maximum number of points over all drawn lines: a few milliseconds per frame without a graphics card.
 pub const POINTS_MAX: usize = 20_000;
 
-/// One row of the table: one joint of one trial of a session that is shown.
+/// Key of a table row: one joint of one trial of a shown session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct RowKey {
-    /// Which of the sessions shown, 0 the oldest.
+    /// Index of the session, 0 = oldest.
     pub session: usize,
-    /// Which of its trials, from 0.
+    /// Index of the trial in the session.
     pub trial: usize,
-    /// Which of the joints that took part, from 0.
+    /// Index of the joint among those that took part.
     pub joint: usize,
 }
 
-/// What stands in a row.
+/// Contents of a row.
 #[derive(Debug, Clone, Copy)]
 pub struct ComparedRow<'a> {
     pub session: &'a TrialSession,
     pub trial: &'a TrialSummary,
-    /// What was measured.
+    /// Metrics of the joint.
     pub joint: &'a JointMetrics,
 }
 
-/// What lines have a colour for.
+/// Property by which lines are coloured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LineGroup {
-    /// The joint, where several took part.
+    /// By joint, if several took part.
     Joint(Dof),
-    /// The setting, in the order of settings.
+    /// By setting: its index in the sorted settings.
     Setting(usize),
-    /// The session, where all tried the same setting.
+    /// By session, if all tried the same setting.
     Session(usize),
 }
 
-/// Why sessions are not taken together: their numbers do not tell the same.
+/// Reason why sessions are not pooled: their numbers are not comparable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SessionDifference {
-    /// Another hand, or the same at another place.
+    /// Different hands, or the same hand at different endpoints.
     Hand,
-    /// Other joints.
+    /// Different joints.
     Joints,
-    /// Another start or target.
+    /// Different start or target angles.
     Way,
-    /// Another approach.
+    /// Different approaches.
     Approach,
-    /// Held for another time.
+    /// Different hold times.
     Dwell,
 }
 
 impl SessionDifference {
-    /// All, in the order in which they are told.
+    /// All differences, in display order.
     const ALL: [Self; 5] = [
         Self::Hand,
         Self::Joints,
@@ -76,42 +76,42 @@ impl SessionDifference {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparedLine {
     pub key: RowKey,
-    /// When it met the object, s.
+    /// Time of contact with the object, s.
     pub contact_s: Option<f64>,
-    /// Seconds from the command, and values.
+    /// Points of (seconds since the command, value).
     pub points: Vec<[f64; 2]>,
 }
 
-/// The lines that are drawn.
+/// Lines to draw.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ComparedLines {
-    /// The lines, the oldest first.
+    /// Lines, oldest first.
     pub lines: Vec<ComparedLine>,
-    /// Lines there are.
+    /// Total number of available lines.
     pub all: usize,
 }
 
-/// Sessions side by side.
+/// Comparison of several sessions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     of: Vec<(SessionId, usize)>,
     focus: SessionId,
     several_joints: bool,
-    /// A row for each joint of each trial, in their order.
+    /// One row per joint per trial, in order.
     pub rows: Vec<RowKey>,
-    /// The settings tried, in their order.
+    /// Settings tried, sorted.
     pub settings: Vec<TrialSetting>,
-    /// The joints that those tried that are judged.
+    /// Joints that were tried in the sessions being scored.
     pub joints: Vec<Dof>,
-    /// What settings come to, over all sessions or over one: see [`Self::differences`].
+    /// Scores of the settings, over all sessions or over one: see [`Self::differences`].
     pub scores: Vec<Score>,
-    /// Why settings are not judged over all sessions; empty if they are.
+    /// Reasons why scores do not cover all sessions; empty if they do.
     pub differences: Vec<SessionDifference>,
-    /// The best of the scores by the criterion that was judged by last.
+    /// Best score by the last criterion passed to [`Self::judge`].
     pub best: Option<Score>,
 }
 
-/// Its state by which a change is seen: trials are added to a session and never change.
+/// State used to detect changes: trials are added to a session but never modified.
 fn stand(trials: &TrialsState, shown: &[SessionId]) -> Vec<(SessionId, usize)> {
     let mut of: Vec<_> = shown
         .iter()
@@ -124,7 +124,7 @@ fn stand(trials: &TrialsState, shown: &[SessionId]) -> Vec<(SessionId, usize)> {
 }
 
 impl Comparison {
-    /// Puts these sessions side by side. Where they may not be taken together, what settings come to is of `focus` alone.
+    /// Compares these sessions. If they cannot be pooled, scores cover `focus` alone.
     pub fn of(trials: &TrialsState, shown: &[SessionId], focus: SessionId) -> Self {
         let of = stand(trials, shown);
         let sessions: Vec<&TrialSession> = of
@@ -155,28 +155,28 @@ impl Comparison {
         }
     }
 
-    /// Judges what settings come to by this.
+    /// Selects the best score by this criterion.
     pub fn judge(&mut self, criterion: Criterion) {
         self.best = best(&self.scores, criterion).cloned();
     }
 
-    /// Whether this setting is the best.
+    /// True if this setting has the best score.
     pub fn is_best(&self, setting: TrialSetting) -> bool {
         let best = self.best.as_ref();
         best.is_some_and(|best| best.setting == setting)
     }
 
-    /// True while it would come out the same.
+    /// True while recomputing would give the same result.
     pub fn stands(&self, trials: &TrialsState, shown: &[SessionId], focus: SessionId) -> bool {
         self.focus == focus && self.of == stand(trials, shown)
     }
 
-    /// The sessions, the oldest first.
+    /// IDs of the sessions, oldest first.
     pub fn sessions(&self) -> impl ExactSizeIterator<Item = SessionId> + DoubleEndedIterator {
         self.of.iter().map(|(id, _)| *id)
     }
 
-    /// What stands in a row.
+    /// Contents of a row; `None` if its session or trial no longer exists.
     pub fn row<'a>(&self, trials: &'a TrialsState, key: RowKey) -> Option<ComparedRow<'a>> {
         let (session, trial) = self.trial(trials, key)?;
         let joint = trial.summary.joints.get(key.joint)?;
@@ -197,7 +197,7 @@ impl Comparison {
         Some((session, session.trials.get(key.trial)?))
     }
 
-    /// What a row has a colour for.
+    /// Colour group of a row.
     pub fn group(&self, key: RowKey, row: ComparedRow<'_>) -> LineGroup {
         if self.several_joints {
             return LineGroup::Joint(row.joint.dof);
@@ -209,8 +209,8 @@ impl Comparison {
         LineGroup::Setting(at.unwrap_or_default())
     }
 
-    /// The lines of a quantity: spread evenly over all there are, and none with more points than the eye sees. Those of
-    /// the trial that stands out are among them whatever their number, last and with all their points.
+    /// Lines of a quantity: a uniform selection of all, decimated to the visible resolution. The lines of the
+    /// highlighted trial `strong` are always included, last and with all their points.
     pub fn lines(
         &self,
         trials: &TrialsState,

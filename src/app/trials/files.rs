@@ -1,4 +1,4 @@
-//! Sessions in folders: asked for, written and read away from the window's thread. The formats are in [`crate::trials::session`].
+//! Trial session folders: chosen, written and read in the background. The formats are defined in [`crate::trials::session`].
 
 use crate::app::env::Env;
 use crate::app::env::day_folder;
@@ -20,22 +20,22 @@ use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::time::Duration;
 
-/// A table of samples that is longer is not ours: a trial holds fewer rows.
+/// Maximum size of a samples table in bytes. A longer one is not from this program: a trial holds fewer rows.
 const TABLE_LEN_MAX: u64 = 256 * 1024 * 1024;
 
-/// What was done with files, or what to tell instead.
+/// Result of a file operation, or the notice for the user.
 pub(crate) type FilesEnd = Result<FilesDone, NoticeKind>;
 
-/// What was done with files.
+/// A completed file operation.
 #[derive(Debug)]
 pub(crate) enum FilesDone {
-    /// A session of so many trials was written there.
+    /// A session was saved to a folder, with its number of trials.
     Saved(SessionId, PathBuf, usize),
     /// A session was read.
     Opened(PathBuf, Box<TrialSession>),
 }
 
-/// Asks for a folder and writes a session that was run here into a new one inside it.
+/// Asks for a folder and writes a session that was run here into a new folder inside it.
 pub(crate) fn save(
     session: &TrialSession,
     criterion: Option<Criterion>,
@@ -45,8 +45,8 @@ pub(crate) fn save(
     is_own.then(|| save_in(session.clone(), criterion, env.files.folder(), env))
 }
 
-/// Without asking: writes a session that lies in no file into a new folder in the folder of its day, and note and tags
-/// of one that was saved into its file.
+/// Saves without asking: an unsaved session into a new folder in the folder of its day; of a saved one, the note and
+/// tags.
 pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<BackgroundJob<FilesEnd>> {
     match &session.origin {
         SessionOrigin::Folder(_) => None,
@@ -60,7 +60,7 @@ pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<BackgroundJob<Fi
     }
 }
 
-/// Reads the folder of a session whose place was typed, else asks for its `session.toml`.
+/// Reads the session folder at the typed path, else asks for its `session.toml`.
 pub(crate) fn open(typed: Option<PathBuf>, env: &Env) -> BackgroundJob<FilesEnd> {
     open_file(typed, SESSION_FILE, env, |path| {
         let folder = if path.is_dir() {
@@ -73,7 +73,7 @@ pub(crate) fn open(typed: Option<PathBuf>, env: &Env) -> BackgroundJob<FilesEnd>
     })
 }
 
-/// Writes a session into a new folder in the one that is chosen.
+/// Writes a session into a new folder inside the chosen one.
 fn save_in(
     session: TrialSession,
     criterion: Option<Criterion>,
@@ -86,7 +86,7 @@ fn save_in(
         let (id, trials) = (session.id, session.trials.len());
         let asked = folder.join(&name);
         let work = move || {
-            // Two series that begin in one second do not share a folder.
+            // Two series that start in the same second get separate folders.
             let place = day_folder::free_path(&folder, &name);
             write(session, &place, criterion).map(|()| place)
         };
@@ -96,7 +96,7 @@ fn save_in(
     })
 }
 
-/// Writes note and tags of a session into its file.
+/// Updates the note and tags in a session's file.
 fn keep_words(session: &TrialSession, folder: PathBuf, env: &Env) -> BackgroundJob<FilesEnd> {
     let (id, trials) = (session.id, session.trials.len());
     let (note, tags) = (session.head.note.clone(), session.head.tags.clone());
@@ -115,7 +115,7 @@ fn keep_words(session: &TrialSession, folder: PathBuf, env: &Env) -> BackgroundJ
     })
 }
 
-/// `handscope-trials-2026-11-21-123456`, in universal time.
+/// Folder name `handscope-trials-2026-11-21-123456`, in UTC.
 fn folder_name(head: &SessionHead) -> String {
     let begun = stamp(Duration::from_secs(head.begun_unix_s));
     let (_, time) = begun.split_once('T').unwrap_or_default();
@@ -134,7 +134,7 @@ fn write(session: TrialSession, folder: &Path, criterion: Option<Criterion>) -> 
     writer.finish(aborted)
 }
 
-/// Reads a session's folder. A table of samples that is not there leaves its trial without lines; a spoilt one refuses all.
+/// Reads a session folder. A missing samples table leaves its trial without lines; a damaged one rejects the session.
 fn read_session(folder: &Path) -> Result<TrialSession, FileError> {
     let file = load(folder)?;
     let trial = |summary: TrialSummary| {
@@ -153,7 +153,7 @@ fn read_session(folder: &Path) -> Result<TrialSession, FileError> {
     })
 }
 
-/// The samples of a trial; none if the file is not there. No name leads out of the folder.
+/// Samples of a trial; `None` if the file is missing. Names that lead out of the folder are rejected.
 fn samples(folder: &Path, name: Option<&str>) -> Result<Option<TrialRecording>, FileError> {
     let Some(name) = name else { return Ok(None) };
     let mut parts = Path::new(name).components();
@@ -167,7 +167,7 @@ fn samples(folder: &Path, name: Option<&str>) -> Result<Option<TrialRecording>, 
 }
 
 impl TrialsState {
-    /// Takes in what was done with files, and what to tell of it.
+    /// Applies the result of a file operation and returns its notice.
     pub(crate) fn take(&mut self, end: FilesEnd) -> NoticeKind {
         self.refused = end.as_ref().err().cloned();
         match end {

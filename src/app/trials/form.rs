@@ -1,11 +1,11 @@
-//! The plan of a series as a form: the approaches there are, targets and poses, lists that are typed. Sends nothing.
+//! Form for the plan of a series: approaches, targets and poses, typed lists. Sends nothing.
 
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::MARGIN;
 use crate::trials::plan_settings::LIST_MAX;
 use crate::trials::{Approach, TrialPlan, Until};
 
-/// How the object may be approached, with the ends that fast stages usually have.
+/// Available approaches, with typical ends of the fast stage.
 pub fn approaches(fast: Speed) -> [Approach; 5] {
     let two = |until| Approach::TwoStage { fast, until };
     [
@@ -17,14 +17,14 @@ pub fn approaches(fast: Speed) -> [Approach; 5] {
     ]
 }
 
-/// Lets a joint close to an angle, from open if it has no start yet; without an angle it stays where it is.
+/// Sets the closing target of a joint, starting from open if it has no start yet; `None` excludes the joint.
 pub fn set_target(plan: &mut TrialPlan, dof: Dof, target: Option<Angle>) {
     plan.close[dof] = target;
     plan.start[dof] = target.and(plan.start[dof].or(Some(Angle::MAX)));
 }
 
-/// Takes the angles of a pose for its start or its end. What the pose leaves alone stays as it is; only joints that close
-/// have an end.
+/// Copies the angles of a pose to the start or the end. Joints that the pose omits are unchanged; an end applies only to
+/// joints that close.
 pub fn take_pose(plan: &mut TrialPlan, side: PlanSide, angles: &PerDof<Option<Angle>>) {
     for (dof, angle) in angles.iter() {
         let place = match side {
@@ -37,33 +37,31 @@ pub fn take_pose(plan: &mut TrialPlan, side: PlanSide, angles: &PerDof<Option<An
     }
 }
 
-/// One end of the way.
+/// Start or end of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PlanSide {
-    /// Before.
     Start,
-    /// At the end.
     Close,
 }
 
-/// Why a list of numbers cannot be taken.
+/// Reason why a list of numbers is rejected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ListError {
-    /// Something in it is no whole number of the range.
+    /// An entry is not a whole number in range.
     NotInRange {
-        /// The largest.
+        /// Upper limit of the range.
         most: i16,
     },
-    /// More than [`LIST_MAX`].
+    /// More than [`LIST_MAX`] entries.
     TooLong,
-    /// Nothing in it.
+    /// No entries.
     Empty,
 }
 
-/// Whole numbers of 0 to `most`, separated by commas or spaces.
+/// Parses whole numbers from 0 to `most`, separated by commas or spaces.
 ///
 /// # Errors
-/// [`ListError`]: nothing of it is taken.
+/// [`ListError`] if the list is rejected as a whole.
 pub fn list(text: &str, most: i16) -> Result<Vec<i16>, ListError> {
     let words = text.split([',', ' ', '，', '、', ';']).map(str::trim);
     let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
@@ -85,7 +83,7 @@ pub fn list(text: &str, most: i16) -> Result<Vec<i16>, ListError> {
     Ok(numbers)
 }
 
-/// Words between commas.
+/// Splits a text at commas into tags.
 pub fn tags(words: &str) -> Vec<String> {
     let words = words.split([',', '，']).map(str::trim);
     let words = words.filter(|word| !word.is_empty());

@@ -1,14 +1,15 @@
-//! What is drawn of a trial: few points of each quantity, with every peak. Made once, when the trial is over.
+//! Plot lines of a trial: each quantity decimated to few points that retain every peak. Computed once, when the trial
+//! ends.
 
 use crate::hand::Dof;
 use crate::trials::JointMetrics;
 use crate::trials::measure::curve::JointCurves;
 use crate::trials::recording::TrialRecording;
 
-/// Points of one line: two for each of more columns than a plot has pixels.
+/// Maximum number of points per line: two for each of more columns than a plot has pixels.
 const POINTS_MAX: usize = 1000;
 
-/// A quantity that trials are compared by.
+/// Quantity by which trials are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum TrialQuantity {
     /// Force above the reading at rest, g.
@@ -23,23 +24,22 @@ pub enum TrialQuantity {
 }
 
 impl TrialQuantity {
-    /// All, in the order of the variants.
+    /// All quantities, in the order of the variants.
     pub const ALL: [Self; 4] = [Self::Force, Self::Angle, Self::Current, Self::Touch];
 }
 
-/// The lines of one joint. Times are seconds from the closing command.
+/// Lines of one joint. Times are seconds from the closing command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointLines {
-    /// The joint.
     pub dof: Dof,
-    /// When it met the object; `None` = it did not, as far as can be told.
+    /// Time of contact with the object; `None` if none was detected.
     pub contact_s: Option<f64>,
-    /// In the order of [`TrialQuantity::ALL`].
+    /// Indexed by the order of [`TrialQuantity::ALL`].
     points: [Vec<[f64; 2]>; 4],
 }
 
 impl JointLines {
-    /// Of a recording and what was measured from it.
+    /// Computes the lines from a recording and its metrics.
     pub fn of(recording: &TrialRecording, joint: &JointMetrics) -> Self {
         let curves = JointCurves::of(recording, joint.dof);
         let rest_g = joint.rest_force_g.unwrap_or(0.0);
@@ -52,7 +52,7 @@ impl JointLines {
         }
     }
 
-    /// Seconds and values of a quantity; empty if it was not read.
+    /// Points of (seconds, value) of a quantity; empty if it was not read.
     pub fn points(&self, quantity: TrialQuantity) -> &[[f64; 2]] {
         let points = self.points.get(quantity as usize);
         points.map_or(&[], Vec::as_slice)

@@ -1,5 +1,5 @@
-//! Grasp trials in the window: the plan that is being written, the series that runs, sessions, and their files.
-//! What a trial is and how it is measured is in [`crate::trials`]. Draws nothing.
+//! Grasp trials in the window: the plan being edited, the running series, sessions, and their files. Trials and their
+//! metrics are defined in [`crate::trials`]. Draws nothing.
 
 pub mod comparison;
 #[cfg(test)]

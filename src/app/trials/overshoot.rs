@@ -1,4 +1,5 @@
-//! What trials measured of the hand in a slot: read when it is opened and added to after each trial, off the window's thread.
+//! Overshoot of the hand in a slot, measured by trials: loaded when the hand is opened, extended after each trial, in the
+//! background.
 
 use crate::app::ctx::Ctx;
 use crate::app::notices::NoticeKind;
@@ -11,21 +12,21 @@ use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What trials measured of one hand.
+/// Measured overshoot of one hand.
 #[derive(Debug, Default)]
 pub struct HandOvershoot {
-    /// What is known of it now. Of the built-in hand only what was measured in this run.
+    /// Current overshoot map. For the built-in hand it covers this run only.
     pub map: Arc<OvershootMap>,
     of: Option<Endpoint>,
     /// Closes that are not in the file yet.
     waiting: Vec<MeasuredClose>,
     under_way: Option<BackgroundJob<io::Result<OvershootMap>>>,
-    /// What is in the file is to go.
+    /// True if the file must be cleared.
     forgets: bool,
 }
 
 impl HandOvershoot {
-    /// Takes what a trial measured.
+    /// Adds the measurements of a trial.
     pub(crate) fn add(&mut self, closes: Vec<MeasuredClose>) {
         self.count(&closes);
         self.waiting.extend(closes);
@@ -38,14 +39,14 @@ impl HandOvershoot {
         }
     }
 
-    /// Forgets all of it, here and in the file.
+    /// Clears all measurements, in memory and in the file.
     pub(crate) fn forget(&mut self) {
         self.map = Arc::default();
         self.waiting.clear();
         self.forgets = true;
     }
 
-    /// Lets it be of this hand, and its file hold what was measured.
+    /// Switches to this hand if it changed, and synchronizes its file with the measurements.
     pub(crate) fn tick(&mut self, endpoint: Option<&Endpoint>, ctx: &mut Ctx<'_>) {
         if self.of.as_ref() != endpoint {
             if self.forgets || !self.waiting.is_empty() {
@@ -78,7 +79,7 @@ impl HandOvershoot {
         }
     }
 
-    /// Forgets the file if that is wanted, adds what waits to it, and reads it.
+    /// Clears the file if requested, appends the pending measurements, and reads it back.
     fn write(&mut self, ctx: &Ctx<'_>) {
         let closes = std::mem::take(&mut self.waiting);
         let forgets = std::mem::take(&mut self.forgets);

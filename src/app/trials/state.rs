@@ -1,4 +1,4 @@
-//! The plan that is being written and the sessions that were run or opened. Sends nothing, reads no clock and no file.
+//! The plan being edited and the sessions that were run or opened. Sends nothing, reads no clock and no file.
 
 use crate::app::notices::NoticeKind;
 use crate::app::trials::lines::JointLines;
@@ -11,45 +11,46 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Rows that are held in memory for saving, over all trials: some hundred megabytes. The oldest trials drop theirs.
+/// Maximum number of rows in memory for saving, over all trials: some hundred megabytes. The oldest trials drop theirs
+/// first.
 pub const ROWS_MAX: usize = 600_000;
-/// Sessions in the list. The oldest that lies in files, or else the oldest, makes room.
+/// Maximum number of listed sessions. The oldest saved one is dropped, or else the oldest.
 pub const SESSIONS_MAX: usize = 24;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SessionId(pub u64);
 
-/// Where a session lies.
+/// Storage of a session.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SessionOrigin {
-    /// It was run here, and lies in no file.
+    /// Run here and not saved.
     Unsaved,
-    /// It was run here and saved in this folder.
+    /// Run here and saved in this folder.
     Saved(PathBuf),
-    /// It was read from this folder.
+    /// Read from this folder.
     Folder(PathBuf),
 }
 
 impl SessionOrigin {
-    /// Whether all of it lies in files.
+    /// True if the session is completely saved in files.
     pub const fn is_in_files(&self) -> bool {
         !matches!(self, Self::Unsaved)
     }
 }
 
-/// One trial that is over.
+/// A finished trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SessionTrial {
-    /// What it was and came to.
+    /// Setup and metrics of the trial.
     pub summary: TrialSummary,
-    /// What is drawn of it, joint by joint.
+    /// Plot lines, joint by joint.
     pub lines: Vec<JointLines>,
-    /// What was read, to be saved; empty if it came from a file.
+    /// Recorded samples, for saving; empty if read from a file.
     pub recording: Arc<TrialRecording>,
 }
 
 impl SessionTrial {
-    /// Of a trial that was run here.
+    /// Wraps a trial that was run here.
     pub fn run(trial: Trial) -> Self {
         let read = Self::read(trial.summary, &trial.recording);
         Self {
@@ -58,7 +59,7 @@ impl SessionTrial {
         }
     }
 
-    /// Of a trial whose samples lie in a file. Without any there is nothing to draw.
+    /// Wraps a trial read from a file. Without samples there are no lines.
     pub fn read(summary: TrialSummary, recording: &TrialRecording) -> Self {
         let joints = summary.joints.iter();
         let joints = joints.filter(|_| !recording.rows().is_empty());
@@ -80,22 +81,21 @@ impl SessionTrial {
     }
 }
 
-/// One series, whole or so far.
+/// One series, complete or in progress.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrialSession {
     pub id: SessionId,
-    /// The hand, the day, the plan, note and tags, and why it ended early.
+    /// Hand, day, plan, note, tags, and the reason for an early end.
     pub head: SessionHead,
-    /// Where it lies.
     pub origin: SessionOrigin,
-    /// What was tried, in its order.
+    /// Trials, in order of execution.
     pub trials: Vec<SessionTrial>,
-    /// Trials whose samples were dropped before they lay in files.
+    /// Number of trials whose samples were dropped before they were saved.
     pub lost: usize,
 }
 
 impl TrialSession {
-    /// From the closing command of a trial to its end, in the program's time; `None` if it was not run here.
+    /// Time from the closing command of a trial to its end, on the program's clock; `None` if it was not run here.
     pub fn stretch(&self, number: usize) -> Option<(Moment, Moment)> {
         let mut trials = self.trials.iter();
         let recording = &trials.find(|own| own.summary.number == number)?.recording;
@@ -103,7 +103,7 @@ impl TrialSession {
         Some((recording.zero(), end))
     }
 
-    /// Drops the samples of its oldest trials, until so many rows less are held.
+    /// Drops the samples of the oldest trials until `over` rows are freed.
     fn drop_rows(&mut self, over: &mut usize) {
         let is_in_files = self.origin.is_in_files();
         for trial in self.trials.iter_mut().filter(|own| own.rows() > 0) {
@@ -117,17 +117,17 @@ impl TrialSession {
     }
 }
 
-/// Which series is begun.
+/// Kind of series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SeriesKind {
-    /// A search for settings.
+    /// Search for settings.
     #[default]
     Search,
     /// All settings of a grid.
     Grid,
 }
 
-/// What a series is to do.
+/// Complete definition of a series.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SeriesPlan {
     /// All settings of a grid.
@@ -144,7 +144,7 @@ impl SeriesPlan {
         }
     }
 
-    /// The plan of its trials; of a search that of the first.
+    /// Plan of the trials; for a search, that of the first trial.
     pub fn trials(&self) -> TrialPlan {
         match self {
             Self::Grid(plan) => plan.clone(),
@@ -152,7 +152,7 @@ impl SeriesPlan {
         }
     }
 
-    /// The series, in an arming; `None` if it makes no sense.
+    /// Creates the series for an arming; `None` if the plan is invalid.
     pub fn begin(&self, epoch: ArmEpoch, now: Moment) -> Option<TrialSeries> {
         match self {
             Self::Grid(plan) => TrialSeries::start(plan.clone(), epoch, now).ok(),
@@ -163,7 +163,7 @@ impl SeriesPlan {
         }
     }
 
-    /// Whether it makes sense.
+    /// True if the plan is valid.
     pub fn is_sound(&self) -> bool {
         match self {
             Self::Grid(plan) => plan.check().is_ok(),
@@ -172,54 +172,54 @@ impl SeriesPlan {
     }
 }
 
-/// The search that runs or ran last.
+/// The current or last search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Search {
     pub goal: SearchGoal,
-    /// Where its trials are.
+    /// Session that holds the trials.
     pub session: SessionId,
-    /// Where it stands; `None` before its first word.
+    /// Latest progress; `None` before the first report.
     pub progress: Option<SearchProgress>,
-    /// What it came to; `None` while it runs, and if it was ended early.
+    /// Result; `None` while it runs, and if it ended early.
     pub finding: Option<Finding>,
 }
 
-/// Everything about trials that the window shows.
+/// State of the trials view.
 #[derive(Debug, Clone, Default)]
 pub struct TrialsState {
-    /// The plan that is being written.
+    /// Plan being edited.
     pub plan: TrialPlan,
-    /// The goal that is being written.
+    /// Search goal being edited.
     pub goal: SearchGoal,
-    /// The search that runs or ran last.
+    /// The current or last search.
     pub search: Option<Search>,
-    /// The session whose series runs now.
+    /// Session of the running series.
     pub running: Option<SessionId>,
-    /// What was tried here or opened, the oldest first.
+    /// Sessions run here or opened, oldest first.
     pub sessions: Vec<TrialSession>,
-    /// The series that ended last, until the next begins.
+    /// Session of the last ended series, until the next one starts.
     pub last: Option<SessionId>,
-    /// The session that is about to be forgotten and lies in no file.
+    /// Unsaved session whose removal awaits confirmation.
     pub to_confirm: Option<SessionId>,
-    /// Why the last wish about files came to nothing; `None` if it did what it should.
+    /// Reason why the last file operation failed; `None` if it succeeded.
     pub refused: Option<NoticeKind>,
-    /// A session was to be read and was not: its path may be typed.
+    /// True if opening a session failed: its path can be typed.
     pub asks_path: bool,
-    /// The user asked for that, and it is not over.
+    /// True while a session is being opened.
     pub(crate) is_opening: bool,
-    /// Sessions that are to be written without asking, the oldest wish first.
+    /// Sessions to save without asking, in order of request.
     pub(crate) to_keep: VecDeque<SessionId>,
     newest: u64,
 }
 
 impl TrialsState {
-    /// The search that runs now.
+    /// The running search.
     pub fn running_search(&self) -> Option<&Search> {
         let search = self.search.as_ref();
         search.filter(|search| self.running == Some(search.session))
     }
 
-    /// What a series of this kind would do now.
+    /// Series that would be run now for this kind.
     pub fn planned(&self, kind: SeriesKind) -> SeriesPlan {
         match kind {
             SeriesKind::Grid => SeriesPlan::Grid(self.plan.clone()),
@@ -231,12 +231,11 @@ impl TrialsState {
         self.sessions.iter().find(|session| session.id == id)
     }
 
-    /// The same, to be changed.
     pub fn session_mut(&mut self, id: SessionId) -> Option<&mut TrialSession> {
         self.sessions.iter_mut().find(|session| session.id == id)
     }
 
-    /// Adds a session.
+    /// Adds a session, dropping one if the list is full.
     pub fn add(
         &mut self,
         head: SessionHead,
@@ -261,7 +260,7 @@ impl TrialsState {
         id
     }
 
-    /// Takes a session out of the list if it lies in files, else waits for a yes. The one that runs stays.
+    /// Removes a saved session from the list; an unsaved one requires confirmation. The running session stays.
     pub fn ask_to_forget(&mut self, id: SessionId) {
         let runs = self.running == Some(id);
         match self.session(id).map(|session| session.origin.is_in_files()) {
@@ -271,7 +270,7 @@ impl TrialsState {
         }
     }
 
-    /// Takes a session out of the list. The one that runs stays.
+    /// Removes a session from the list, unless it is running.
     pub fn forget(&mut self, id: SessionId) {
         if self.running != Some(id) {
             self.sessions.retain(|session| session.id != id);
@@ -279,8 +278,7 @@ impl TrialsState {
         }
     }
 
-    /// Adds a trial to a session, and holds no more rows than there is room for: what lies in files goes first, then the
-    /// oldest.
+    /// Adds a trial to a session, and drops rows over the limit: those of saved sessions first, then the oldest.
     pub fn add_trial(&mut self, id: SessionId, trial: Trial) {
         if let Some(session) = self.session_mut(id) {
             session.trials.push(SessionTrial::run(trial));
@@ -297,33 +295,34 @@ impl TrialsState {
     }
 }
 
-/// What the user asks for about trials.
+/// User requests concerning trials.
 #[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum TrialAction {
-    /// This is the plan now. Sends nothing.
+    /// Replace the plan. Sends nothing.
     Plan(Box<TrialPlan>),
-    /// Run a series, in the arming that is in force. Needs arming.
+    /// Start a series in the current arming. Needs arming.
     Start(SeriesKind),
-    /// Arm the hand, and run a series as soon as that holds.
+    /// Arm the hand, and start a series once it is armed.
     ArmAndStart(SeriesKind),
-    /// This is the goal of the search now. Sends nothing.
+    /// Replace the search goal. Sends nothing.
     Goal(Box<SearchGoal>),
-    /// Give a session this note.
+    /// Set the note of a session.
     Note(SessionId, String),
-    /// Give a session these tags, separated by commas.
+    /// Set the tags of a session, separated by commas.
     Tags(SessionId, String),
-    /// Take a session out of the list; its files stay. What lies in no file is asked about first.
+    /// Remove a session from the list; its files stay. An unsaved one requires confirmation.
     Forget(SessionId),
-    /// Yes, forget it without files too.
+    /// Confirm the removal of the unsaved session.
     ConfirmForget,
-    /// No, it stays.
+    /// Cancel the removal.
     CancelForget,
-    /// Forget what trials measured of the hand that is shown.
+    /// Clear the measured overshoot of the current hand.
     ForgetOvershoot,
-    /// Save it as a table.
+    /// Export the measured overshoot as a table.
     ExportOvershoot,
-    /// Read a saved session: one at a place that was typed, else one that is asked for.
+    /// Open a saved session at the typed path, else ask the user for one.
     Open(Option<PathBuf>),
-    /// Ask for a folder and save a session in a new one inside it; the report names the best by this.
+    /// Ask for a folder and save a session in a new folder inside it; the report names the best setting by this
+    /// criterion.
     Save(SessionId, Option<Criterion>),
 }

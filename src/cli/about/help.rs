@@ -12,7 +12,7 @@ pub(crate) struct HelpArgs {
     pub(crate) words: Vec<String>,
 }
 
-/// Prints what the words ask for: without words the whole help, else a topic or a command.
+/// Prints the requested help: without arguments that of the whole program, else a topic or a command.
 pub(crate) fn run(out: &mut Out, args: &HelpArgs, program: Command) -> anyhow::Result<()> {
     let words: Vec<String> = args.words.iter().map(|word| word.to_lowercase()).collect();
     if let [word, rest @ ..] = words.as_slice()
@@ -33,14 +33,14 @@ pub(crate) fn run(out: &mut Out, args: &HelpArgs, program: Command) -> anyhow::R
         .into_iter()
         .chain(words.iter().map(String::as_str));
     match program.try_get_matches_from(line.chain(["--help"])) {
-        // Clap hands back its help as an error; printed by clap it keeps its colours and its width.
+        // Clap returns its help as an error; printing it through clap preserves colours and width.
         Err(help) if help.exit_code() == 0 => Ok(help.print()?),
         Err(wrong) => wrong.exit(),
         Ok(_) => Ok(()),
     }
 }
 
-/// The list of topics, for the help of the whole program.
+/// List of topics, for the help of the whole program.
 pub(crate) fn topics() -> String {
     let lines = TOPICS
         .iter()
@@ -60,7 +60,7 @@ fn unknown(word: &str, program: &Command) -> WrongUsage {
     ))
 }
 
-/// A page of the manual as plain text: headings underlined, code indented, tables without their bars.
+/// Formats a page of the manual as plain text: headings underlined, code indented, tables without bars.
 fn plain(markdown: &str) -> Vec<String> {
     let mut lines = Vec::new();
     let mut in_code = false;
@@ -85,7 +85,7 @@ fn plain(markdown: &str) -> Vec<String> {
     lines
 }
 
-/// A line without the signs for bold and emphasis; code in quotes, as in the other messages of the program.
+/// Removes the marks for bold and emphasis; code is quoted, as in the program's other messages.
 fn inline(line: &str) -> String {
     let (bullet, rest) = line
         .strip_prefix("* ")
@@ -181,7 +181,7 @@ mod tests {
         words
     }
 
-    /// Every command of ours in a page, and whether it stands in a code block or in the text.
+    /// All commands of this program in a page; true for those in a code block.
     fn commands(page: &str) -> Vec<(String, bool)> {
         let mut found = Vec::new();
         for (number, part) in page.split("```").enumerate() {

@@ -1,4 +1,4 @@
-//! Commands that need no hand: help, registers, the hand as a model, and what packages and shells take.
+//! Commands that need no hand: help, registers, models of the hand, and files for packages and shells.
 
 pub(crate) mod help;
 pub(crate) mod model;

@@ -1,4 +1,4 @@
-//! `model`: the hand as a model for other programs, written to files. Needs no hand.
+//! `model`: writes the hand as a model for other programs. Needs no hand.
 
 use crate::cli::out::Out;
 use crate::hand::kinematics::Side;
@@ -27,7 +27,7 @@ pub(crate) struct ModelArgs {
     pub(crate) json: bool,
 }
 
-/// Writes the files.
+/// Writes the model files.
 pub(crate) fn run(out: &mut Out, args: &ModelArgs) -> anyhow::Result<()> {
     let side = side_name(args.side);
     let all = [

@@ -1,4 +1,4 @@
-//! What packages and shells take from the program: manual pages, and completions of its command line.
+//! Files for packages and shells: manual pages, and shell completions.
 
 use crate::cli::out::Out;
 use anyhow::Context as _;
@@ -20,7 +20,7 @@ pub(crate) struct ManArgs {
     pub(crate) out: PathBuf,
 }
 
-/// Prints the completions of a shell.
+/// Prints the completions for a shell.
 pub(crate) fn completions(
     out: &mut Out,
     args: &CompletionsArgs,
@@ -32,7 +32,7 @@ pub(crate) fn completions(
     text.lines().try_for_each(|line| out.line(line))
 }
 
-/// Writes a page for the program and one for each command.
+/// Writes a page for the program and one per command.
 pub(crate) fn man(out: &mut Out, args: &ManArgs, mut program: Command) -> anyhow::Result<()> {
     let folder = &args.out;
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;

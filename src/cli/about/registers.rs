@@ -1,11 +1,11 @@
-//! `registers`: the register map as text and as JSON, from the one table.
+//! `registers`: the register map as text and as JSON, from the same table.
 
 use crate::cli::out::Out;
 use crate::hand::register::{Origin, REGISTERS, Register};
 use serde::Serialize;
 use serde_json::Value;
 
-/// A register as scripts see it, with what follows from it.
+/// A register as scripts see it, with derived fields.
 #[derive(Serialize)]
 struct RegisterRow {
     #[serde(flatten)]
@@ -24,7 +24,7 @@ impl From<&Register> for RegisterRow {
     }
 }
 
-/// Title, key of the JSON object, and how a cell is filled up.
+/// Title, key of the JSON object, and padding of a cell.
 type RegisterColumn = (&'static str, &'static str, fn(&str) -> String);
 
 const COLUMNS: [RegisterColumn; 11] = [
@@ -49,7 +49,6 @@ fn right<const WIDTH: usize>(cell: &str) -> String {
     format!("{cell:>WIDTH$}")
 }
 
-/// Prints the register map.
 pub(crate) fn run(out: &mut Out, as_json: bool) -> anyhow::Result<()> {
     let rows: Value = serde_json::to_value(REGISTERS.each_ref().map(RegisterRow::from).as_slice())?;
     if as_json {

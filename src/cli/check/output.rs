@@ -1,4 +1,4 @@
-//! A check-up as lines of text, and what is done now.
+//! Text output of a check-up: its result and its progress.
 
 use crate::checkup::check::Check;
 use crate::checkup::report::CheckupReport;
@@ -7,9 +7,9 @@ use crate::checkup::run::CheckupView;
 use crate::checkup::subject::Light;
 use crate::cli::out::say;
 
-/// What is not as it should be, and what to do, with the summary.
+/// Findings with advice, and the summary.
 pub(crate) fn lines(report: &CheckupReport) -> Vec<String> {
-    // What a partial one did not come to is no news.
+    // Figures missing from a partial check-up are not reported.
     let is_told = |check: &&Check| match check.light {
         Light::Fine => check.drift().is_some(),
         Light::Unknown => report.aborted.is_none(),
@@ -44,7 +44,7 @@ fn line(check: &Check) -> String {
     )
 }
 
-/// What is done now, or asked for.
+/// Reports the current step, or the press requested from the user.
 pub(crate) fn progress(view: CheckupView) {
     let what = match (view.press, view.joint) {
         (Some(finger), _) => format!(

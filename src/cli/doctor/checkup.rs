@@ -1,4 +1,4 @@
-//! The results of a check-up of one hand and the connection to it, as plain values.
+//! Results of a check-up of one hand and the connection to it, as plain values.
 
 use crate::hand::Span;
 use crate::link::{LinkStats, LinkStatus, line_time};
@@ -7,49 +7,49 @@ use crate::transport::{Endpoint, PortFacts, Route};
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Round trips kept per window: a check-up of a day stays small, and the newest count.
+/// Maximum number of round trips per block: limits a check-up of a day, and the newest count.
 const TRIPS_MAX: usize = 65_536;
-/// Upper edges of the histogram, milliseconds; longer round trips go into one more bin.
+/// Upper edges of the histogram in milliseconds; longer round trips go into one more bin.
 pub(crate) const EDGES_MS: [u64; 7] = [1, 2, 4, 8, 16, 32, 64];
 
 /// One check-up of one hand.
 pub(crate) struct Checkup {
     pub(crate) endpoint: Endpoint,
     pub(crate) connection: ConnectionFacts,
-    /// The measurements, or why the hand did not answer.
+    /// The measurements, or the reason why the hand did not answer.
     pub(crate) answer: Result<Measured, String>,
 }
 
-/// How the hand is reached, as the system reports it.
+/// Type of the connection, as the system reports it.
 pub(crate) enum ConnectionFacts {
-    /// In this program.
+    /// Built into this program.
     BuiltIn,
-    /// Behind a serial port.
+    /// Serial port.
     Port(PortFacts),
-    /// In a network; `None` where the system has no route.
+    /// Network; `None` if the system has no route.
     Net(Option<Route>),
-    /// On a CAN interface.
+    /// CAN interface.
     Can(CanFacts),
 }
 
-/// What the hand's answers showed.
+/// Measurements of an answering hand.
 pub(crate) struct Measured {
-    /// From opening to the first answer.
+    /// Time from opening to the first answer.
     pub(crate) answered_after: Duration,
     pub(crate) status: LinkStatus,
     pub(crate) stats: LinkStats,
     pub(crate) windows: Vec<BlockTiming>,
-    /// Round trips of short replies cluster at the ticks of a latency timer.
+    /// True if round trips of short replies cluster at the ticks of a latency timer.
     pub(crate) ticks_seen: bool,
-    /// Why the link was lost during the measurement.
+    /// Reason if the link was lost during the measurement.
     pub(crate) lost: Option<String>,
 }
 
-/// One block of registers, read repeatedly.
+/// A block of registers, read repeatedly.
 pub(crate) struct BlockTiming {
     pub(crate) name: &'static str,
     pub(crate) span: Span,
-    /// The shortest time that the line allows, where its speed is known.
+    /// Minimum transmission time on the line; `None` if its speed is unknown.
     pub(crate) line: Option<Duration>,
     pub(crate) refused: u64,
     pub(crate) failed: u64,
@@ -78,7 +78,7 @@ impl BlockTiming {
         self.trips.push_back(trip);
     }
 
-    /// The round trip at this percentile.
+    /// Round trip at this percentile.
     pub(crate) fn percentile(&self, percent: usize) -> Option<Duration> {
         let mut sorted: Vec<Duration> = self.trips.iter().copied().collect();
         sorted.sort_unstable();
@@ -86,7 +86,7 @@ impl BlockTiming {
         sorted.get(last * percent / 100).copied()
     }
 
-    /// Reads a second if nothing else were read.
+    /// Rate in reads per second if only this block were read.
     pub(crate) fn hz(&self) -> Option<f64> {
         let all: Duration = self.trips.iter().sum();
         let count = u32::try_from(self.trips.len())
@@ -96,13 +96,13 @@ impl BlockTiming {
         (mean > 0.0).then(|| 1.0 / mean)
     }
 
-    /// The same if hand and adapter took no time.
+    /// The same without delays of hand and adapter.
     pub(crate) fn line_hz(&self) -> Option<f64> {
         let seconds = self.line?.as_secs_f64();
         (seconds > 0.0).then(|| 1.0 / seconds)
     }
 
-    /// How many round trips lie below each edge and above the one before; the last bin has the rest.
+    /// Number of round trips between each edge and the previous one; the last bin holds the rest.
     pub(crate) fn histogram(&self) -> [u64; EDGES_MS.len() + 1] {
         let mut counts = [0; EDGES_MS.len() + 1];
         for trip in &self.trips {
@@ -118,7 +118,7 @@ impl BlockTiming {
 }
 
 impl Measured {
-    /// Requests of the check-up, answered or not.
+    /// Number of requests of the check-up, answered or not.
     pub(crate) fn requests(&self) -> u64 {
         let asked = |window: &BlockTiming| window.reads + window.refused + window.failed;
         self.windows.iter().map(asked).sum()

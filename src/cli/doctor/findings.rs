@@ -1,4 +1,4 @@
-//! What is wrong with a hand or the connection to it, and what to do, in words.
+//! Findings about a hand or the connection to it, with advice, as text.
 
 use crate::cli::doctor::checkup::{Checkup, ConnectionFacts, Measured};
 use crate::link::{LinkStats, priority};
@@ -7,28 +7,28 @@ use crate::transport::{Endpoint, PortFacts, Route};
 use serde::Serialize;
 use std::time::Duration;
 
-/// Adapters that hold data back for longer than this halve the rate.
+/// Latency timer in milliseconds above which an adapter halves the rate.
 const TIMER_MS: u16 = 2;
-/// Too many requests without a reply, per thousand: a single one may be this computer being busy.
+/// Limit of requests without a reply, per thousand: a single one may be due to a busy computer.
 const TIMEOUTS_PER_MILLE: u64 = 10;
-/// Too many wrong checksums, per thousand (hazards: more than 1 in 1000 is a bad line).
+/// Limit of wrong checksums, per thousand (hazards: more than 1 in 1000 is a bad line).
 const CHECKSUMS_PER_MILLE: u64 = 1;
-/// Too many bursts of noise, per thousand.
+/// Limit of noise bursts, per thousand.
 const NOISE_PER_MILLE: u64 = 10;
-/// Too many replies that nobody asked for, per thousand: a hand that doubles one in sixteen is odd, not two.
+/// Limit of unsolicited replies, per thousand: one in sixteen is a hand that doubles replies, not a second master.
 const FOREIGN_PER_MILLE: u64 = 100;
-/// Too many refusals, per thousand.
+/// Limit of refusals, per thousand.
 const REFUSALS_PER_MILLE: u64 = 10;
-/// Too many readings with an impossible value, per thousand.
+/// Limit of readings with an impossible value, per thousand.
 const IMPLAUSIBLE_PER_MILLE: u64 = 10;
-/// What to do about another controller.
+/// Advice on another controller.
 const OTHER_MASTER: &str = "close the other program, or take the other master off the bus";
-/// A hand takes up to 15 ms, an adapter 16 more; beyond that, feedback is too old for control.
+/// A hand needs up to 15 ms and an adapter 16 more; beyond this limit, feedback is too old for control.
 const SLOW: Duration = Duration::from_millis(60);
 
-/// A stall of this computer that is longer costs a close its evidence.
+/// A longer stall of this computer invalidates the measurement of a close.
 const STALL_HARMFUL: Duration = Duration::from_millis(50);
-/// So many short ones in a check say the same.
+/// Number of short stalls in a check that has the same meaning.
 const STALLS_MANY: u64 = 50;
 
 #[derive(Serialize)]
@@ -36,9 +36,9 @@ pub(crate) struct Finding {
     /// True for a problem, false for a note.
     #[serde(rename = "wrong")]
     pub(crate) is_wrong: bool,
-    /// What was found.
+    /// Description of the finding.
     pub(crate) what: String,
-    /// What to do; empty if nothing.
+    /// Advice; empty if none.
     pub(crate) advice: String,
 }
 
@@ -57,7 +57,7 @@ fn hint(what: impl Into<String>, advice: impl Into<String>) -> Finding {
     }
 }
 
-/// What this computer itself did not manage.
+/// Findings about stalls of this computer.
 fn stalls(measured: &Measured, found: &mut Vec<Finding>) {
     let stats = &measured.stats;
     if stats.longest_stall < STALL_HARMFUL && stats.stalls < STALLS_MANY {
@@ -78,12 +78,12 @@ fn stalls(measured: &Measured, found: &mut Vec<Finding>) {
     ));
 }
 
-/// All findings, the worst first.
+/// All findings, problems first.
 pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
     let mut found = Vec::new();
     let endpoint = &checkup.endpoint;
     match &checkup.answer {
-        // The sentence says itself what to do.
+        // The text includes the advice.
         Err(why) => found.push(wrong(why, "")),
         Ok(measured) => {
             answers(checkup, measured, &mut found);
@@ -123,7 +123,7 @@ fn answers(checkup: &Checkup, measured: &Measured, found: &mut Vec<Finding>) {
         .windows
         .iter()
         .filter_map(|window| window.percentile(50));
-    // A way that is known to be slow has been named.
+    // A connection that is known to be slow has been reported already.
     let is_named = measured.status.slow_ms.is_some();
     if let Some(trip) = slowest.max().filter(|trip| *trip > SLOW && !is_named) {
         found.push(wrong(
@@ -139,7 +139,7 @@ fn answers(checkup: &Checkup, measured: &Measured, found: &mut Vec<Finding>) {
     }
 }
 
-/// A verdict on every count of the link. All fields are named here, so that a new one does not compile without a verdict.
+/// Judges every counter of the link. All fields are listed, so that a new one does not compile without a judgement.
 fn counters(measured: &Measured, id: u16, found: &mut Vec<Finding>) {
     let LinkStats {
         timeouts,
@@ -154,11 +154,11 @@ fn counters(measured: &Measured, id: u16, found: &mut Vec<Finding>) {
         reconnects,
         writes,
         dropped_events,
-        // Judged by themselves: they are this computer's.
+        // Judged separately: they concern this computer.
         stalls: _,
         stalled: _,
         longest_stall: _,
-        // What goes well, and what is judged as a round trip.
+        // Not errors, or judged as round trips.
         state_reads: _,
         tactile_reads: _,
         state_hz: _,
@@ -259,7 +259,7 @@ fn refused(measured: &Measured, refusals: u64, requests: u64) -> Finding {
     )
 }
 
-/// Names the blocks that were refused each time.
+/// Names the blocks that were refused every time.
 fn whole_blocks(measured: &Measured) -> String {
     let refused = measured.windows.iter();
     let names: Vec<&str> = refused
@@ -273,7 +273,7 @@ fn whole_blocks(measured: &Measured) -> String {
 }
 
 fn port(port: &str, facts: &PortFacts, measured: Option<&Measured>, found: &mut Vec<Finding>) {
-    // A port that could not be opened because of it has been told of with this name already.
+    // The error of a port that could not be opened for this reason names the holder already.
     if let Some(holder) = facts.holder.as_ref().filter(|_| measured.is_some()) {
         found.push(wrong(
             format!("{port} is also open in {holder}"),
@@ -286,7 +286,7 @@ fn port(port: &str, facts: &PortFacts, measured: Option<&Measured>, found: &mut 
             format!("the USB adapter holds replies back for up to {ms} ms (latency timer)"),
             timer_advice(facts, port),
         )),
-        // The driver says that the timer is short: then it is the hand that takes so long.
+        // The driver reports a short timer, so the hand itself causes the delay.
         Some(_) => {}
         None if measured.is_some_and(|measured| measured.ticks_seen) => found.push(wrong(
             "replies come every 16 ms, as from a USB adapter with a latency timer of 16 ms",
@@ -296,12 +296,12 @@ fn port(port: &str, facts: &PortFacts, measured: Option<&Measured>, found: &mut 
     }
 }
 
-/// The id or unit that is asked.
+/// ID or unit of the requests.
 fn id_of(endpoint: &Endpoint) -> u16 {
     endpoint.place_and_id().1
 }
 
-/// The command that fixes it.
+/// Command that sets the latency timer.
 fn timer_advice(facts: &PortFacts, port: &str) -> String {
     let device = facts.device.as_deref().unwrap_or(port);
     let name = device.rsplit('/').next().unwrap_or(device);

@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::time::Duration;
 
-/// The whole object. What is not known is null.
+/// The complete object. Unknown values are null.
 pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
     let measured = checkup.answer.as_ref().ok();
     let (mut port, mut network, mut can) = (None, None, None);
@@ -46,7 +46,7 @@ pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
     })
 }
 
-/// The facts as they are, with one more field that follows from them.
+/// The facts with one additional derived field.
 fn with(facts: &impl Serialize, name: &str, value: Value) -> Value {
     let mut object = json!(facts);
     if let Value::Object(fields) = &mut object {

@@ -1,4 +1,4 @@
-//! `doctor`: diagnoses a hand and the connection to it, and says what to do. Only reads.
+//! `doctor`: diagnoses a hand and the connection to it, and gives advice. Only reads.
 
 mod checkup;
 mod findings;
@@ -45,15 +45,15 @@ pub(crate) async fn run(out: &mut Out, args: &DoctorArgs) -> anyhow::Result<()> 
     }
 }
 
-/// Besides what is measured, only the setpoints are read: they show whether someone else changes them.
+/// Besides the measurement, only the setpoints are polled: they show if another controller changes them.
 const RATES: PollRates = PollRates {
     state_hz: 0.0,
     tactile_hz: 0.0,
     settings_hz: 2.0,
 };
-/// Where a late reply is possible, the next request waits this long.
+/// Pause before the next request if a late reply is possible.
 const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
-/// The fingertips in the first of the two reads that cover all five.
+/// The fingertips covered by the first of the two reads for all five.
 const TIPS: Span = Span::new(register::TOUCH.address, 232);
 const LAST_TIP: Span = Span::new(register::TOUCH.address + TIPS.len, 58);
 
@@ -77,7 +77,7 @@ async fn connection(endpoint: &Endpoint) -> ConnectionFacts {
         Endpoint::Slcan { port, .. } | Endpoint::UsbCan { port, .. } => {
             ConnectionFacts::Port(port_facts(port, &Sysfs::default()))
         }
-        // A name that cannot be resolved is told again, with its reason, when it is dialled.
+        // A name that cannot be resolved is reported with its reason when it is dialled.
         Endpoint::Tcp { .. } | Endpoint::RtuTcp(_) => {
             let (host, port) = endpoint.host().unwrap_or_default();
             ConnectionFacts::Net(route(host, port).await.ok())
@@ -122,7 +122,7 @@ async fn answer(
     })
 }
 
-/// Reads the windows in turn, one request at a time.
+/// Reads the blocks in turn, one request at a time.
 struct BlockReader {
     windows: Vec<BlockTiming>,
     ticks: Ticks,
@@ -147,7 +147,7 @@ impl BlockReader {
         }
     }
 
-    /// Asks until the link is lost.
+    /// Sends requests until the link is lost.
     async fn ask_on(&mut self, link: &LinkHandle) {
         loop {
             for window in &mut self.windows {

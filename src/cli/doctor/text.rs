@@ -7,7 +7,7 @@ use crate::transport::{PortFacts, Route, UsbFound};
 use std::fmt::Display;
 use std::time::Duration;
 
-/// Everything.
+/// The complete text.
 pub(crate) fn lines(checkup: &Checkup, found: &[Finding]) -> Vec<String> {
     let mut lines = vec![row("hand", checkup.endpoint.to_string())];
     lines.extend(connection(&checkup.connection));

@@ -1,4 +1,4 @@
-//! Consent of the user: a line that was entered after it was asked for. What was typed, piped or repeated before does not count.
+//! Consent of the user: a line entered after a question. Text that was typed, piped or repeated before does not count.
 
 use std::io::{self, IsTerminal as _};
 use tokio::task::spawn_blocking;
@@ -10,28 +10,28 @@ pub(crate) enum ConsentFrom {
     Stdin,
 }
 
-/// Why nobody can be asked, or did not answer.
+/// Reason why there is no consent.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum NoConsent {
-    /// Standard input is no terminal, or one that another program has.
+    /// Standard input is not a terminal, or belongs to another program.
     #[error(
         "nobody can press Enter here; start it in a terminal, or answer each question over standard input with --consent stdin"
     )]
     NoTerminal,
-    /// Lines come whether anything is asked or not.
+    /// Lines arrive continuously, independent of questions.
     #[cfg(unix)]
     #[error("standard input does not pause, so none of its lines is an answer")]
     NeverQuiet,
-    /// What was typed before cannot be told from an answer on this system.
+    /// On this system, earlier input cannot be distinguished from an answer.
     #[cfg(not(unix))]
     #[error(
         "nobody can be asked here: only Linux and macOS tell an answer from what was typed before; follow in the window, where a person lets it move the hand"
     )]
     NotHere,
-    /// There is no further line.
+    /// Standard input has ended.
     #[error("standard input ended without an answer")]
     Ended,
-    /// The system's.
+    /// I/O error of the system.
     #[error("standard input cannot be read: {0}")]
     Io(io::ErrorKind),
 }
@@ -42,7 +42,7 @@ impl From<io::Error> for NoConsent {
     }
 }
 
-/// Throws away what came before anything was asked. To be called right before the question.
+/// Discards earlier input. Must be called immediately before the question.
 pub(crate) async fn forget_earlier(from: Option<ConsentFrom>) -> Result<(), NoConsent> {
     let forgotten = spawn_blocking(move || {
         let is_answered_here = from.is_some() || io::stdin().is_terminal() && input::is_ours();
@@ -52,11 +52,11 @@ pub(crate) async fn forget_earlier(from: Option<ConsentFrom>) -> Result<(), NoCo
             Err(NoConsent::NoTerminal)
         }
     });
-    // It ends early only with the program.
+    // The task fails only at program exit.
     forgotten.await.unwrap_or(Err(NoConsent::Ended))
 }
 
-/// Waits for the line that answers. To be called right after the question.
+/// Waits for the line that answers. Must be called immediately after the question.
 pub(crate) async fn given() -> Result<(), NoConsent> {
     spawn_blocking(input::line)
         .await
@@ -74,16 +74,16 @@ mod input {
     use std::os::fd::AsFd as _;
     use std::time::{Duration, Instant};
 
-    /// Input that says nothing for so long, milliseconds, has said what it had to: a key that is held down repeats faster.
+    /// Silence in milliseconds after which earlier input has ended: a held key repeats faster.
     const QUIET_MS: u16 = 100;
-    /// Input that is not quiet within this never is.
+    /// Maximum time to wait for silence.
     const QUIET_TIMEOUT: Duration = Duration::from_secs(3);
 
-    /// Whether keys go to this program, and not to another of the same terminal.
+    /// True if keys go to this program, and not to another one on the same terminal.
     pub(super) fn is_ours() -> bool {
         match tcgetpgrp(io::stdin()) {
             Ok(group) => group == getpgrp(),
-            // Not the one that controls this program: nobody is stopped for reading it.
+            // Not the controlling terminal: reading it stops no process.
             Err(error) => error == Errno::ENOTTY,
         }
     }
@@ -101,7 +101,7 @@ mod input {
             }
         }
         if input.is_terminal() {
-            // What was typed of a line that is not entered yet, too.
+            // Also discards a line that was typed but not entered.
             tcflush(&input, FlushArg::TCIFLUSH).map_err(io::Error::from)?;
         }
         Ok(())
@@ -110,7 +110,7 @@ mod input {
     pub(super) fn line() -> Result<(), NoConsent> {
         let input = io::stdin();
         let mut byte = [0];
-        // One by one: what follows the line end is left to the next question, which forgets it.
+        // Byte by byte: input after the line end belongs to the next question, which discards it.
         while byte != *b"\n" {
             if next(&input, &mut byte)? == 0 {
                 return Err(NoConsent::Ended);
@@ -119,7 +119,7 @@ mod input {
         Ok(())
     }
 
-    /// Whether there is something to read, or will be within the time that quiet takes.
+    /// True if input is available, or arrives within the silence period.
     fn is_ready(input: &Stdin) -> Result<bool, NoConsent> {
         let mut asked = [PollFd::new(input.as_fd(), PollFlags::POLLIN)];
         match poll(&mut asked, PollTimeout::from(QUIET_MS)) {
@@ -129,12 +129,12 @@ mod input {
         }
     }
 
-    /// Past the buffer of the standard library, which would keep what nobody asked for.
+    /// Bypasses the buffer of the standard library, which would retain earlier input.
     fn next(input: &Stdin, bytes: &mut [u8]) -> Result<usize, NoConsent> {
         loop {
             match read(input, bytes) {
                 Err(Errno::EINTR) => {}
-                // A terminal whose other end is closed.
+                // The other end of the terminal is closed.
                 Err(Errno::EIO) => return Ok(0),
                 read => return Ok(read.map_err(io::Error::from)?),
             }
@@ -142,7 +142,7 @@ mod input {
     }
 }
 
-/// Not known here: what was typed before cannot be told from an answer.
+/// Not supported: earlier input cannot be distinguished from an answer.
 #[cfg(not(unix))]
 mod input {
     use super::NoConsent;

@@ -1,4 +1,4 @@
-//! What besides the window moves a hand, from the command line.
+//! Sources other than the window that move a hand, from the command line.
 
 mod consent;
 pub(crate) mod follow;

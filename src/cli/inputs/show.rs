@@ -1,4 +1,4 @@
-//! `inputs`: the gamepads of this computer, and what the controls of one ask of a hand, without a hand. Moves nothing.
+//! `inputs`: lists the gamepads of this computer, and shows the effect of their controls without a hand. Moves nothing.
 
 use crate::cli::inputs::source::{is_folder, pad_input};
 use crate::cli::out::{Out, say};
@@ -17,7 +17,7 @@ use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Where the joints of the hand are that is not there, before a control moved them.
+/// Initial position of the joints of the imaginary hand.
 const BEGIN: Angle = Angle::MAX;
 
 #[derive(Debug, clap::Args)]
@@ -36,7 +36,7 @@ pub(crate) struct InputsArgs {
     json: bool,
 }
 
-/// Lists the gamepads, or prints what one does until the user ends it.
+/// Lists the gamepads, or prints the input of one until the user ends it.
 pub(crate) async fn run(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
     if args.watch {
         watch(out, args).await
@@ -104,7 +104,7 @@ fn dead_man_name(map: &PadMap) -> &'static str {
     dead_man.map_or("nothing", PadControl::name)
 }
 
-/// What was printed last, to print only what changed.
+/// The last printed state, for printing changes only.
 #[derive(Debug, Clone, PartialEq)]
 struct Printed {
     state: PadState,
@@ -112,7 +112,7 @@ struct Printed {
     is_held: bool,
 }
 
-/// Follows the gamepad with a hand that is always where it is told to be.
+/// Follows the gamepad with an imaginary hand that is always at its target.
 struct PadPrinter {
     input: PadInput,
     actual: PerDof<Angle>,
@@ -132,7 +132,7 @@ impl PadPrinter {
         }
     }
 
-    /// What to print of this report, if it changed anything that is printed.
+    /// Line to print for this report; `None` if nothing printable has changed.
     fn line(&mut self, report: &PadReport) -> Option<String> {
         let event = self.input.take(report);
         let offer = self.input.offer(report.at);
@@ -179,7 +179,7 @@ impl PadPrinter {
         let is_stop = event == Some(PadEvent::Stop);
         if control.is_none() && !is_stop && (before.aims, before.is_held) == (now.aims, now.is_held)
         {
-            // Not printed: what moved by less than a hundredth adds up.
+            // Not printed: movements below a hundredth accumulate.
             self.last = Some(Printed {
                 state: before.state,
                 ..now
@@ -216,7 +216,7 @@ impl PadPrinter {
     }
 }
 
-/// A control as it is printed: amounts in hundredths, so that a trembling stick is still.
+/// Value of a control as printed: in hundredths, to suppress a trembling stick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Shown {
     Button(bool),
@@ -226,7 +226,7 @@ enum Shown {
 }
 
 fn value(state: &PadState, control: PadControl) -> Shown {
-    // A whole way must stay whole.
+    // Full deflection must remain exactly full.
     let rounded = |thousandths: i16| thousandths / (FULL / 100);
     match control.kind() {
         ControlKind::Button => Shown::Button(state.is_held(control)),
@@ -298,7 +298,7 @@ mod tests {
         }
     }
 
-    /// What is printed for each of these, 50 ms apart.
+    /// Output for each of these reports, 50 ms apart.
     fn printed(as_json: bool, news: &[PadNews]) -> Vec<String> {
         let mut printer = PadPrinter::new(pad_input(None).unwrap(), as_json);
         let found = PadNews::Found {

@@ -1,5 +1,4 @@
-//! What a hand follows from the command line: lines of JSON at an address, programs on DDS, the gamepad of this computer, or another
-//! hand.
+//! Source that a hand follows from the command line: JSON lines at an address, programs on DDS, a gamepad, or another hand.
 
 use crate::cli::parse::number;
 use crate::cli::share::dds::{self, DdsArgs};
@@ -69,14 +68,14 @@ fn scale(text: &str) -> Result<MirrorScale, String> {
 }
 
 impl SourceArgs {
-    /// Which hand it is.
+    /// Side of the hand.
     pub(super) const fn side(&self) -> Side {
         self.side
     }
 
-    /// What of it cannot be meant for this hand, if anything.
+    /// Reason why these arguments cannot apply to this hand, if any.
     pub(super) fn wrong(&self, hand: &Endpoint) -> Option<&'static str> {
-        // Each built-in hand is one of its own.
+        // Each built-in hand is a separate one.
         let is_built_in = matches!(hand, Endpoint::Sim { .. });
         if self.mirror.as_ref() == Some(hand) && !is_built_in {
             Some("a hand cannot follow itself; name another one with --mirror")
@@ -86,16 +85,16 @@ impl SourceArgs {
     }
 }
 
-/// What the user lets a source do.
+/// Permissions of a source.
 #[derive(Clone, Copy)]
 pub(super) struct Allowed {
-    /// Speeds and forces at most.
+    /// Maximum speeds and forces.
     pub(super) limits: ArmRequest,
-    /// Whether it moves the hand at all.
+    /// True if the source may move the hand.
     pub(super) moves: bool,
 }
 
-/// What the hand follows.
+/// The source that the hand follows.
 pub(super) enum FollowSource {
     Stream(StreamPlace, StreamSource),
     Dds(DdsSource, SharedOnDds, OtherFollowers),
@@ -104,7 +103,7 @@ pub(super) enum FollowSource {
 }
 
 impl FollowSource {
-    /// Opens what the user named; nothing it takes goes beyond what is allowed, and nothing moves where nothing is.
+    /// Opens the source; its commands are limited to `allowed`, and nothing moves if that permits no motion.
     pub(super) async fn open(
         args: &SourceArgs,
         hand: &Endpoint,
@@ -164,8 +163,8 @@ impl FollowSource {
         Ok(Self::Stream(place, source))
     }
 
-    /// Two hands of one side would both obey one sender: the second is not let. A sender begins at the first state that it hears, so
-    /// none is told before that is known.
+    /// Opens DDS, but refuses a second hand of the same side: both would obey the same sender. A sender starts at the first state
+    /// that it receives, so none is published before this is known.
     async fn on_dds(
         node: DdsNode,
         card: FleetCard,
@@ -192,7 +191,7 @@ impl FollowSource {
         Ok(Self::Dds(DdsSource::open(config, commands), out, others))
     }
 
-    /// Why a hand may be moved no more whatever is sent, once there is a reason.
+    /// Waits for a reason why the hand must not move any longer, and returns it.
     pub(super) async fn must_end(&self) -> String {
         match self {
             Self::Dds(_, _, others) => followed(&others.appears().await),
@@ -200,7 +199,7 @@ impl FollowSource {
         }
     }
 
-    /// The line that says that it can be used.
+    /// Line that reports readiness.
     pub(super) fn ready(&self) -> String {
         match self {
             Self::Stream(StreamPlace::Udp(_), source) => format!("ready udp {}", source.local()),
@@ -220,7 +219,7 @@ impl FollowSource {
         }
     }
 
-    /// Who would move the hand now, and what it is called.
+    /// The source that would move the hand now, and its name.
     pub(super) fn owner(&self, now: Moment) -> Option<(Owner, String)> {
         match self {
             Self::Stream(_, source) => {
@@ -240,7 +239,7 @@ impl FollowSource {
         }
     }
 
-    /// Stops that were obeyed although something else in them was wrong, and the newest of them in words.
+    /// Number of irregular stops, which were obeyed despite another error in the message, and the newest one as text.
     pub(super) fn odd_stops(&self) -> Option<(u64, String)> {
         let told = |sender: &dyn Display, why: &dyn Display| {
             format!("{sender} sent a stop, which was obeyed; odd in it: {why}")
@@ -260,7 +259,7 @@ impl FollowSource {
         }
     }
 
-    /// How it goes, in words and as an object.
+    /// Progress as text and as an object.
     pub(super) fn told(&self, now: Moment) -> (String, Value) {
         match self {
             Self::Stream(_, source) => {
@@ -311,7 +310,7 @@ impl FollowSource {
             Self::Mirror(other, leader, source) => {
                 let view = source.view();
                 let trouble = leader.status().trouble.map(|trouble| trouble.to_string());
-                // The rate of a hand that is not heard any more is none.
+                // A silent hand has no rate.
                 let rate_hz = view.owner(now).map(|_| view.rate_hz);
                 let words = match (&trouble, rate_hz) {
                     (Some(trouble), _) => format!("{other}: {trouble}"),
@@ -356,7 +355,7 @@ fn told_of_dds(view: &DdsView, out: &SharedOnDds) -> (String, Value) {
     (words, object)
 }
 
-/// Another hand that obeys the same sender.
+/// Error text: another hand obeys the same sender.
 fn followed(other: &FleetCard) -> String {
     let side = match other.side {
         Side::Left => "left",
@@ -368,7 +367,7 @@ fn followed(other: &FleetCard) -> String {
     )
 }
 
-/// Where gamepads come and go; they are waited for there, but not for the folder.
+/// Checks the folder in which gamepads appear; gamepads may appear later, but the folder must exist.
 pub(super) fn is_folder(devices: &Path) -> anyhow::Result<()> {
     if !cfg!(target_os = "linux") {
         return Err(PadTrouble::LinuxOnly.into());
@@ -383,7 +382,7 @@ pub(super) fn is_folder(devices: &Path) -> anyhow::Result<()> {
     }
 }
 
-/// A gamepad with what its controls do and where its poses are: of a file, else as delivered.
+/// Gamepad with its mapping and poses from a file, else the defaults.
 pub(super) fn pad_input(map: Option<&Path>) -> anyhow::Result<PadInput> {
     let map = match map {
         None => PadMap::usual(),

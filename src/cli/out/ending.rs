@@ -1,4 +1,4 @@
-//! Whether the user wishes the end of a command that does not run on a runtime.
+//! Interruption by the user of a command that does not use a runtime.
 
 use crate::shell::interrupt::Interrupt;
 use anyhow::Context as _;
@@ -7,12 +7,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use tokio::runtime::Builder;
 
-/// Set once the user wishes the end of a command that looks at it.
+/// Set once the user interrupts a command that checks it.
 #[derive(Debug, Clone)]
 pub(crate) struct EndWished(Arc<AtomicBool>);
 
 impl EndWished {
-    /// Listens from now on. The command has to end by itself then.
+    /// Starts listening for signals. From then on the command must end by itself.
     pub(crate) fn listen() -> anyhow::Result<Self> {
         let runtime = Builder::new_current_thread().enable_all().build();
         let runtime = runtime.context("cannot listen for Ctrl-C")?;
@@ -30,12 +30,12 @@ impl EndWished {
         Ok(wished)
     }
 
-    /// One that is never set, because there is nothing to be tidied up.
+    /// Never set: there is nothing to clean up.
     pub(crate) fn never() -> Self {
         Self(Arc::default())
     }
 
-    /// Goes on until the end is wished.
+    /// Continues until the user interrupts.
     pub(crate) fn flow(&self) -> ControlFlow<()> {
         if self.0.load(Ordering::Relaxed) {
             ControlFlow::Break(())

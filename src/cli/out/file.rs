@@ -1,14 +1,14 @@
-//! Files that a command makes where the user says: new ones, that only their person can read.
+//! New output files at a path given by the user, readable only by their owner.
 
 use crate::store::write_new;
 use anyhow::{Context as _, bail};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Makes sure that nothing is at a path yet, before the hand is asked for long. `option` is the one that names it.
+/// Checks that nothing exists at a path before a long operation on the hand. `option` is the option that names it.
 ///
 /// # Errors
-/// Something is there.
+/// The path exists.
 pub(crate) fn nothing_at(path: &Path, option: &str) -> anyhow::Result<()> {
     if path.symlink_metadata().is_ok() {
         bail!("{}", taken(path, option));
@@ -16,10 +16,10 @@ pub(crate) fn nothing_at(path: &Path, option: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Writes a file where nothing is yet, which `--out` names.
+/// Writes a new file at the path that `--out` names.
 ///
 /// # Errors
-/// Something is there, or what the system says.
+/// The path exists, or the I/O error of the system.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     let error = match write_new(path, bytes) {
         Ok(()) => return Ok(()),

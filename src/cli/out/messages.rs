@@ -1,4 +1,4 @@
-//! Messages on standard error, and how long the end of the program waits for a reader.
+//! Messages on standard error, and the wait for a reader at the end of the program.
 
 use crate::cli::out::ending::EndWished;
 use crate::cli::out::writer::{LineClass, LineWriter, WriteEnd};
@@ -9,19 +9,18 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// After a signal, output that is not read for this long is given up. It was the user who wanted the end.
+/// After a signal, output that is not read for this time is discarded: the user requested the end.
 const UNREAD_TIMEOUT: Duration = Duration::from_secs(1);
-/// Output that is read at all is read by then: only later are signals listened for.
+/// An active reader has read the output by then; signals are listened for only after that.
 pub(crate) const READ_AT_ONCE: Duration = Duration::from_millis(100);
 
-/// Standard error; `None` where no thread can be started for it.
+/// Writer of standard error; `None` if its thread cannot be started.
 fn messages() -> Option<&'static LineWriter> {
     static MESSAGES: OnceLock<Option<LineWriter>> = OnceLock::new();
     let started = || LineWriter::start("stderr", io::stderr()).ok();
     MESSAGES.get_or_init(started).as_ref()
 }
 
-/// Prints a message on standard error.
 pub(crate) fn say(words: &str) {
     static LOST: AtomicU64 = AtomicU64::new(0);
     let mut line = match LOST.load(Ordering::Relaxed) {
@@ -34,7 +33,7 @@ pub(crate) fn say(words: &str) {
     match messages() {
         Some(messages) => match messages.push(line.as_bytes(), LineClass::Result) {
             Ok(true) => LOST.store(0, Ordering::Relaxed),
-            // Where nobody can read, nobody can be told.
+            // Without a reader, the loss cannot be reported.
             Ok(false) | Err(_) => {
                 LOST.fetch_add(1, Ordering::Relaxed);
             }
@@ -45,7 +44,7 @@ pub(crate) fn say(words: &str) {
     }
 }
 
-/// Prints on the terminal at standard error as it is, in place of what stood in the line.
+/// Prints raw text on the terminal at standard error, in place of the current line.
 pub(crate) fn show(text: &str) {
     if let Some(messages) = messages() {
         let _unread = messages.push(text.as_bytes(), LineClass::Stream);
@@ -59,7 +58,7 @@ pub(crate) fn finish_messages() {
     }
 }
 
-/// Waits until everything is written; gives the bytes that are left. Until a signal ends it, a reader may take its time.
+/// Waits until everything is written; returns the number of bytes left. A slow reader is awaited until a signal arrives.
 pub(crate) fn drained(writer: &LineWriter, waits: bool) -> Result<usize, WriteEnd> {
     let left = writer.drained(|stalled| stalled < READ_AT_ONCE)?;
     if left == 0 {

@@ -1,5 +1,5 @@
-//! Standard output and messages on standard error. Both are written by threads of their own, so that no reader delays a hand. A
-//! reader that goes away ends the command quietly.
+//! Standard output and messages on standard error. Each is written by a thread of its own, so that a slow reader does not delay
+//! a hand. A closed reader ends the command quietly.
 
 pub(crate) mod ending;
 pub(crate) mod file;
@@ -17,40 +17,40 @@ use serde::Serialize;
 use serde_json::json;
 use std::io::{self, Write};
 
-/// Where a command's results go.
+/// Output of a command's results.
 pub(crate) struct Out {
     to: LineWriter,
-    /// Lines of streams that were left out since that was reported, and in all.
+    /// Number of stream lines dropped since the last report, and in total.
     lost: u64,
     lost_total: u64,
-    /// The end waits for a reader that is slow.
+    /// True if the end waits for a slow reader.
     waits: bool,
 }
 
-/// The reader of our output closed it, as `head` does.
+/// The reader of the output has closed it, as `head` does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the reader of the output went away")]
 pub(crate) struct ReaderGone;
 
-/// The command failed, and has already said why.
+/// The command failed and has already reported the reason.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("already reported")]
 pub(crate) struct AlreadyReported;
 
-/// Wrong usage that clap cannot see. Nothing was done.
+/// Wrong usage that clap cannot detect. Nothing was done.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub(crate) struct WrongUsage(pub(crate) String);
 
 impl WrongUsage {
-    /// As the error of a command.
+    /// Converts it into a command error.
     pub(crate) fn error(why: impl Into<String>) -> anyhow::Error {
         Self(why.into()).into()
     }
 }
 
 impl Out {
-    /// The process's standard output.
+    /// Standard output of the process.
     pub(crate) fn stdout() -> anyhow::Result<Self> {
         Self::to(io::stdout())
     }
@@ -80,7 +80,7 @@ impl Out {
             .try_for_each(|line| self.line(line.as_ref()))
     }
 
-    /// Writes one JSON object on a line, its fields in the order of their names.
+    /// Writes one JSON object on a line, its fields sorted by name.
     pub(crate) fn object(&mut self, object: &impl Serialize) -> anyhow::Result<()> {
         let json = serde_json::to_value(object)?.to_string();
         self.write(json_line(&json).as_bytes())
@@ -100,7 +100,7 @@ impl Out {
         }
     }
 
-    /// Writes one line of a stream. It is left out and counted while too much waits to be read.
+    /// Writes one line of a stream. It is dropped and counted while the queue is full.
     pub(crate) fn stream_line(&mut self, line: &str) -> anyhow::Result<()> {
         let mut bytes = match self.lost {
             0 => String::new(),
@@ -116,8 +116,7 @@ impl Out {
         self.stream_json(&serde_json::to_value(object)?.to_string())
     }
 
-    /// Writes one line of JSON of a stream, as [`Self::stream_line`] does. The number of objects that are left out stands in an object
-    /// where they are missing.
+    /// Writes one JSON line of a stream, as [`Self::stream_line`] does. An object in place of dropped ones holds their number.
     pub(crate) fn stream_json(&mut self, json: &str) -> anyhow::Result<()> {
         let mut bytes = match self.lost {
             0 => String::new(),
@@ -127,33 +126,33 @@ impl Out {
         self.stream(bytes.as_bytes())
     }
 
-    /// Samples of the stream that never came here.
+    /// Counts samples of the stream that did not arrive here.
     pub(crate) const fn missed(&mut self, samples: u64) {
         self.lost += samples;
     }
 
-    /// Fails if what was written before could not be shown. It is shown without this.
+    /// Fails if earlier output could not be written. Writing does not require this call.
     pub(crate) fn flush(&self) -> anyhow::Result<()> {
         self.to.check().map_err(failed)
     }
 
-    /// Fails if what was written cannot be shown. Gives a reader that reads the time to take it, so not for what moves a hand.
+    /// Fails if the output cannot be written. Waits for an active reader, so it must not be used while a hand moves.
     pub(crate) fn shown(&self) -> anyhow::Result<()> {
         let left = self.to.drained(|stalled| stalled < READ_AT_ONCE);
         left.map(drop).map_err(failed)
     }
 
-    /// Bytes that wait to be read, and how many were read so far.
+    /// Number of bytes queued, and of bytes written so far.
     pub(crate) fn progress(&self) -> (usize, u64) {
         self.to.progress()
     }
 
-    /// The end waits no longer than a moment for a reader that does not read.
+    /// Limits the wait at the end for a reader that does not read.
     pub(crate) const fn end_without_reader(&mut self) {
         self.waits = false;
     }
 
-    /// Waits until everything is written. A reader may take its time, as with every program, until a signal ends that.
+    /// Waits until everything is written. As in every program, a slow reader is awaited, until a signal ends that.
     pub(crate) fn finish(self) -> anyhow::Result<()> {
         let left = drained(&self.to, self.waits).map_err(failed)?;
         if self.lost_total > 0 {
@@ -180,7 +179,7 @@ impl Out {
 
     fn write(&self, lines: &[u8]) -> anyhow::Result<()> {
         while !self.to.push(lines, LineClass::Result).map_err(failed)? {
-            // A thread that runs links waits for no reader.
+            // A thread that runs links must not wait for a reader.
             if tokio::runtime::Handle::try_current().is_ok() {
                 return Err(failed(WriteEnd::Full));
             }
@@ -201,7 +200,7 @@ fn failed(end: WriteEnd) -> anyhow::Error {
     }
 }
 
-/// How a command ends that has said everything already.
+/// Result of a command that has already reported everything.
 pub(crate) fn end(is_done: bool) -> anyhow::Result<()> {
     if is_done {
         Ok(())

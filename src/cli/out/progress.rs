@@ -1,16 +1,17 @@
-//! How far a long command is, on a terminal.
+//! Progress of a long command, on a terminal.
 
 use crate::cli::out::messages::show;
 use std::cell::Cell;
 use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
 
-/// What takes less time needs no words.
+/// Shorter operations report no progress.
 const QUIET_DURATION: Duration = Duration::from_secs(2);
-/// Between two lines.
+/// Minimum interval between two reports.
 const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 
-/// Tells how far a command is, in one line of standard error that is gone at its end; nothing if that is no terminal.
+/// Reports the progress of a command in one line of standard error that is erased at the end; silent if that is not a
+/// terminal.
 #[derive(Debug)]
 pub(crate) struct Progress {
     began: Instant,
@@ -27,7 +28,7 @@ impl Progress {
         }
     }
 
-    /// So much is done, from 0 to 1.
+    /// Reports the completed share, 0 to 1.
     pub(crate) fn tell(&self, share: f64) {
         let now = Instant::now();
         let is_due = self.told.get().is_none_or(|at| now - at >= REPORT_INTERVAL);
@@ -49,7 +50,7 @@ impl Drop for Progress {
     }
 }
 
-/// What is told after so long; `None` if that is too early.
+/// Text after this time; `None` if it is too early.
 fn words(share: f64, since: Duration) -> Option<String> {
     if since < QUIET_DURATION {
         return None;

@@ -1,42 +1,42 @@
-//! Writes standard output and standard error, each on a thread of its own with a bounded queue: a reader that reads slowly, or not
-//! at all, delays neither the hand nor its stop.
+//! Writes standard output and standard error, each on a thread with a bounded queue: a slow or stuck reader delays neither the
+//! hand nor its stop.
 
 use std::io::{self, Write};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Bytes of a stream that may wait: seconds of samples at full rate. A line that finds them used is left out and counted.
+/// Maximum bytes queued for a stream: seconds of samples at full rate. Further lines are dropped and counted.
 pub(crate) const STREAM_MAX: usize = 1024 * 1024;
-/// Bytes that may wait, results included: the longest report is a small part of it.
+/// Maximum bytes queued, results included: many times the longest report.
 pub(crate) const QUEUE_MAX: usize = 8 * STREAM_MAX;
-/// Bytes of one write: a pipe takes them at once or not at all, so that every read of a slow reader counts as progress.
+/// Bytes per write: a pipe accepts them at once or not at all, so that every read of a slow reader counts as progress.
 const CHUNK: usize = 4096;
-/// Delay before another try where the output takes nothing now.
+/// Delay before a retry if the output is not ready.
 const RETRY_DELAY: Duration = Duration::from_millis(5);
-/// Longest wait before [`LineWriter::drained`] asks again whether to wait on.
+/// Longest wait before [`LineWriter::drained`] calls its callback again.
 const ASK_INTERVAL: Duration = Duration::from_millis(50);
 
-/// How important it is that a line is written.
+/// Importance of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum LineClass {
-    /// One of many of the same kind: it may be left out.
+    /// One of many of the same kind: it may be dropped.
     Stream,
     /// An answer, a message or a report.
     Result,
 }
 
-/// Why nothing is written.
+/// Reason why nothing is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum WriteEnd {
     /// The output cannot be written, or its reader closed it.
     #[error("{0}")]
     Io(io::ErrorKind),
-    /// So much waits to be read that nothing more is taken.
+    /// The queue is full.
     #[error("{QUEUE_MAX} bytes wait to be read")]
     Full,
 }
 
-/// A thread that writes, and its queue.
+/// A writing thread, and its queue.
 pub(crate) struct LineWriter(Arc<Shared>);
 
 #[derive(Default)]
@@ -48,11 +48,11 @@ struct Shared {
 #[derive(Default)]
 struct Queue {
     bytes: Vec<u8>,
-    /// Bytes that wait, or are being written.
+    /// Bytes queued or being written.
     waiting: usize,
     written: u64,
     end: Option<io::ErrorKind>,
-    /// Nothing more comes: the thread ends once all is written.
+    /// True if nothing more will be queued: the thread ends once all is written.
     closed: bool,
 }
 
@@ -60,7 +60,7 @@ impl LineWriter {
     /// Starts the thread.
     ///
     /// # Errors
-    /// The system starts no thread.
+    /// The system cannot start a thread.
     pub(crate) fn start(name: &str, to: impl Write + Send + 'static) -> io::Result<Self> {
         let writer = Self(Arc::default());
         let shared = Arc::clone(&writer.0);
@@ -69,7 +69,7 @@ impl LineWriter {
         Ok(writer)
     }
 
-    /// Queues whole lines. False if there is no room for them: a stream leaves them out, a result tries again or fails.
+    /// Queues whole lines. Returns false if there is no room: a stream drops them, a result is retried or fails.
     pub(crate) fn push(&self, lines: &[u8], class: LineClass) -> Result<bool, WriteEnd> {
         let mut queue = self.0.lock();
         if let Some(end) = queue.end {
@@ -79,7 +79,7 @@ impl LineWriter {
             LineClass::Stream => STREAM_MAX,
             LineClass::Result => QUEUE_MAX,
         };
-        // A line that is longer than the limit passes where nothing waits.
+        // A line longer than the limit is accepted if the queue is empty.
         if queue.waiting > 0 && queue.waiting + lines.len() > limit {
             return Ok(false);
         }
@@ -90,20 +90,20 @@ impl LineWriter {
         Ok(true)
     }
 
-    /// Waits for room, or the end of the output. Not for a thread that runs links.
+    /// Waits for room, or the end of the output. Must not be called on a thread that runs links.
     pub(crate) fn wait_for_room(&self) {
         let half = |queue: &mut Queue| queue.end.is_none() && queue.waiting > QUEUE_MAX / 2;
         let waited = self.0.changed.wait_while(self.0.lock(), half);
         drop(waited.unwrap_or_else(PoisonError::into_inner));
     }
 
-    /// Bytes that wait, and bytes that were written so far.
+    /// Number of bytes queued, and of bytes written so far.
     pub(crate) fn progress(&self) -> (usize, u64) {
         let queue = self.0.lock();
         (queue.waiting, queue.written)
     }
 
-    /// How the output ended, if it did.
+    /// Returns the error if the output has ended.
     pub(crate) fn check(&self) -> Result<(), WriteEnd> {
         self.0
             .lock()
@@ -111,7 +111,8 @@ impl LineWriter {
             .map_or(Ok(()), |end| Err(WriteEnd::Io(end)))
     }
 
-    /// Waits until all is written, or `waits_on` says no, given how long nothing was taken. Gives the bytes that are left.
+    /// Waits until all is written, or `waits_on`, given the time without progress, returns false. Returns the number of
+    /// bytes left.
     pub(crate) fn drained(
         &self,
         mut waits_on: impl FnMut(Duration) -> bool,
@@ -146,7 +147,7 @@ impl Shared {
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The thread: writes what waits until no one can add to it, or writing fails.
+    /// Runs the thread: writes the queue until it is closed, or writing fails.
     fn write(&self, mut to: impl Write) {
         loop {
             let empty = |queue: &mut Queue| queue.bytes.is_empty() && !queue.closed;
@@ -190,7 +191,7 @@ impl Shared {
     }
 }
 
-/// Tries again where a signal came, or where the output takes nothing now: another program that shares it may have set it to that.
+/// Retries after a signal, or if the output is not ready: another program that shares it may have made it non-blocking.
 fn insist<T>(mut write: impl FnMut() -> io::Result<T>) -> io::Result<T> {
     loop {
         match write() {
@@ -208,7 +209,7 @@ mod tests {
     use super::*;
     use std::sync::mpsc;
 
-    /// Takes what the test lets it take, and tells it.
+    /// Accepts as many bytes as the test permits, and reports them.
     struct Pipe {
         room: mpsc::Receiver<usize>,
         taken: mpsc::Sender<Vec<u8>>,

@@ -13,10 +13,10 @@ use crate::tasks::{ParamStep, TaskError};
 use anyhow::{anyhow, bail};
 use serde_json::json;
 
-/// What is not known if the user does not wait.
+/// Message if the user does not wait for the end.
 pub(crate) const UNKNOWN: &str = "it is not known what the hand holds: see with 'handscope params dump'; 'handscope params backups' names what it held before";
 
-/// Applies. Fails unless every chosen row is in effect.
+/// Applies the file. Fails unless every chosen row is in effect.
 pub(crate) async fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
     let (file, note) =
         words::load(&args.file).map_err(|error| anyhow!("{error}; nothing was written"))?;
@@ -42,7 +42,7 @@ pub(crate) async fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Writes rows. Whether all are in force; `None` if the hand held all of them already.
+/// Writes rows. Returns true if all are in effect; `None` if the hand held all of them already.
 async fn rows(
     out: &mut Out,
     args: &ApplyArgs,
@@ -83,7 +83,7 @@ async fn rows(
     tell(out, args, &applied)
 }
 
-/// An error of the task as one of the command.
+/// Converts an error of the task into one of the command.
 fn explained(error: anyhow::Error) -> anyhow::Error {
     match error.downcast_ref() {
         Some(TaskError::NotMeant(risks)) => WrongUsage::error(format!(
@@ -94,7 +94,7 @@ fn explained(error: anyhow::Error) -> anyhow::Error {
     }
 }
 
-/// That the hand is as wanted already.
+/// Reports that the hand already holds the values.
 fn nothing_to_write(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
     let hand = args.common.hand.to_string();
     out.result(

@@ -116,7 +116,7 @@ pub(crate) struct ApplyArgs {
 }
 
 impl ApplyArgs {
-    /// What --yes agrees to.
+    /// Consent given by --yes.
     pub(crate) const fn consent(&self) -> Consent {
         if self.yes {
             Consent::Given
@@ -125,7 +125,7 @@ impl ApplyArgs {
         }
     }
 
-    /// The rows of a file that are to be written: those that --only names, else all but those that say where the hand is.
+    /// Rows of a file to write: those that --only names, else all except address rows.
     pub(crate) fn chosen(&self, params: &Params) -> Params {
         let is_named = |id| self.only.iter().any(|rows| rows.0.contains(&id));
         params.only(|id| {
@@ -148,7 +148,7 @@ pub(crate) struct FlashArgs {
 }
 
 impl FlashArgs {
-    /// Refuses without --yes; `what` says what it would do.
+    /// Refuses without --yes; `what` describes the effect.
     pub(crate) fn consented(&self, what: &str) -> anyhow::Result<()> {
         if self.yes {
             Ok(())
@@ -160,7 +160,7 @@ impl FlashArgs {
     }
 }
 
-/// The rows that a name stands for.
+/// Rows that a name refers to.
 #[derive(Debug, Clone)]
 pub(crate) struct RowNames(pub(crate) Vec<ParamId>);
 

@@ -1,4 +1,4 @@
-//! `params save` and `params reset`: the hand's flash written or back to the factory parameters, each with a backup first.
+//! `params save` and `params reset`: write the hand's flash or reset it to factory parameters, each with a backup first.
 
 use crate::cli::out::{Out, end, say};
 use crate::cli::params::args::FlashArgs;
@@ -14,11 +14,11 @@ use crate::tasks::{Consent, ParamStep};
 use anyhow::bail;
 use serde_json::json;
 
-/// What is not known if the user does not wait.
+/// Messages if the user does not wait for the end.
 const UNKNOWN_SAVE: &str = "it is not known whether the parameters are in flash: switch the hand off and on, then compare with 'handscope params diff'";
 const UNKNOWN_RESET: &str = "it is not known whether the hand was reset, and where it answers: look for it with 'handscope scan'; 'handscope params backups' names what it held before";
 
-/// Saves. Fails unless the parameters are saved, as far as the wire can tell.
+/// Saves. Fails unless the parameters are saved, as far as the wire can show.
 pub(crate) async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> {
     args.consented("save writes the hand's flash")?;
     let common = &args.common;
@@ -63,7 +63,8 @@ pub(crate) async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> 
     end(is_saved)
 }
 
-/// Resets, and tells where the hand answers then. Fails unless it is found, and what was read back shows that it was reset.
+/// Resets, and reports the hand's new address. Fails unless the hand is found, and the values read back show that it was
+/// reset.
 pub(crate) async fn reset(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> {
     args.consented(
         "reset returns the hand to its factory parameters, including id, serial speed and IP address",
@@ -72,7 +73,7 @@ pub(crate) async fn reset(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()>
     let files = args.common.backups()?;
     let mut patience = Patience::begin()?;
     let written = patience.written();
-    // Says why, if nobody answers.
+    // Reports the reason if the hand does not answer.
     drop(patience.see_through(reach::open(hand), "").await??);
     let places = reset::places(hand);
     let told = |step| {
@@ -102,7 +103,7 @@ pub(crate) async fn reset(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()>
     end(is_reset && report.not_noted.is_none())
 }
 
-/// Tells what a hand that answers after the reset holds. Whether that shows that it was reset.
+/// Reports the parameters of a hand that answers after the reset. Returns true if they show that it was reset.
 fn tell_reset(
     out: &mut Out,
     args: &FlashArgs,

@@ -1,4 +1,4 @@
-//! The commands about parameters that only read: `params dump`, `params diff` and `params backups`.
+//! The parameter commands that only read: `params dump`, `params diff` and `params backups`.
 
 use crate::cli::out::file::{nothing_at, write_file};
 use crate::cli::out::{Out, end, say};
@@ -16,7 +16,7 @@ use crate::transport::Endpoint;
 use anyhow::{Context as _, anyhow, bail};
 use serde_json::{Value, json};
 
-/// Prints all parameters, and writes them to a file. Fails if a row could not be read.
+/// Prints all parameters, and writes them to a file if requested. Fails if a row could not be read.
 pub(crate) async fn dump(out: &mut Out, args: &DumpArgs) -> anyhow::Result<()> {
     let common = &args.common;
     let files = common.backups()?;
@@ -38,10 +38,10 @@ pub(crate) async fn dump(out: &mut Out, args: &DumpArgs) -> anyhow::Result<()> {
     say_troubles(&troubles, true)
 }
 
-/// What the hand is compared with.
+/// Values that the hand is compared with.
 struct Other {
     params: Params,
-    /// Its name, for the head of the column.
+    /// Title of the column.
     what: &'static str,
     notes: Vec<String>,
 }
@@ -116,7 +116,7 @@ fn other(args: &DiffArgs, files: &Backups) -> anyhow::Result<Other> {
     })
 }
 
-/// Lists the backups of a hand, oldest first, and its last save, without asking the hand.
+/// Lists the backups of a hand, oldest first, and its last save, without connecting to the hand.
 pub(crate) fn backups(out: &mut Out, args: &Common) -> anyhow::Result<()> {
     let files = args.backups()?;
     let folder = files.folder();
@@ -160,7 +160,7 @@ fn doubt(what: &str, file: &ParamsFile) -> String {
     format!("the result of {what} at {at} is not known ({verdict})")
 }
 
-/// What this program knows of the hand's flash.
+/// This program's record of the hand's flash.
 fn known(files: &Backups) -> anyhow::Result<Known> {
     let folder = files.folder().display();
     files
@@ -168,7 +168,7 @@ fn known(files: &Backups) -> anyhow::Result<Known> {
         .map_err(|error| anyhow!("the record of this hand in {folder} cannot be used: {error}"))
 }
 
-/// All rows that can be read, and why others cannot.
+/// All readable rows, and the errors of the others.
 async fn read_rows(hand: &Endpoint) -> anyhow::Result<(Params, Vec<RequestError>)> {
     let link = reach::open(hand).await?;
     let read::ReadRows { params, troubles } = read::rows(&link, |_, _| ()).await;
@@ -179,7 +179,7 @@ async fn read_rows(hand: &Endpoint) -> anyhow::Result<(Params, Vec<RequestError>
     Ok((params, troubles))
 }
 
-/// Says what could not be read, and fails if there is any or if the command found something else.
+/// Reports read errors. Fails if there are any, or if `is_well` is false.
 fn say_troubles(troubles: &[RequestError], is_well: bool) -> anyhow::Result<()> {
     for trouble in troubles {
         say(&format!("cannot read everything: {trouble}"));

@@ -1,5 +1,5 @@
-//! `params`: the parameters a hand keeps, read, compared, written, saved, reset. Nothing here moves the hand, and only `apply`,
-//! `save` and `reset` write to it.
+//! `params`: reads, compares, writes, saves and resets the hand's persistent parameters. Nothing here moves the hand, and only
+//! `apply`, `save` and `reset` write to it.
 
 mod apply;
 mod args;

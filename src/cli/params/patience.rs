@@ -1,5 +1,5 @@
-//! Ctrl-C while a hand is written to: nothing is left half done without a word. Before the first write it ends the command; after
-//! that the command goes on to its end, or rolls back, and tells what the hand holds; the second Ctrl-C ends it at once.
+//! Ctrl-C during writes to a hand: no write is left half done without a report. Before the first write, Ctrl-C ends the command;
+//! after it, the command completes or rolls back, and reports the values in the hand; a second Ctrl-C ends it at once.
 
 use crate::cli::out::say;
 use crate::shell::interrupt::Interrupt;
@@ -7,14 +7,14 @@ use anyhow::bail;
 use std::cell::Cell;
 use std::rc::Rc;
 
-/// Listens for the user, or the system, that wants the command to end.
+/// Listens for interruption by the user or the system.
 pub(crate) struct Patience {
     interrupt: Interrupt,
     is_written: Rc<Cell<bool>>,
 }
 
 impl Patience {
-    /// From now on no signal ends the program by itself.
+    /// Starts listening; from now on no signal ends the program by itself.
     pub(crate) fn begin() -> anyhow::Result<Self> {
         Ok(Self {
             interrupt: Interrupt::listen()?,
@@ -22,12 +22,12 @@ impl Patience {
         })
     }
 
-    /// To be set once something may have been written to the hand.
+    /// Flag to set once something may have been written to the hand.
     pub(crate) fn written(&self) -> Rc<Cell<bool>> {
         Rc::clone(&self.is_written)
     }
 
-    /// Waits for what may write, also if the user wants to end it meanwhile. `unknown` says what is not known if they do so twice.
+    /// Completes a task that may write, even if interrupted. `unknown` is the message after a second interruption.
     pub(crate) async fn see_through<T>(
         &mut self,
         work: impl Future<Output = T>,

@@ -1,4 +1,4 @@
-//! `params apply` for a row by which the hand is found on its bus: the wire is given up and taken again at each place.
+//! `params apply` for an address row: the wire is closed and reopened for each address.
 
 use crate::cli::out::{Out, say};
 use crate::cli::params::args::ApplyArgs;
@@ -15,11 +15,11 @@ use anyhow::bail;
 use serde_json::json;
 use std::path::Path;
 
-/// What is not known if the user does not wait.
+/// Message if the user does not wait for the end.
 const UNKNOWN: &str = "it is not known at which of both places the hand answers: look for it with 'handscope scan --all-ids'; nothing is in flash, so switched off and on it is where it was";
 
-/// Changes it, and says where the hand answers then. Whether it is there, or will be after a SAVE or a power-up; `None` if the
-/// hand held the value already.
+/// Changes the address, and reports where the hand answers. Returns true if it is there, or will be after a SAVE or a
+/// power-up; `None` if the hand held the value already.
 pub(crate) async fn change(
     out: &mut Out,
     args: &ApplyArgs,
@@ -135,7 +135,7 @@ fn outcome(moved: &Moved, change: &PlaceChange, backup: &Path) -> String {
     }
 }
 
-/// The row of a file by which this wire finds the hand, if the file wants one.
+/// The address row of a file that affects this wire, if any.
 pub(crate) fn wanted_row(
     hand: &Endpoint,
     chosen: &Params,

@@ -1,4 +1,4 @@
-//! Rows, dangers and results in sentences, tables and JSON, as the commands about parameters share them. Pure.
+//! Rows, dangers and results as sentences, tables and JSON, shared by the parameter commands. Pure.
 
 use crate::cli::out::{Out, ReaderGone, say};
 use crate::hand::overshoot::MeasuredOn;
@@ -12,7 +12,7 @@ use anyhow::anyhow;
 use serde_json::{Value as Json, json};
 use std::path::Path;
 
-/// A value, or "not known".
+/// The value, or "-" if unknown.
 pub(crate) fn or_dash(value: Option<Value>) -> String {
     value.map_or_else(|| "-".into(), |value| value.to_string())
 }
@@ -34,7 +34,7 @@ pub(crate) fn table(
     all.map(|line| line.trim_end().to_owned()).collect()
 }
 
-/// A parameter file, and what should be said of keys that are not known.
+/// Loads a parameter file, with a note about unknown keys.
 pub(crate) fn load(path: &Path) -> anyhow::Result<(ParamsFile, Option<String>)> {
     let file = file::load(path).map_err(|error| anyhow!("{}: {error}", path.display()))?;
     let unknown = file.unknown_keys();
@@ -42,8 +42,8 @@ pub(crate) fn load(path: &Path) -> anyhow::Result<(ParamsFile, Option<String>)> 
     Ok((file, (!unknown.is_empty()).then_some(note)))
 }
 
-/// Prints a result: as one JSON object, or as lines. Where nobody reads standard output any more the lines go to standard error:
-/// what a hand holds after a write is told in any case.
+/// Prints a result, as one JSON object or as lines. If standard output is closed, the lines go to standard error: the values in
+/// a hand after a write are always reported.
 pub(crate) fn show(
     out: &mut Out,
     as_json: bool,
@@ -61,12 +61,11 @@ pub(crate) fn show(
     }
 }
 
-/// Where the backup lies.
 pub(crate) fn backup(path: &Path) -> String {
     format!("backup: {}", path.display())
 }
 
-/// The warning about defaults that hit hard after power-up.
+/// Warning about power-up defaults that close hard.
 fn danger(danger: &Danger) -> String {
     let joint = danger.dof.name();
     let (speed, force) = (danger.speed, danger.force_g);
@@ -89,7 +88,7 @@ fn danger(danger: &Danger) -> String {
     )
 }
 
-/// What must be meant: defaults that hit harder than before, and rows that say where the hand is found.
+/// Changes that require confirmation: defaults that close harder than before, and address rows.
 pub(crate) fn risks(risks: &Risks) -> Vec<String> {
     let dangers = risks.dangers.iter().map(danger);
     let places = risks.places.iter().map(|(id, value)| {
@@ -99,14 +98,14 @@ pub(crate) fn risks(risks: &Risks) -> Vec<String> {
     dangers.chain(places).collect()
 }
 
-/// Says them.
+/// Prints the risks as warnings.
 pub(crate) fn warn(meant: &Risks) {
     for reason in risks(meant) {
         say(&format!("warning: {reason}"));
     }
 }
 
-/// One row that was to be written.
+/// Outcome of one row.
 pub(crate) fn outcome_json(end: &RowOutcome) -> Json {
     let reason = match &end.verdict {
         RowVerdict::Refused { reason } => Some(reason.to_string()),

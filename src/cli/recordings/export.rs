@@ -1,4 +1,4 @@
-//! `export`: recordings, or a stretch of each, in a format of others; `recover`: a damaged one made whole again.
+//! `export`: writes recordings, or a time range of each, in another format; `recover`: repairs a damaged one.
 
 use crate::cli::out::ending::EndWished;
 use crate::cli::out::progress::Progress;
@@ -19,7 +19,7 @@ use serde_json::json;
 use std::io::{self, IsTerminal as _};
 use std::path::{Path, PathBuf};
 
-/// Frames a second, as cameras have it.
+/// Frame rate in frames per second; typical for cameras.
 const FPS: u32 = 30;
 
 #[derive(Debug, clap::Args)]
@@ -79,7 +79,6 @@ struct FormArgs {
     png: bool,
 }
 
-/// The format that was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Form {
     Csv,
@@ -104,7 +103,7 @@ impl FormArgs {
 }
 
 impl Form {
-    /// What its files are called behind the point; folders have none.
+    /// File extension; `None` for folders.
     const fn ending(self) -> Option<&'static str> {
         match self {
             Self::Csv => Some("csv"),
@@ -115,7 +114,7 @@ impl Form {
         }
     }
 
-    /// What is counted.
+    /// Unit of the reported count.
     const fn rows(self) -> &'static str {
         match self {
             Self::Csv => "lines",
@@ -145,7 +144,7 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
     args.check(form)?;
     let mut files: Vec<RecordingFile> = Vec::new();
     for path in &args.files {
-        // The files of one recording, which a pattern like *.mcap names one by one, are one recording.
+        // Several files of one recording, as matched by a pattern like *.mcap, are one recording.
         let file = path.canonicalize();
         let file = file.unwrap_or_else(|_unknown| path.clone());
         let is_it =
@@ -167,7 +166,7 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
         return picture(out, args, file, *stretch);
     }
     let to_stdout = is_standard(&args.out);
-    // What goes to standard output leaves nothing behind, and its reader may not read on.
+    // Standard output leaves no partial file, and its reader may stop reading.
     let wished = if to_stdout {
         EndWished::never()
     } else {
@@ -192,9 +191,9 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
 }
 
 impl ExportArgs {
-    /// What clap cannot see.
+    /// Checks that clap cannot do.
     fn check(&self, form: Form) -> anyhow::Result<()> {
-        // clap does not ask for a flag that another one of its group rules out.
+        // clap does not require a flag that conflicts with another one of its group.
         let of_sets = self.fps.is_some() || self.task.is_some() || self.episode.is_some();
         if form != Form::LeRobot && of_sets {
             return Err(WrongUsage::error(
@@ -243,7 +242,7 @@ impl ExportArgs {
     }
 }
 
-/// What is to be done.
+/// A complete export job.
 struct Work<'a> {
     files: &'a [RecordingFile],
     stretches: &'a [Stretch],
@@ -258,7 +257,7 @@ struct Done {
 }
 
 impl Work<'_> {
-    /// Gives each recording with how far all of them are.
+    /// Passes a recording to `give`, with progress over all recordings.
     fn watched<T>(
         &self,
         number: usize,
@@ -287,7 +286,7 @@ impl Work<'_> {
                 _ => cut::write(source, to),
             };
             recordings.extend(match self.watched(number, export) {
-                // Others may have what this one lacks.
+                // Other recordings may have data if this one has none.
                 Some(Err(ExportError::Empty)) if places.len() > 1 => Some(Exported::default()),
                 exported => exported.transpose()?,
             });
@@ -298,7 +297,7 @@ impl Work<'_> {
         })
     }
 
-    /// Each into a file of its own, which is called as the recording.
+    /// Writes each recording into a file of its own, named after it.
     fn to_folder(&self, out: &Path) -> Result<Done, ExportError> {
         let folder = Folder::new(out)?;
         let mut places: Vec<Destination> = Vec::new();
@@ -314,7 +313,7 @@ impl Work<'_> {
                 1 => format!("{stem}{ending}"),
                 more => format!("{stem}-{more}{ending}"),
             };
-            // Recordings of several days may have one name.
+            // Recordings of different days may share a name.
             let free = (1..).map(|number| Destination::Path(folder.path().join(named(number))));
             places.extend(
                 free.filter(|place| !places.contains(place))
@@ -352,7 +351,7 @@ impl Work<'_> {
     }
 }
 
-/// How far all are, if this one is so far.
+/// Total progress when recording `number` is at this share.
 fn share_of_all(number: usize, share: f64, all: usize) -> f64 {
     let count = |number: usize| f64::from(u32::try_from(number).unwrap_or(u32::MAX));
     (count(number) + share) / count(all.max(1))
@@ -415,7 +414,6 @@ fn warn_read_back(set: &LeRobotSet) {
     }
 }
 
-/// Draws the window.
 fn picture(
     out: &mut Out,
     args: &ExportArgs,
@@ -435,7 +433,7 @@ fn picture(
     out.result(args.json, &as_json(&args.out, &exported), [line])
 }
 
-/// Writes a whole copy of a file that is damaged or was not closed.
+/// Writes a repaired copy of a file that is damaged or was not closed.
 pub(crate) fn recover(out: &mut Out, args: &RecoverArgs) -> anyhow::Result<()> {
     let path = &args.file.file;
     let file = recording_file::open(path)?;
@@ -486,7 +484,7 @@ fn as_json(path: &Path, exported: &Exported) -> serde_json::Value {
     })
 }
 
-/// An error of an export, with what to do.
+/// An export error with advice.
 pub(crate) fn told(error: ExportError) -> anyhow::Error {
     match error {
         ExportError::Exists { .. } => anyhow!("{error}; name another place with --out"),

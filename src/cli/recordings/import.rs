@@ -1,4 +1,4 @@
-//! `import`: a recording file out of values that `export --csv` wrote.
+//! `import`: creates a recording file from values that `export --csv` wrote.
 
 use crate::cli::out::ending::EndWished;
 use crate::cli::out::progress::Progress;
@@ -28,7 +28,7 @@ pub(crate) struct ImportArgs {
 }
 
 impl ImportArgs {
-    /// What clap cannot see.
+    /// Checks that clap cannot do.
     fn check(&self) -> anyhow::Result<()> {
         let from_stdin = self.files.iter().any(|file| is_standard(file));
         let to_stdout = self.out.as_deref().is_some_and(is_standard);
@@ -113,7 +113,7 @@ fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
     out.result(args.json, &object, lines)
 }
 
-/// Imports, and tells how far that is.
+/// Imports, with progress reports.
 fn values(mut from: File, to: &Destination) -> Result<Imported, ImportError> {
     let unreadable = |error: io::Error| ImportError::Unreadable {
         message: error.to_string(),
@@ -121,7 +121,7 @@ fn values(mut from: File, to: &Destination) -> Result<Imported, ImportError> {
     let unlistened = |error: anyhow::Error| ImportError::Unreadable {
         message: error.to_string(),
     };
-    // What comes from standard input was written here just now.
+    // The temporary file of standard input was written just now, and must be rewound.
     let is_plain = from.metadata().map_err(unreadable)?.is_file();
     if is_plain {
         from.rewind().map_err(unreadable)?;
@@ -144,7 +144,7 @@ fn share(read: u64, length: u64) -> f64 {
     (read as f64 / length.max(1) as f64).min(1.0)
 }
 
-/// A file of which is known how much was read.
+/// A file that counts the bytes read.
 struct CountedRead<'a> {
     from: File,
     read: &'a Cell<u64>,

@@ -1,4 +1,4 @@
-//! `info`: what a recording file holds and what is missing in it. Reads the file to its end, so that every checksum is looked at.
+//! `info`: contents of a recording file and what is missing in it. Reads the file to its end, so that every checksum is verified.
 
 use crate::cli::out::Out;
 use crate::cli::recordings::recording_file::{self, FileArgs, add_files, length, lost};
@@ -10,7 +10,7 @@ use anyhow::Context as _;
 use serde_json::{Value, json};
 use std::time::Duration;
 
-/// Gaps that are printed line by line.
+/// Maximum number of gaps printed individually.
 const GAPS_TOLD: usize = 20;
 
 #[derive(Debug, clap::Args)]
@@ -22,7 +22,6 @@ pub(crate) struct InfoArgs {
     json: bool,
 }
 
-/// Prints what there is.
 pub(crate) fn run(out: &mut Out, args: &InfoArgs) -> anyhow::Result<()> {
     let path = &args.file.file;
     let file = recording_file::open(path)?;
@@ -43,13 +42,13 @@ struct Told<'a> {
 }
 
 impl Told<'_> {
-    /// `None` if the day is not known.
+    /// Start time; `None` if the day is unknown.
     fn start(&self) -> Option<String> {
         let opening = self.file.opening();
         (!opening.is_imported()).then(|| calendar::stamp(opening.began_since_1970()))
     }
 
-    /// Stretches that the recorder said to be missing.
+    /// Time ranges that the recorder reported as missing.
     fn said_missing(&self) -> impl Iterator<Item = (Duration, &str)> {
         let marks = self.file.overview().marks.iter();
         marks
@@ -57,7 +56,7 @@ impl Told<'_> {
             .map(|mark| (mark.at.since(self.file.first()), mark.words.as_str()))
     }
 
-    /// The file that this one names so as another part of the same recording.
+    /// Another part of the same recording that this file refers to by this prefix.
     fn part(&self, named: &str) -> Option<&str> {
         let mut said = self.said_missing();
         said.find_map(|(_, words)| Some(words.strip_prefix(named)?.split_once(": ")?.0))
@@ -70,7 +69,7 @@ impl Told<'_> {
             ref gaps,
             ..
         } = self.contents.damage;
-        // One that the recorder said is among those whose length is known, too.
+        // Gaps reported by the recorder are also among those of known length.
         let said = self.said_missing().count();
         let said = u64::try_from(said).unwrap_or(u64::MAX);
         let known = u64::try_from(gaps.len()).unwrap_or(u64::MAX);
@@ -82,7 +81,7 @@ impl Told<'_> {
         at.since(self.file.first()).as_secs_f64()
     }
 
-    /// A count, and how many of them can be read if not all.
+    /// A count, and the number of readable entries if not all.
     fn count(written: u64, read: u64) -> String {
         if written > read {
             format!("{written}, of which {read} can be read")
@@ -214,14 +213,14 @@ impl Told<'_> {
         lines
     }
 
-    /// When, and for how long; the bracket is left open.
+    /// Time and length of a gap; the bracket is left open.
     fn stretch(&self, gap: &Gap) -> String {
         let (from, to) = (self.seconds(gap.from), self.seconds(gap.to));
         let length = to - from;
         format!("{from:.3} s to {to:.3} s ({length:.3} s")
     }
 
-    /// When something is missing, and for how long.
+    /// Lines with time and length of each gap.
     fn gap_lines(&self) -> Vec<String> {
         let gaps = &self.contents.damage.gaps;
         let mut lines: Vec<String> = gaps
@@ -241,7 +240,7 @@ impl Told<'_> {
     }
 }
 
-/// How many more there are than are printed.
+/// Number of entries beyond those printed.
 fn more_than_told(gaps: &[Gap], what: &str) -> Option<String> {
     let more = gaps.len().checked_sub(GAPS_TOLD)?;
     (more > 0).then(|| format!("and {more} more {what}; --json lists them"))

@@ -1,4 +1,4 @@
-//! The commands on recordings: recording one without a window, and all that is done with its file.
+//! Commands for recordings: recording without a window, and operations on the files.
 
 pub(crate) mod beside;
 pub(crate) mod export;

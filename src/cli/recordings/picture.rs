@@ -1,4 +1,4 @@
-//! `export --png`: the window as it replays a recording, its plots over a stretch.
+//! `export --png`: a picture of the window replaying a recording, with its plots over a time range.
 
 use crate::app::settings::{Language, Theme};
 use crate::cli::out::ending::EndWished;
@@ -15,10 +15,10 @@ use anyhow::bail;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// The window as it first opens.
+/// Initial size of the window.
 const SIZE: (u32, u32) = (1440, 900);
 
-/// Draws the picture. The place must be free.
+/// Draws the picture. The path must not exist.
 pub(crate) fn draw(file: &RecordingFile, stretch: Stretch, out: &Path) -> anyhow::Result<()> {
     let (first, last): (Moment, Moment) = (file.first(), file.last());
     let (from, to) = (stretch.from.max(first), stretch.to.min(last));
@@ -51,7 +51,7 @@ pub(crate) fn draw(file: &RecordingFile, stretch: Stretch, out: &Path) -> anyhow
         return Err(ExportError::Empty.into());
     }
     let scene = Scene {
-        // Behind a replay nothing else is to be connected.
+        // No other hand must be connected behind a replay.
         endpoint: Endpoint::sim(),
         size: SIZE,
         scale: 1.0,
@@ -61,7 +61,7 @@ pub(crate) fn draw(file: &RecordingFile, stretch: Stretch, out: &Path) -> anyhow
     let mut driver = Driver::start(&scene)?;
     driver.replay(file.path().to_owned(), (from, to))?;
     let picture = driver.picture(View::Live);
-    // From here on a signal finds a whole file or none.
+    // From here on, a signal leaves either a complete file or none.
     let _wished = EndWished::listen()?;
     Ok(png::save(out, &picture.rgb, picture.size)?)
 }

@@ -1,4 +1,4 @@
-//! Recording files that the user names: how one is opened, its moments in seconds from its start, and what is missing in words.
+//! Recording files named by the user: opening, time ranges in seconds from the start, and remarks on missing data.
 
 use crate::cli::out::{WrongUsage, say};
 use crate::cli::parse::{RecordingTime, recording_time};
@@ -32,7 +32,7 @@ pub(crate) struct StretchArgs {
 }
 
 impl StretchArgs {
-    /// The stretch of this file.
+    /// The time range in this file.
     pub(crate) fn of(&self, file: &RecordingFile) -> anyhow::Result<Stretch> {
         let at = |time: RecordingTime| match time {
             RecordingTime::FromStart(step) => file.first().plus(step),
@@ -58,12 +58,12 @@ pub(crate) fn open(path: &Path) -> anyhow::Result<RecordingFile> {
     opened(RecordingFile::open(path), path)
 }
 
-/// True for what stands for standard input or output in place of a file.
+/// True if the path denotes standard input or output.
 pub(crate) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Opens a file, or what comes on standard input.
+/// Opens a file, or the contents of standard input.
 pub(crate) fn open_or_stdin(path: &Path) -> anyhow::Result<RecordingFile> {
     if is_standard(path) {
         opened(
@@ -75,7 +75,7 @@ pub(crate) fn open_or_stdin(path: &Path) -> anyhow::Result<RecordingFile> {
     }
 }
 
-/// All of standard input, in a file that has no name and is gone with the program.
+/// Copies standard input to an unnamed temporary file that disappears with the program.
 pub(crate) fn stdin_as_file() -> anyhow::Result<File> {
     let mut from = io::stdin().lock();
     if from.is_terminal() {
@@ -108,7 +108,7 @@ fn opened(file: Result<RecordingFile, OpenError>, path: &Path) -> anyhow::Result
     })
 }
 
-/// How long a recording is.
+/// Length of a recording.
 pub(crate) fn length(file: &RecordingFile) -> Duration {
     file.last().since(file.first())
 }
@@ -121,7 +121,7 @@ pub(crate) fn add_files(object: &mut Value, file: Option<&RecordingFile>) {
     }
 }
 
-/// What could not be read, in words; `None` if all could.
+/// Describes the unreadable parts; `None` if all could be read.
 pub(crate) fn lost(damage: &Damage) -> Option<String> {
     let Damage {
         chunks,
@@ -151,7 +151,7 @@ pub(crate) fn lost(damage: &Damage) -> Option<String> {
     (!words.is_empty()).then(|| words.join(", "))
 }
 
-/// What is to be said of how the file was found, on stderr.
+/// Reports remarks on the state of the file on standard error.
 pub(crate) fn say_remarks(file: &RecordingFile) {
     for remark in file.remarks() {
         say(&format!("{}: {remark}", file.path().display()));

@@ -1,4 +1,4 @@
-//! `replay`: a hand that says what was recorded, on the wires of the simulated hand.
+//! `replay`: a hand that reports recorded values, on the wires of the simulated hand.
 
 use crate::cli::out::{Out, say};
 use crate::cli::parse::number;
@@ -21,9 +21,9 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio::time::{Instant, sleep_until};
 
-/// What is read from the file ahead of its time: a second of a busy recording.
+/// Capacity of the read-ahead queue: one second of a busy recording.
 const AHEAD: usize = 1024;
-/// What is first read in this time is known from the start: everything that is read at all is read by then.
+/// Values first read within this time are available from the start: every polled register has been read by then.
 const KNOWN_FROM_START: Duration = Duration::from_secs(6);
 
 #[derive(Debug, clap::Args)]
@@ -76,15 +76,15 @@ pub(crate) async fn run(out: &mut Out, args: &ReplayArgs) -> anyhow::Result<()> 
     }
 }
 
-/// What happens to the hand.
+/// A change of the hand.
 enum Step {
-    /// Its memory is this from here on.
+    /// The memory from this address on has these contents.
     Memory(u16, Vec<u8>),
-    /// It does not answer, or does again.
+    /// The hand falls silent, or answers again.
     Silent(bool),
 }
 
-/// The hand as the recording begins.
+/// The hand at the start of the recording.
 fn hand(file: &RecordingFile, id: Option<u8>) -> anyhow::Result<SharedHand> {
     let mut first: Vec<(u16, Vec<u8>)> = Vec::new();
     let mut recorded_id = None;
@@ -116,7 +116,7 @@ fn hand(file: &RecordingFile, id: Option<u8>) -> anyhow::Result<SharedHand> {
     Ok(SharedHand::new(hand, Instant::now()))
 }
 
-/// Plays all of it once.
+/// Plays the recording once.
 async fn play(file: &Arc<RecordingFile>, hands: &SimHands, speed: f64) -> anyhow::Result<Damage> {
     let (give, mut steps) = mpsc::channel(AHEAD);
     let reader = read_ahead(Arc::clone(file), give);
@@ -133,7 +133,7 @@ async fn play(file: &Arc<RecordingFile>, hands: &SimHands, speed: f64) -> anyhow
     damage.map_err(|error| anyhow!("cannot read the recording on: {error}"))
 }
 
-/// Reads the file on a thread of its own, no further ahead than there is room.
+/// Reads the file on a blocking thread, as far ahead as the queue permits.
 fn read_ahead(
     file: Arc<RecordingFile>,
     give: mpsc::Sender<(Moment, Step)>,
@@ -168,7 +168,7 @@ fn steps(entry: &Entry) -> Vec<Step> {
     }
 }
 
-/// What the hand kept, but its id, which is the user's to choose.
+/// Persistent parameters of the hand, except its ID, which the user chooses.
 fn parameters(toml: &str) -> Vec<Step> {
     let Ok(file) = file::read(toml) else {
         return Vec::new();

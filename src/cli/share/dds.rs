@@ -1,4 +1,4 @@
-//! DDS from the command line: where it is to be, and what a hand tells there.
+//! DDS from the command line: its interface, and the publication of a hand.
 
 use crate::cli::out::say;
 use crate::cli::parse::number;
@@ -8,7 +8,7 @@ use crate::share::fleet::{self, FleetCard};
 use crate::transport::Endpoint;
 use crate::transport::dds::{DOMAIN_MAX, DdsNode, DdsPlace};
 
-/// Nobody outside of this computer, unless the user says so.
+/// Default interface, which restricts DDS to this computer.
 pub(crate) const LOOPBACK: &str = "127.0.0.1";
 
 #[derive(Debug, clap::Args)]
@@ -30,13 +30,13 @@ pub(crate) fn domain(text: &str) -> Result<u16, String> {
 }
 
 impl DdsArgs {
-    /// What is given and counts for nothing: clap does not ask for --dds beside what excludes it.
+    /// Reason why the arguments are invalid: clap does not require --dds next to an argument that excludes it.
     pub(crate) fn wrong(&self) -> Option<&'static str> {
         let is_named = self.domain.is_some() || self.name.is_some();
         (is_named && self.dds.is_none()).then_some("--domain and --name belong to --dds")
     }
 
-    /// What is said of this hand, a right one without a gateway.
+    /// Published description of this hand: a right one without a gateway.
     pub(crate) fn card(&self, hand: &Endpoint) -> FleetCard {
         FleetCard {
             host: fleet::host(),
@@ -48,7 +48,7 @@ impl DdsArgs {
         }
     }
 
-    /// Joins, if the user wants it; tells nothing yet. Others there can do that.
+    /// Joins DDS if requested; publishes nothing yet. `can` describes what others on the network could do.
     pub(crate) fn join(&self, can: &str) -> anyhow::Result<Option<DdsNode>> {
         let Some(interface) = &self.dds else {
             return Ok(None);
@@ -68,7 +68,7 @@ impl DdsArgs {
     }
 }
 
-/// The line that says that it can be used.
+/// Line that reports readiness.
 pub(crate) fn ready(shared: &SharedOnDds) -> String {
     format!("ready dds {}", shared.node.address())
 }

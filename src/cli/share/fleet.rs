@@ -1,4 +1,4 @@
-//! `fleet`: the hands that Handscopes share on DDS, as they come, change and go. Connects to none of them.
+//! `fleet`: lists hands that Handscopes share on DDS, and their changes. Connects to none of them.
 
 use crate::cli::out::{Out, say};
 use crate::cli::parse::seconds;
@@ -30,7 +30,7 @@ pub(crate) struct FleetArgs {
     json: bool,
 }
 
-/// Looks until the user ends it, or the time is up.
+/// Lists until the user ends it, or the time is up.
 pub(crate) async fn run(out: &mut Out, args: &FleetArgs) -> anyhow::Result<()> {
     let mut interrupt = Interrupt::listen()?;
     let node = DdsNode::open(&DdsPlace {
@@ -69,7 +69,7 @@ pub(crate) async fn run(out: &mut Out, args: &FleetArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What was told already.
+/// Hands reported so far.
 struct Told<'a> {
     out: &'a mut Out,
     as_json: bool,
@@ -111,7 +111,7 @@ impl Told<'_> {
     }
 }
 
-/// A hand on a line.
+/// A hand as one line.
 fn line(hand: &FleetHand) -> String {
     let card = &hand.card;
     let at = match hand.endpoint() {

@@ -1,4 +1,4 @@
-//! `share`: one hand for several programs, over Modbus TCP, DDS and for live viewers, until the user ends it.
+//! `share`: shares one hand with several programs (Modbus TCP, DDS) and live viewers, until the user ends it.
 
 pub(crate) mod dds;
 pub(crate) mod fleet;
@@ -30,7 +30,7 @@ use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::time::interval;
 
-/// How often there may be something to tell.
+/// Polling interval for status reports.
 const POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 #[derive(Debug, clap::Args)]
@@ -137,7 +137,7 @@ async fn serve(
         () = tell(link, gateway.as_ref(), &args.hand) => Ok(()),
     };
     let may_move = gateway.is_some_and(|gateway| close(link, gateway));
-    // A script was stopped, and waited for, before it left.
+    // With --stdio, the hand was stopped before.
     let is_stopping = !args.stdio && link.status().state == LinkState::Holding;
     if may_move || is_stopping {
         return done.and(session::stopped(link).await);
@@ -145,7 +145,7 @@ async fn serve(
     done
 }
 
-/// Closes. True if a client could move the hand, which is to be stopped.
+/// Closes the gateway. Returns true if a client could move the hand, which must then be stopped.
 fn close(link: &LinkHandle, gateway: Gateway) -> bool {
     let is_held = |client: &GatewayClient| matches!(client.lease, ClientLease::Held(_));
     let may_move = gateway.clients().iter().any(is_held);
@@ -192,7 +192,7 @@ fn show(
     Ok(server)
 }
 
-/// Tells what the user has to know, for as long as it is shared.
+/// Reports status changes to the user while the hand is shared.
 async fn tell(link: &LinkHandle, gateway: Option<&Gateway>, hand: &Endpoint) {
     let mut told = Told::default();
     let mut tick = interval(POLL_INTERVAL);
@@ -206,7 +206,7 @@ async fn tell(link: &LinkHandle, gateway: Option<&Gateway>, hand: &Endpoint) {
     }
 }
 
-/// What was told already.
+/// Status reported so far.
 #[derive(Default)]
 struct Told {
     trouble: Option<LinkTrouble>,
@@ -235,7 +235,7 @@ impl Told {
     }
 }
 
-/// Tells of each client that may move the hand, and that it may no more.
+/// Reports each client that gets or loses control of the hand.
 fn tell_movers(gateway: &Gateway, link: &LinkHandle) {
     for MoverEvent { client, change } in gateway.movers() {
         say(&match change {

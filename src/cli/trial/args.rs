@@ -1,4 +1,4 @@
-//! The command line of `trial` as clap sees it, and the plan that it stands for.
+//! The command line of `trial` as clap sees it, and the plan that it defines.
 
 use crate::cli::out::WrongUsage;
 use crate::cli::parse::{angle, dof, force, number, seconds, speed, whole};
@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Degrees below the limit at which trials begin.
+/// Degrees below the limit at which trials start.
 const COOLER_C: u8 = 10;
 
 #[derive(Debug, Args)]
@@ -128,7 +128,7 @@ impl TrialArgs {
         }
     }
 
-    /// The criterion for the best setting, if one was given.
+    /// Criterion for the best setting, if given.
     pub(crate) fn criterion(&self) -> Option<Criterion> {
         let steady_g = self.hold;
         self.best.map(|best| match best {
@@ -145,7 +145,7 @@ fn grams(text: &str) -> Result<f64, String> {
     number(text, 0.0..=4000.0, "a force between 0 and 4000 g")
 }
 
-/// Each joint is named once: it closes, or stays still.
+/// Checks that each joint is named once: it either closes or stays still.
 pub(crate) fn check_joints(closes: &[Dof], stays: &[(Dof, Angle)]) -> anyhow::Result<()> {
     for dof in closes {
         if closes.iter().filter(|one| *one == dof).count() > 1 {

@@ -1,4 +1,4 @@
-//! `overshoot`: what trials measured of a hand, printed, written as a table, or forgotten. Opens no link.
+//! `overshoot`: prints, exports or clears the measured overshoot of a hand. Opens no link.
 
 use crate::app::files::settings_file;
 use crate::cli::out::{Out, WrongUsage, say};
@@ -26,7 +26,7 @@ pub(crate) struct OvershootArgs {
     pub(crate) forget: bool,
 }
 
-/// Prints what is kept.
+/// Prints the stored overshoot.
 pub(crate) fn run(out: &mut Out, args: &OvershootArgs) -> anyhow::Result<()> {
     if args.hand.is_sim() {
         return Err(WrongUsage::error(

@@ -1,4 +1,4 @@
-//! The command line of `tune` as clap sees it, and the goal that it stands for.
+//! The command line of `tune` as clap sees it, and the goal that it defines.
 
 use crate::cli::parse::{angle, dof};
 use crate::cli::trial::args::place;
@@ -9,7 +9,7 @@ use crate::trials::search::SearchGoal;
 use clap::Args;
 use std::path::PathBuf;
 
-/// Degrees below the limit at which closes begin.
+/// Degrees below the limit at which closes start.
 const COOLER_C: u8 = 10;
 
 #[derive(Debug, Args)]

@@ -1,4 +1,4 @@
-//! What `watch` is asked for.
+//! The command line of `watch`.
 
 use crate::cli::parse::seconds;
 use crate::link::PollRates;
@@ -30,7 +30,7 @@ pub(crate) struct WatchArgs {
 }
 
 impl WatchArgs {
-    /// How often the link reads.
+    /// Polling rates of the link.
     pub(crate) fn rates(&self) -> PollRates {
         if self.full_rate {
             PollRates::FULL

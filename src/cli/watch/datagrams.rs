@@ -1,10 +1,10 @@
-//! Samples as datagrams, one JSON object each, for programs that plot what arrives.
+//! Samples as datagrams, one JSON object each, for programs that plot them.
 
 use anyhow::Context as _;
 use serde_json::{Value, json};
 use std::net::{Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 
-/// Where samples are sent. Nobody need listen there.
+/// Sender of samples. A receiver is not required.
 pub(crate) struct Datagrams {
     socket: UdpSocket,
     sent: u64,
@@ -12,7 +12,7 @@ pub(crate) struct Datagrams {
 }
 
 impl Datagrams {
-    /// Sends to this address, and takes nothing that comes back.
+    /// Opens a socket that sends to this address and ignores replies.
     pub(crate) fn to(to: SocketAddr) -> anyhow::Result<Self> {
         let from: SocketAddr = match (to, to.ip().is_loopback()) {
             (SocketAddr::V4(_), true) => (Ipv4Addr::LOCALHOST, 0).into(),
@@ -33,7 +33,7 @@ impl Datagrams {
         })
     }
 
-    /// Sends a sample. One that the system does not take, or that nobody takes at the other end, is counted and not sent again.
+    /// Sends a sample. A failed one is counted and not repeated.
     pub(crate) fn send(&mut self, sample: &Value) {
         match self.socket.send(sample.to_string().as_bytes()) {
             Ok(_bytes) => self.sent += 1,
@@ -41,7 +41,7 @@ impl Datagrams {
         }
     }
 
-    /// How many were sent, for the last line of statistics.
+    /// Numbers of datagrams, for the last line of statistics.
     pub(crate) fn figures(&self) -> Value {
         json!({"sent": self.sent, "not_sent": self.not_sent})
     }

@@ -1,4 +1,5 @@
-//! `watch`: what the hand says, as it says it, and at the end what the link measured. Writes nothing to the hand.
+//! `watch`: prints the hand's reports as they arrive, and at the end the statistics of the link. Writes nothing to the
+//! hand.
 mod args;
 mod datagrams;
 pub(crate) mod telemetry;
@@ -22,9 +23,9 @@ use std::pin::pin;
 use std::time::Duration;
 use tokio::time::{MissedTickBehavior, interval};
 
-/// How often the link and the output are inspected, and frames printed.
+/// Interval at which the link and the output are checked, and frames printed.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
-/// People read no more than ten lines a second.
+/// Minimum interval of text lines: users read at most ten lines per second.
 const TEXT_LINE_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Watches until the time is up or the user ends it. Fails if nothing was read, and if the link is lost at the end.
@@ -39,13 +40,13 @@ struct Watch<'a> {
     clock: Clock,
     link: LinkHandle,
     records: Records,
-    /// Samples are sent in place of being printed.
+    /// Sends samples instead of printing them.
     datagrams: Option<Datagrams>,
-    /// Frames are printed in place of values.
+    /// Prints frames instead of values.
     frames: Option<FramePrinter>,
-    /// What the hand grips, from all readings.
+    /// Grip estimate from all readings.
     grip: GripEstimator,
-    /// State reads taken so far; each of them is a line of JSON, unless frames are printed.
+    /// Number of state reads so far; each of them is a line of JSON, unless frames are printed.
     taken: u64,
     last_text: Option<Moment>,
     answered: bool,
@@ -100,7 +101,7 @@ impl<'a> Watch<'a> {
         self.clock.now().since(Moment::ZERO)
     }
 
-    /// Reports what happened to the output and the link.
+    /// Checks the output, and reports changes of the link.
     fn tick(&mut self) -> anyhow::Result<()> {
         if let Some(frames) = &mut self.frames {
             frames.print(self.out, self.clock.now())?;
@@ -126,7 +127,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Each cause is reported once, until the hand answers again.
+    /// Reports each cause once, until the hand answers again.
     fn tell(&mut self, trouble: &LinkTrouble) -> anyhow::Result<()> {
         if self.told.as_ref() == Some(trouble) {
             return Ok(());
@@ -142,7 +143,7 @@ impl<'a> Watch<'a> {
         self.give_up(&session::no_hand(&self.args.hand, trouble))
     }
 
-    /// Without a time limit, a hand that never answered is not waited for.
+    /// Without a time limit, ends the wait for a hand that has never answered.
     fn give_up(&mut self, why: &str) -> anyhow::Result<()> {
         if self.args.length.is_some() {
             say(&format!("{why}; trying again"));
@@ -158,7 +159,7 @@ impl<'a> Watch<'a> {
         };
         let read = sample.newest(fresh).unwrap_or_default();
         let mut grip = self.grip.take(&sample, fresh, read);
-        // Feedback that does not follow what the hand was told tells nothing of what it holds.
+        // Feedback that does not follow the commands says nothing about the grip.
         if self.link.status().feedback_in_doubt {
             grip = Grip::default();
         }
@@ -204,7 +205,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// The last line. Samples that still wait are shown first, so that lines and count agree.
+    /// The last line. Queued samples are printed first, so that lines and count agree.
     fn statistics(&mut self) -> anyhow::Result<()> {
         if let Some(frames) = &mut self.frames {
             return frames.print_rest(self.out, self.clock.now());
@@ -217,7 +218,7 @@ impl<'a> Watch<'a> {
             self.take(record)?;
         }
         stats.dropped_events = self.records.lost();
-        // A sample is told before it is counted.
+        // A sample may be printed before it is counted.
         stats.state_reads = stats.state_reads.max(self.taken);
         if self.args.json {
             let mut line = stats_json(&stats, elapsed);

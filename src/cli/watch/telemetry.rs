@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::time::Duration;
 
-/// One sample with the grip that it shows as one JSON object. What was not read is null.
+/// One sample and its grip as one JSON object. Unread values are null.
 pub(crate) fn sample_json(sample: &HandSample, grip: &Grip, at: Moment) -> Value {
     let status = sample.status.map(|status| status.value);
     let faults = sample.faults.map(|faults| faults.value);
@@ -38,7 +38,7 @@ pub(crate) fn sample_json(sample: &HandSample, grip: &Grip, at: Moment) -> Value
     object
 }
 
-/// A grip as JSON: state, beginning and age of the grasp and of each finger.
+/// A grip as JSON: state, start and age of the grasp and of each finger.
 pub(crate) fn grip_json(grip: &Grip, now: Moment) -> Value {
     let mut object = estimate_json(&grip.grasp, now);
     let fingers = grip.fingers.iter().map(|(finger, estimate)| {
@@ -88,7 +88,7 @@ pub(crate) fn stats_json(stats: &LinkStats, elapsed: Duration) -> Value {
     }})
 }
 
-/// Times that this program could not attend to the wire.
+/// Stalls, in which this program could not serve the wire.
 pub(crate) fn stalls_json(stats: &LinkStats) -> Value {
     json!({
         "count": stats.stalls,
@@ -129,7 +129,7 @@ const fn group_name(group: RateClass) -> &'static str {
     }
 }
 
-/// What the line was used for, as text.
+/// Use of the line, as text.
 fn line_text(line: &LineUse) -> String {
     let percent = |share: f64| format!("{:.0} %", share * 100.0);
     let mut text = format!("line {} used", percent(line.utilisation));
@@ -214,7 +214,7 @@ pub(crate) fn tactile_json(finger: Finger, block: Option<&TactileBlock>) -> Valu
     })
 }
 
-/// A status in one word; a code that the manual does not list keeps its number.
+/// A status in one word; an undocumented code includes its number.
 pub(crate) fn status_name(status: Status) -> String {
     match status {
         Status::Unknown(raw) => format!("unknown({raw})"),
@@ -238,7 +238,7 @@ fn millis(value: Option<Duration>) -> Option<f64> {
     value.map(|value| rounded(value.as_secs_f64() * 1000.0))
 }
 
-/// Three digits after the point: more is noise.
+/// Rounds to three decimals: more is noise.
 fn rounded(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }

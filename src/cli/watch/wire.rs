@@ -1,4 +1,4 @@
-//! `watch --wire`: the frames on the wire, with what is wrong with them.
+//! `watch --wire`: the frames on the wire, with their errors.
 
 use crate::cli::out::Out;
 use crate::cli::watch::args::WatchArgs;
@@ -9,7 +9,7 @@ use crate::record::Direction;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// After this, a request has its reply or is known to have none.
+/// Time after which a request has its reply or is known to have none.
 const DECISION_TIMEOUT: Duration = Duration::from_millis(1100);
 
 /// Prints each frame once.
@@ -28,7 +28,7 @@ impl FramePrinter {
         }
     }
 
-    /// Prints what came, often enough that the tap's ring is never full.
+    /// Prints new frames. Must be called often enough that the tap's ring never overflows.
     pub(crate) fn print(&mut self, out: &mut Out, now: Moment) -> anyhow::Result<()> {
         while self.traffic.read_some(now) {
             self.lines(out, now)?;
@@ -37,7 +37,7 @@ impl FramePrinter {
         out.flush()
     }
 
-    /// Prints what is still open at the end as it is.
+    /// Prints the remaining frames at the end, including unanswered requests.
     pub(crate) fn print_rest(&mut self, out: &mut Out, now: Moment) -> anyhow::Result<()> {
         self.print(out, now.plus(DECISION_TIMEOUT))
     }
@@ -65,7 +65,7 @@ fn is_request(frame: &Frame) -> bool {
     frame.direction == Direction::ToHand && matches!(frame.kind, Kind::Read | Kind::Write)
 }
 
-/// Whether the first of these is a request whose outcome is still open: its line waits until that is known.
+/// True if the first frame is a request whose outcome is still open: its line is delayed until the outcome is known.
 fn is_open(frames: &[&Arc<Frame>], now: Moment) -> bool {
     let [request, later @ ..] = frames else {
         return false;

@@ -1,4 +1,4 @@
-//! `handscope exhibit`: looks at the file of an exhibition and shows it in place of the window.
+//! `handscope exhibit`: checks an exhibition file and shows the exhibition in place of the window.
 
 use crate::app::exhibit::Exhibition;
 use crate::app::exhibit::exhibit_file;
@@ -35,7 +35,7 @@ pub(crate) fn run(out: &mut Out, args: ExhibitArgs) -> anyhow::Result<()> {
     show(args, start)
 }
 
-/// What a file holds, in one line.
+/// Contents of a file, in one line.
 fn summary(start: &Exhibition) -> String {
     let plan = &start.plan;
     let names: Vec<&str> = plan

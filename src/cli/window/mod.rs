@@ -1,4 +1,4 @@
-//! Starts the window from the command line, or says why there is none.
+//! Starts the window from the command line, or reports why there is none.
 
 pub(crate) mod exhibit;
 pub(crate) mod snapshot;
@@ -45,7 +45,7 @@ pub(crate) struct DrawnArgs {
 }
 
 impl DrawnArgs {
-    /// No more hands may be named than there is room for.
+    /// Rejects more hands than can be shown.
     pub(crate) fn check(&self, most: usize) -> anyhow::Result<()> {
         let named = self.hand.len();
         if named <= most {
@@ -56,7 +56,7 @@ impl DrawnArgs {
     }
 }
 
-/// A mistyped command must not be taken for a file.
+/// Accepts recordings only: a mistyped command must not be taken for a file.
 fn recording(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
@@ -72,14 +72,14 @@ fn recording(text: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// Opens the window and runs until it is closed. Where OpenGL does not start, one without it opens.
+/// Opens the window and runs until it is closed. If OpenGL does not start, the window opens without it.
 #[cfg(feature = "desktop")]
 pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
     use crate::cli::recordings::recording_file;
     use std::ffi::OsString;
     args.drawn.check(HANDS_MAX)?;
     if let Some(path) = &args.replay {
-        // Said where it was asked, and not in a window that opens without it.
+        // Reports an error on the command line, before the window opens.
         recording_file::open(path)?;
     }
     let no_record = args.no_record.then(|| OsString::from("--no-record"));
@@ -96,7 +96,7 @@ pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
     open(args.drawn, shows)
 }
 
-/// What the window begins with, and the words of a command line that say so.
+/// Initial contents of the window, and the equivalent command line arguments.
 #[cfg(feature = "desktop")]
 pub(crate) struct WindowShows {
     pub(crate) records: bool,
@@ -105,7 +105,7 @@ pub(crate) struct WindowShows {
     pub(crate) words: Vec<std::ffi::OsString>,
 }
 
-/// Opens the window with this in it.
+/// Opens the window with these contents.
 #[cfg(feature = "desktop")]
 pub(crate) fn open(args: DrawnArgs, shows: WindowShows) -> anyhow::Result<()> {
     use crate::app::files::settings_file::{Loaded, default_path, load};
@@ -117,7 +117,7 @@ pub(crate) fn open(args: DrawnArgs, shows: WindowShows) -> anyhow::Result<()> {
     if !loaded.found
         && let Some(locale) = sys_locale::get_locale()
     {
-        // Nobody chose one yet.
+        // The user has not chosen a language yet.
         loaded.settings.language = Language::of_locale(&locale);
     }
     let drawing = match args.software_because {
@@ -172,14 +172,14 @@ fn restart_without_opengl(again: &[std::ffi::OsString], reason: &str) -> anyhow:
     }
 }
 
-/// Says that this program was built without a window.
+/// Reports that this program was built without a window.
 #[cfg(not(feature = "desktop"))]
 pub(crate) fn run(args: WindowArgs) -> anyhow::Result<()> {
     args.drawn.check(HANDS_MAX)?;
     without_window()
 }
 
-/// The same for whatever needs one.
+/// The same for any command that needs a window.
 #[cfg(not(feature = "desktop"))]
 pub(crate) fn without_window() -> anyhow::Result<()> {
     anyhow::bail!(

@@ -1,4 +1,4 @@
-//! `snapshot`: pictures of the window, and lists of what they show, as files.
+//! `snapshot`: pictures of the window, and lists of their contents, as files.
 
 use crate::app::settings::{Language, Theme};
 use crate::cli::out::{Out, WrongUsage};
@@ -51,7 +51,7 @@ pub(crate) struct SnapshotArgs {
     out: PathBuf,
 }
 
-/// Which pictures to draw.
+/// Pictures to draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Views {
     /// The window as it opens.
@@ -75,7 +75,7 @@ const CARDS: [(&str, SceneCard); 7] = [
 const THEMES: [(&str, Theme); 2] = [("dark", Theme::Dark), ("light", Theme::Light)];
 const LANGUAGES: [(&str, Language); 2] = [("en", Language::En), ("zh", Language::Zh)];
 
-/// The chosen ones of two, with the endings of their file names.
+/// The chosen values, with the suffixes of their file names.
 fn wanted<T: Copy>(name: &str, both: [(&str, T); 2]) -> Vec<(T, String)> {
     let [(_, first), (second_name, second)] = both;
     match name {
@@ -111,7 +111,7 @@ pub(crate) fn run(out: &mut Out, args: &SnapshotArgs) -> anyhow::Result<()> {
                 let image = args.out.join(format!("{name}{of_language}{of_theme}.png"));
                 png::save(&image, &picture.rgb, picture.size)?;
                 out.line(&image.display().to_string())?;
-                // What stands where does not depend on colours.
+                // The positions do not depend on colours.
                 if number == 0 {
                     save_labels(&labels, &picture)?;
                     out.line(&labels.display().to_string())?;
@@ -149,7 +149,7 @@ fn endpoint(args: &SnapshotArgs) -> Endpoint {
     })
 }
 
-/// Trials are run only on a hand that does nothing by itself.
+/// Trials are run only on a hand that does not move by itself.
 fn shows_trials(args: &SnapshotArgs) -> bool {
     let still = matches!(
         args.scenario.unwrap_or_default(),

@@ -1,4 +1,4 @@
-//! When a recording begins and ends, what is noted meanwhile, and how many are kept.
+//! Start and end of fault recordings, the events noted in them, and how many are retained.
 
 use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind, PersonAct};
 use crate::app::readings::fault_recorder::recording::{
@@ -11,22 +11,24 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Recorded before a fault: the cause of a stall or of heat lies there, and a grasp with its approach takes less.
+/// Time recorded before a fault: long enough to show the cause of a stall or of heat, and to cover a grasp with its
+/// approach.
 pub const BEFORE: Duration = Duration::from_secs(45);
-/// Recorded after a fault: long enough to see what the hand did then, and what the user did about it.
+/// Time recorded after a fault: long enough to show the reactions of the hand and of the user.
 pub const AFTER: Duration = Duration::from_secs(15);
-/// A fault that comes while one is recorded makes the recording longer, but not beyond this after the first.
+/// A further fault extends the running recording, up to this time after the first fault.
 pub const AFTER_MAX: Duration = Duration::from_secs(60);
-/// Recordings kept: about 1 MB each at 100 Hz, and 4 MB for the longest of a fast link, so 48 MB at most.
+/// Maximum number of retained recordings: about 1 MB each at 100 Hz, and 4 MB for the longest of a fast link, so 48 MB
+/// in total.
 pub const RECORDINGS_MAX: usize = 12;
-/// Events noted: forty a second for as long as the longest recording.
+/// Maximum number of events: forty per second over the longest recording.
 pub const EVENTS_MAX: usize = 4096;
-/// Faults listed in one recording: one that flickers says nothing new after that.
+/// Maximum number of faults listed in a recording: further ones of a flickering fault add nothing.
 const FAULTS_MAX: usize = 256;
-/// Turns of one knob within this time are one event.
+/// Changes of one control within this time count as one event.
 const KNOB: Duration = Duration::from_millis(250);
 
-/// A recording under way.
+/// A recording in progress.
 #[derive(Debug, Clone)]
 struct OpenRecording {
     first: Moment,
@@ -37,7 +39,7 @@ struct OpenRecording {
 #[derive(Debug, Clone, Default)]
 pub struct FaultRecorder {
     events: VecDeque<FaultEvent>,
-    /// What the drives said before the oldest event.
+    /// Drive states before the oldest event.
     before: PerDof<DriveState>,
     now: PerDof<DriveState>,
     events_lost: u64,
@@ -47,13 +49,13 @@ pub struct FaultRecorder {
 }
 
 impl FaultRecorder {
-    /// Notes how status and faults changed.
+    /// Notes changes of status and faults.
     pub(crate) fn sample(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         for dof in Dof::ALL {
             if let Some(status) = sample.status.filter(|_| fresh.contains(Group::Status)) {
                 let status = status.value[dof];
                 match self.now[dof].status.replace(status) {
-                    // The first word of a hand is how it is, and no change.
+                    // The first report of a hand is its initial state, not a change.
                     None => self.before[dof].status = Some(status),
                     Some(old) if old == status => {}
                     Some(_) => self.note(now, FaultEventKind::Status(dof, status)),
@@ -70,7 +72,7 @@ impl FaultRecorder {
         }
     }
 
-    /// Notes what the user did.
+    /// Notes a user action.
     pub(crate) fn person(&mut self, act: PersonAct, now: Moment) {
         let known = self.events.iter_mut().rev().take(8).find(|event| {
             let quick = now.since(event.at) < KNOB;
@@ -90,7 +92,7 @@ impl FaultRecorder {
         self.events.push_back(FaultEvent { at, what });
     }
 
-    /// The oldest event goes; what it changed is remembered.
+    /// Drops the oldest event and applies it to the initial state.
     fn let_go(&mut self) {
         match self.events.pop_front().map(|event| event.what) {
             Some(FaultEventKind::Status(dof, status)) => self.before[dof].status = Some(status),
@@ -99,7 +101,7 @@ impl FaultRecorder {
         }
     }
 
-    /// A fault came: it is recorded, in the recording under way or in a new one.
+    /// Notes a new fault, in the running recording or in a new one.
     pub(crate) fn fault(&mut self, dof: Dof, what: FaultKind, now: Moment) {
         let running = self.running.get_or_insert_with(|| OpenRecording {
             first: now,
@@ -114,7 +116,7 @@ impl FaultRecorder {
         }
     }
 
-    /// Ends the recording under way when its time has come, and forgets events that no recording will want.
+    /// Finishes the running recording when due, and drops events that no recording needs.
     pub(crate) fn tick(&mut self, history: &History, hand: &str, now: Moment) {
         if self
             .running
@@ -131,7 +133,7 @@ impl FaultRecorder {
         }
     }
 
-    /// Another hand, or none: what is under way ends here, and nothing of this hand is taken for the next one's.
+    /// Finishes the running recording and resets the state: the next hand, if any, is a different one.
     pub(crate) fn another_hand(&mut self, history: &History, hand: &str, now: Moment) {
         self.cut(history, hand, now);
         self.events.clear();
@@ -164,28 +166,28 @@ impl FaultRecorder {
         self.kept.push_back(Arc::new(recording));
     }
 
-    /// All that are kept, newest first.
+    /// All retained recordings, newest first.
     pub fn iter(&self) -> impl Iterator<Item = &Arc<FaultRecording>> {
         self.kept.iter().rev()
     }
 
-    /// The recording with this id, if it is still kept.
+    /// Recording with this ID; `None` if it was dropped.
     pub fn get(&self, id: FaultRecordingId) -> Option<&Arc<FaultRecording>> {
         self.kept.iter().find(|recording| recording.id == id)
     }
 
-    /// The newest recording of this fault, come at this moment.
+    /// Newest recording of this fault that started at this moment.
     pub fn of(&self, dof: Dof, what: FaultKind, since: Moment) -> Option<&Arc<FaultRecording>> {
         let mut recordings = self.iter();
         recordings.find(|recording| recording.holds(dof, what, since))
     }
 
-    /// When the recording under way ends; `None` if none is.
+    /// End of the running recording; `None` if none is running.
     pub fn runs_until(&self) -> Option<Moment> {
         self.running.as_ref().map(|running| running.until)
     }
 
-    /// Recordings that went because there were too many.
+    /// Number of recordings dropped for lack of space.
     pub fn lost(&self) -> u64 {
         let kept = u64::try_from(self.kept.len()).unwrap_or(u64::MAX);
         self.made.saturating_sub(kept)
@@ -201,7 +203,7 @@ mod tests {
 
     const STALL: FaultKind = FaultKind::Fault(Fault::Stall);
 
-    /// A hand at 100 Hz whose force tells the second.
+    /// A hand at 100 Hz whose force equals the time in seconds.
     struct Bench {
         recorder: FaultRecorder,
         history: History,

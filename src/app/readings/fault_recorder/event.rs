@@ -1,35 +1,35 @@
-//! What the recorder notes between measurements: what the user did, and how a drive's status and faults changed.
+//! Events that the recorder notes between measurements: user actions, and changes of a drive's status and faults.
 
 use crate::hand::{Angle, Dof, Faults, Force, Moment, Speed, Status};
 use crate::poses::Play;
 use crate::poses::Preset;
 use std::sync::Arc;
 
-/// Something the user did that was sent to the hand, or that ends what is sent.
+/// A user action that sends something to the hand, or ends the sending.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PersonAct {
-    /// Setpoints were let through no more.
+    /// The hand was disarmed.
     Disarm,
-    /// A joint was sent somewhere.
+    /// A target angle was set for a joint.
     Target(Dof, Angle),
-    /// The force threshold of one joint or of all.
+    /// The force threshold of one joint (`None` = all) was set.
     Force(Option<Dof>, Force),
-    /// The speed of one joint or of all.
+    /// The speed of one joint (`None` = all) was set.
     Speed(Option<Dof>, Speed),
-    /// A joint was locked, or freed.
+    /// A joint was locked (true) or unlocked.
     Lock(Dof, bool),
-    /// Open, half or close.
+    /// A preset was started: open, half or close.
     Preset(Preset),
-    /// A pose of the library, by name.
+    /// A pose of the library was started, by name.
     Pose(Arc<str>),
     /// A sequence was started, stepped, paused or ended.
     Play(Play),
-    /// Errors were to be cleared.
+    /// Clearing of errors was requested.
     ClearErrors,
 }
 
 impl PersonAct {
-    /// True if both turn the same knob, so that the later one of a quick row stands for it.
+    /// True if both change the same control, so that the later one of a rapid series replaces the earlier.
     pub(crate) fn is_same_knob(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Target(one, _), Self::Target(two, _)) => one == two,
@@ -39,7 +39,7 @@ impl PersonAct {
         }
     }
 
-    /// Stable lower-case words for files.
+    /// Stable lower-case text for files.
     pub fn words(&self) -> String {
         let joints = |dof: &Option<Dof>| dof.map_or("of all", Dof::name);
         match self {
@@ -63,18 +63,16 @@ impl PersonAct {
     }
 }
 
-/// What happened.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum FaultEventKind {
-    /// The user did something.
+    /// A user action.
     PersonAct(PersonAct),
-    /// A drive says something else.
+    /// The status of a drive changed.
     Status(Dof, Status),
-    /// A drive's fault bits changed.
+    /// The fault bits of a drive changed.
     Faults(Dof, Faults),
 }
 
-/// What happened, and when.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FaultEvent {
     pub at: Moment,

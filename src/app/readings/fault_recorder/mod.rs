@@ -1,4 +1,4 @@
-//! The flight recorder: what happened around each fault stays viewable. Writes no file and sends nothing.
+//! Flight recorder: retains the events around each fault for viewing. Writes no file and sends nothing.
 
 pub(crate) mod book;
 pub(crate) mod event;

@@ -1,4 +1,4 @@
-//! One recording: everything that was measured and done around a fault, free of the history it came from.
+//! One recording: all measurements and events around a fault, independent of the history that they came from.
 
 use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind};
 use crate::app::readings::faults::FaultKind;
@@ -6,64 +6,62 @@ use crate::hand::{Dof, Faults, Finger, Moment, PerDof, Status};
 use crate::hand::{Quantity, Touch};
 use crate::history::{History, Series, Table, TableGroup};
 
-/// A recording for as long as the program runs.
+/// ID of a recording, unique in this run of the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaultRecordingId(pub u64);
 
-/// A fault that came while it was recorded.
+/// A fault that occurred during the recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FaultAt {
     pub at: Moment,
-    /// Of which joint.
     pub dof: Dof,
     pub what: FaultKind,
 }
 
-/// What one drive says. `None` = not read yet.
+/// State of one drive; `None` = not read yet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct DriveState {
     pub status: Option<Status>,
-    /// ERROR.
+    /// ERROR register.
     pub faults: Option<Faults>,
 }
 
-/// Everything around a fault.
+/// All measurements and events around a fault.
 #[derive(Debug, Clone)]
 pub struct FaultRecording {
-    /// To find it.
     pub id: FaultRecordingId,
-    /// The hand, in the spelling of endpoints.
+    /// Endpoint of the hand, as text.
     pub hand: String,
-    /// The faults, oldest first, at least one.
+    /// Faults, oldest first; at least one.
     pub faults: Vec<FaultAt>,
-    /// From here; measurements may begin later.
+    /// Start of the recording; measurements may start later.
     pub from: Moment,
-    /// To here.
+    /// End of the recording.
     pub to: Moment,
-    /// What was measured, with the marks.
+    /// Measurements, with the marks.
     pub history: History,
-    /// What the drives said at first.
+    /// Drive states at the start.
     pub before: PerDof<DriveState>,
-    /// What was done and how the drives changed, oldest first.
+    /// User actions and drive changes, oldest first.
     pub events: Vec<FaultEvent>,
-    /// Events of this time that were not kept, because there were too many.
+    /// Number of events that were dropped for lack of space.
     pub events_lost: u64,
 }
 
 impl FaultRecording {
-    /// The fault that began it.
+    /// The fault that triggered the recording.
     pub fn fault(&self) -> Option<FaultAt> {
         self.faults.first().copied()
     }
 
-    /// True if it holds this fault of this joint, come at this moment.
+    /// True if the recording contains this fault of this joint, started at this moment.
     pub fn holds(&self, dof: Dof, what: FaultKind, since: Moment) -> bool {
         let mut all = self.faults.iter();
         all.any(|fault| fault.dof == dof && fault.what == what && fault.at == since)
     }
 
-    /// Everything as one table: all measurements, status and fault byte of each drive where they changed, and what
-    /// happened.
+    /// Exports the recording as one table: all measurements, status and fault byte of each drive at each change, and
+    /// the events.
     pub fn table(&self) -> Table {
         let joints = Quantity::ALL.into_iter();
         let joints = joints.flat_map(|quantity| Dof::ALL.map(|dof| Series::Joint(quantity, dof)));
@@ -80,7 +78,7 @@ impl FaultRecording {
         table.with(self.drives(), acts.collect())
     }
 
-    /// Status and fault byte of all drives, a row for each change.
+    /// Status and fault byte of all drives, one row per change.
     fn drives(&self) -> TableGroup {
         let mut now = self.before;
         let mut rows = vec![(self.from, now)];

@@ -1,5 +1,5 @@
-//! What a program asks of a hand on standard input, one JSON object a line. Pure; a contract with scripts
-//! (`handscope help share`).
+//! Requests of a program on standard input, one JSON object per line. Pure; a contract with scripts (`handscope help
+//! share`).
 
 use crate::cli::parse::{moving, rated};
 use crate::hand::kinematics::Side;
@@ -14,35 +14,35 @@ use crate::poses::way::Targets;
 use serde_json::Value;
 use std::path::PathBuf;
 
-/// One line.
+/// One parsed line.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Asked {
-    /// What its answer is marked with; `null` unless it has one.
+    /// ID for the reply; `null` if the line has none.
     pub(crate) id: Value,
     pub(crate) what: Result<Ask, String>,
-    /// What was wrong in a line that ends a motion, and is obeyed all the same.
+    /// Error in a line that ends a motion and is obeyed nevertheless.
     pub(crate) odd: Option<String>,
 }
 
-/// What is asked for.
+/// A request.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Ask {
-    /// To move the hand from now on, within these limits.
+    /// Arm the hand within these limits.
     Arm(LimitsAsk),
     Move(MoveAsk),
-    /// A target to be followed, as lines of `follow` have it.
+    /// A target to follow, in the line format of `follow`.
     Follow(StreamLine),
-    /// The hand stops, whoever moves it, and is not armed any more.
+    /// Stop and disarm the hand, whichever controller moves it.
     Stop,
-    /// The same, unless another moves it now.
+    /// The same, unless another controller moves it now.
     Release,
-    /// The hand is not armed any more, and a program on the gateway may move it. One that moves is stopped first.
+    /// Disarm the hand, so that a program on the gateway may get control. A moving hand is stopped first.
     Disarm,
-    /// A fault is cleared; that moves nothing.
+    /// Clear a fault; this moves nothing.
     Clear,
-    /// How often the hand is read.
+    /// Set the polling rates of the hand.
     Rate(PollRates),
-    /// A recording begins here, or with `None` ends.
+    /// Start a recording here, or with `None` end it.
     Record(Option<PathBuf>),
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct MoveAsk {
     pub(crate) settles: bool,
 }
 
-/// A speed and a force threshold for all joints, as far as they are named.
+/// Speed and force threshold for all joints; `None` = not specified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct LimitsAsk {
     pub(crate) speed: Option<Speed>,
@@ -69,7 +69,7 @@ impl LimitsAsk {
         })
     }
 
-    /// What is not named stays as it is.
+    /// Applies these limits over the current ones.
     pub(crate) fn over(self, now: ArmRequest) -> ArmRequest {
         ArmRequest {
             speed: self.speed.map_or(now.speed, PerDof::splat),
@@ -79,7 +79,7 @@ impl LimitsAsk {
 }
 
 impl Asked {
-    /// What ends no motion by a word of its own; a dead-man that is let go counts whatever is wrong beside it.
+    /// Handles a line without an end word; a released dead-man switch counts despite errors in the line.
     fn of(id: Value, read: Result<Ask, String>, line: &[u8], side: Side) -> Self {
         let let_go = StreamLine::parse(line, side).ok().filter(|_| lets_go(line));
         match (read, let_go) {
@@ -96,7 +96,7 @@ impl Asked {
         }
     }
 
-    /// Reads one line for the hand of this side. One that ends a motion is obeyed, whatever else is in it.
+    /// Parses one line for the hand of this side. A line that ends a motion is obeyed, whatever else it contains.
     pub(crate) fn parse(line: &[u8], side: Side) -> Self {
         let (id, read) = read(line, side);
         let ask = match end_word(line, TextEnd::Whole) {
@@ -169,7 +169,7 @@ fn ask(fields: &mut Fields) -> Result<Ask, String> {
     }
 }
 
-/// Takes a field; the error names it.
+/// Removes and reads a field; the error names it.
 fn take<T>(
     fields: &mut Fields,
     name: &str,

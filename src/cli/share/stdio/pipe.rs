@@ -1,5 +1,5 @@
-//! Standard input and output as lines: a program that does not read holds up neither the hand nor its stop. What it does not read
-//! in time is left out and counted.
+//! Standard input and output as lines: a program that does not read delays neither the hand nor its stop. Lines that it does not
+//! read in time are dropped and counted.
 
 use crate::cli::out::Out;
 use crate::inputs::lines::{Cut, LONGEST, LineCutter};
@@ -10,12 +10,12 @@ use std::time::Duration;
 use tokio::sync::mpsc;
 use tokio::time::Instant;
 
-/// Lines that may wait to be obeyed.
+/// Capacity of the queue of input lines.
 const ASKED_MAX: usize = 64;
-/// A program that takes nothing for so long does not look at what the hand does.
+/// A program that reads nothing for this time no longer monitors the hand.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Lines of standard input. The channel ends with it. `stop` is called for a stop in a line that is not whole yet, or too long.
+/// Lines of standard input. The channel closes with it. `stop` is called for a stop in an incomplete or overlong line.
 pub(crate) fn lines(stop: impl Fn() + Send + 'static) -> mpsc::Receiver<Vec<u8>> {
     let (asked, lines) = mpsc::channel(ASKED_MAX);
     std::thread::spawn(move || {
@@ -41,7 +41,7 @@ pub(crate) fn lines(stop: impl Fn() + Send + 'static) -> mpsc::Receiver<Vec<u8>>
                 return;
             }
             if len == 0 {
-                // What else is no whole line is not obeyed.
+                // Any other incomplete line is ignored.
                 cutter.end().into_iter().all(hand_on);
                 return;
             }
@@ -51,20 +51,20 @@ pub(crate) fn lines(stop: impl Fn() + Send + 'static) -> mpsc::Receiver<Vec<u8>>
     lines
 }
 
-/// Nobody reads standard output any more.
+/// Standard output is closed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct NobodyReads;
 
 /// Standard output.
 pub(crate) struct Told<'a> {
     out: &'a mut Out,
-    /// How much was read when it was looked last, and since when no more.
+    /// Bytes read at the last progress, and its time.
     stood: (u64, Instant),
 }
 
 impl<'a> Told<'a> {
     pub(crate) fn to(out: &'a mut Out) -> Self {
-        // At the end the program may be gone; the hand was stopped then.
+        // At the end the program may be gone; the hand has been stopped by then.
         out.end_without_reader();
         Self {
             out,
@@ -72,12 +72,12 @@ impl<'a> Told<'a> {
         }
     }
 
-    /// Tells something that must not get lost.
+    /// Writes a message that must not be lost.
     pub(crate) fn tell(&mut self, what: &Value) -> Result<(), NobodyReads> {
         self.out.object(what).map_err(|_full_or_closed| NobodyReads)
     }
 
-    /// Tells a state, or counts it where there is no room.
+    /// Writes a state, or counts it if there is no room.
     pub(crate) fn state(
         &mut self,
         state: impl FnOnce() -> Value,
@@ -88,7 +88,7 @@ impl<'a> Told<'a> {
         told.map_err(|_closed| NobodyReads)
     }
 
-    /// Whether lines wait that were not taken for too long.
+    /// True if queued lines have not been read for too long.
     pub(crate) fn is_stuck(&mut self) -> bool {
         let (waiting, read) = self.out.progress();
         if waiting == 0 || read != self.stood.0 {

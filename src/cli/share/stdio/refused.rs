@@ -1,14 +1,14 @@
-//! Why a program's wish was not done: a kind for the program, words for who reads them.
+//! Refusal of a request: a kind for the program, and a text for its user.
 
 use crate::link::{LeaseRefusal, Owner};
 use crate::record::Disarmed;
 use serde::Serialize;
 
-/// Of what kind a refusal is, as the lines name it.
+/// Kind of a refusal, by its name in the protocol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum RefusalKind {
-    /// The line is none that can be obeyed.
+    /// The line is not a valid request.
     Wrong,
     Refused,
     NotArmed,
@@ -16,12 +16,12 @@ pub(crate) enum RefusalKind {
     Replaced,
     NotConfirmed,
     Disarmed,
-    /// The right to move the hand ended for this.
+    /// Control of the hand ended for this reason.
     #[serde(untagged)]
     Ended(Disarmed),
 }
 
-/// Why something was not done, and by what kind of refusal.
+/// Kind and text of a refusal.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Refused {
     pub(crate) kind: RefusalKind,
@@ -34,7 +34,7 @@ impl Refused {
         Self { kind, why }
     }
 
-    /// Of what went on when something else was asked for.
+    /// Refusal of a task that was replaced by another request.
     pub(crate) fn replaced() -> Self {
         Self::new(RefusalKind::Replaced, "something else was asked for")
     }
