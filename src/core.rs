@@ -4,12 +4,15 @@
 pub mod checkup;
 pub mod codec;
 pub mod exhibit;
+#[cfg(test)]
+mod fake;
 pub mod hand;
 pub mod history;
 pub mod inputs;
 pub mod link;
 pub mod manual;
 pub mod model;
+pub mod motion;
 pub mod params;
 pub mod poses;
 pub mod printable;

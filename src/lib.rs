@@ -74,6 +74,6 @@ pub mod ui;
 pub use handscope_draw as draw;
 
 pub use handscope_core::{
-    checkup, codec, exhibit, hand, history, inputs, link, manual, model, params, poses, printable,
-    record, share, sim, store, system, tasks, transport, trials,
+    checkup, codec, exhibit, hand, history, inputs, link, manual, model, motion, params, poses,
+    printable, record, share, sim, store, system, tasks, transport, trials,
 };

@@ -9,10 +9,10 @@ use crate::hand::PerDof;
 use crate::hand::gap::{Gap, GripKind, HeldSize, SizeBlocks};
 use crate::hand::{Force, Speed};
 use crate::link::ArmRequest;
+use crate::motion::drive::{STOP_LOST, stop_words};
+use crate::motion::grip::{self, GripEnd, GripReport, GripStart};
+use crate::motion::program::Ended;
 use crate::record::Abort;
-use crate::tasks::drive::{STOP_LOST, stop_words};
-use crate::tasks::grip::{self, GripEnd, GripReport, GripStart};
-use crate::tasks::program::Ended;
 use crate::transport::Endpoint;
 use anyhow::bail;
 use clap::Args;
@@ -59,7 +59,7 @@ fn gap(text: &str) -> Result<Gap, String> {
     Gap::new(mm).map_err(|error| error.to_string())
 }
 
-/// Grips. Fails if it was ended early, or if something stopped the hand that it does not hold.
+/// Grips. Fails if it ended early, or if something stopped the hand that it does not hold.
 pub(crate) async fn run(out: &mut Out, args: &GripArgs) -> anyhow::Result<()> {
     if !args.arm {
         bail!(
@@ -98,13 +98,13 @@ async fn drive(args: &GripArgs) -> anyhow::Result<GripReport> {
     Ok(report)
 }
 
-/// The blocks that the window measured with this hand, if its settings are there. They are only read.
+/// Reads the blocks that the window measured with this hand from its settings, without changing them.
 fn blocks(hand: &Endpoint) -> SizeBlocks {
     let known = settings_file::default_path().and_then(|path| settings_file::peek(&path));
     known.map_or_else(SizeBlocks::default, |known| known.size_blocks(Some(hand)))
 }
 
-/// What is between the pads, in words, and of which shape a size is.
+/// Describes the object between the pads, and the shape that its size refers to.
 fn held(report: &GripReport, blocks: &SizeBlocks) -> String {
     let Some(gap) = report.gap else {
         return "how far the pads are apart is not known".into();
@@ -118,7 +118,7 @@ fn held(report: &GripReport, blocks: &SizeBlocks) -> String {
     }
 }
 
-/// What came of it in one sentence; `Err` for what fails.
+/// The outcome in one sentence; `Err` for failures.
 fn outcome(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Result<String, String> {
     let (asked, held) = (args.gap.mm(), held(report, blocks));
     match report.end {
@@ -154,12 +154,12 @@ const fn end_name(end: Ended<GripEnd>) -> &'static str {
         Err(Abort::OtherController { .. } | Abort::TakenOver) => "taken_over",
         Err(Abort::Fault { .. }) => "fault",
         Err(Abort::LinkLost) => "link_lost",
-        // The other reasons disarm, or are those of trials.
+        // The other reasons disarm, or occur only in trials.
         Err(_) => "disarmed",
     }
 }
 
-/// The result: `{"grip": {…}}`. What is not known is null.
+/// The result: `{"grip": {…}}`. Unknown values are null.
 fn object(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Value {
     let held = report.gap.filter(|_| report.end == Ok(GripEnd::Held));
     let size = held.map(|gap| match blocks.size(gap) {

@@ -1,4 +1,4 @@
-//! A link for a terminal command: its clock, the wait for a hand that answers, and warnings of heat.
+//! The link of a terminal command: opening, the wait for a hand that answers, and warnings of heat.
 
 use crate::app::connect::SimDial;
 use crate::app::files::settings_file;
@@ -10,33 +10,33 @@ use crate::link::{
     self, Clock, LinkConfig, LinkHandle, LinkObserver, LinkStatus, LinkTrouble, PollRates, Records,
     Stop,
 };
+use crate::motion::drive::STOP_LOST;
 use crate::record::{Disarmed, LinkState};
-use crate::tasks::drive::STOP_LOST;
 use crate::transport::Endpoint;
 use anyhow::bail;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::{Instant, sleep};
 
-/// A hand that is there answers long before; after this the user is told why nothing comes.
+/// Maximum time until a hand answers; after it the user gets an explanation.
 pub(crate) const ANSWER_TIMEOUT: Duration = Duration::from_secs(3);
-/// While something answers and is being identified, the wait lasts this long: a way to a hand may be slow.
+/// Maximum time while a hand is being identified: its connection may be slow.
 const IDENTIFY_TIMEOUT: Duration = Duration::from_secs(6);
-/// How often the wait checks.
+/// Polling interval of the wait.
 const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
-/// What is told where feedback does not show that a stopped hand rests, and where none comes any more.
+/// Message if feedback does not show that a stopped hand rests, or has ceased.
 pub(crate) const NOT_CONFIRMED: &str =
     "STOP NOT CONFIRMED: the hand may still move; switch off its 24 V supply";
 
-/// A link that asks for nothing by itself: the line belongs to what a command asks.
+/// Disables polling: the line is reserved for the requests of a command.
 pub(crate) const ONLY_WHAT_IS_ASKED: PollRates = PollRates {
     state_hz: 0.0,
     tactile_hz: 0.0,
     settings_hz: 0.0,
 };
 
-/// What tells the grip of a hand, with what is kept of its free motion. A file that cannot be read is as none.
+/// Grip estimator of a hand, with its stored free motion. An unreadable file counts as missing.
 pub(crate) fn grip_estimator(hand: &Endpoint) -> GripEstimator {
     let settings = settings_file::default_path();
     let file = settings.and_then(|settings| free_file::file_of(&settings, hand));
@@ -56,7 +56,7 @@ pub(crate) fn open(endpoint: &Endpoint, rates: PollRates, clock: Clock) -> LinkH
     open_with_records(endpoint, rates, clock).0
 }
 
-/// The same, with everything that happens from the first moment on.
+/// The same, with all records from the start.
 pub(crate) fn open_with_records(
     endpoint: &Endpoint,
     rates: PollRates,
@@ -75,7 +75,7 @@ pub(crate) fn open_with_records(
     (link, records)
 }
 
-/// Warns of a drive that is warm while the hand may move, and says where heat stopped it: each once for an arming.
+/// Warns of a warm drive while the hand may move, and reports a stop because of heat: once per arming each.
 async fn warn_of_heat(observer: LinkObserver) {
     let mut status = observer.status;
     let mut reported = HeatLevel::Unarmed;
@@ -87,14 +87,14 @@ async fn warn_of_heat(observer: LinkObserver) {
         }
         reported = match level {
             HeatLevel::Unarmed => level,
-            // It was armed again since.
+            // The hand has been armed again since.
             level if reported == HeatLevel::Stopped => level,
             level => level.max(reported),
         };
     }
 }
 
-/// What there is to report of the drives' heat, the gravest last.
+/// Reportable heat of the drives, in order of severity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum HeatLevel {
     Unarmed,
@@ -130,7 +130,7 @@ impl HeatLevel {
     }
 }
 
-/// Waits until the hand answers. The error says why it does not.
+/// Waits until the hand answers. The error gives the reason if it does not.
 pub(crate) async fn answered(link: &LinkHandle, endpoint: &Endpoint) -> anyhow::Result<()> {
     let begun = Instant::now();
     loop {
@@ -148,7 +148,7 @@ pub(crate) async fn answered(link: &LinkHandle, endpoint: &Endpoint) -> anyhow::
     }
 }
 
-/// How long a link in this state is waited for.
+/// Maximum waiting time for a link in this state.
 pub(crate) fn patience(status: &LinkStatus) -> Duration {
     match status.state {
         LinkState::Identifying => IDENTIFY_TIMEOUT,
@@ -156,7 +156,7 @@ pub(crate) fn patience(status: &LinkStatus) -> Duration {
     }
 }
 
-/// Stops the hand, and waits until feedback shows that it rests. The error says what to do where it does not.
+/// Stops the hand, and waits until feedback shows that it rests. If it does not, the error contains advice.
 pub(crate) async fn stopped(link: &LinkHandle) -> anyhow::Result<()> {
     match link.stop().await {
         Stop::Confirmed { .. } => Ok(()),
@@ -165,12 +165,12 @@ pub(crate) async fn stopped(link: &LinkHandle) -> anyhow::Result<()> {
     }
 }
 
-/// Why there is no hand, in one sentence that names it.
+/// Reason why there is no hand, in one sentence that names it.
 pub(crate) fn no_hand(endpoint: &Endpoint, trouble: &LinkTrouble) -> String {
     format!("no hand at {endpoint}: {trouble}")
 }
 
-/// The message where nothing at all was heard in time.
+/// Error text if nothing was received in time.
 pub(crate) fn unanswered(endpoint: &Endpoint) -> String {
     format!(
         "no hand at {endpoint}: nothing came within {} s; check power, cable, address and id",

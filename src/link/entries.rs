@@ -1,38 +1,42 @@
-//! Everything that happens at a link, as the entries of a session: what it tells, what goes over the wire, and where it stands.
-//! A file and live viewers take the same.
+//! All events of a link, as the entries of a session: its records, its wire traffic, and its status. Files and live
+//! viewers use the same entries.
 
 use crate::hand::Moment;
 use crate::link::{Clock, LinkObserver, LinkStatus};
+use crate::record::file::recorder::RecorderInput;
 use crate::record::{Entry, LinkReport};
 use serde::Serialize;
 use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::time::{Interval, MissedTickBehavior, interval};
 
-/// How often the wire and the state of the link are looked at.
+/// Interval at which the traffic and the link's state are polled.
 const POLL_INTERVAL: Duration = Duration::from_millis(50);
-/// How often the link's figures are told.
+/// In virtual time the recorder is awaited after this many entries: far fewer than its queue holds, and about a second
+/// of one hand.
+const SYNC_ENTRIES: usize = 2048;
+/// Interval at which the link's statistics are reported.
 const FIGURES_INTERVAL: Duration = Duration::from_secs(1);
 
-/// The entries of one link, from the moment on at which it was observed.
+/// The entries of one link, from the moment it was observed.
 #[derive(Debug)]
 pub struct LinkEntries {
     observed: LinkObserver,
     clock: Clock,
     tick: Interval,
-    /// What was seen at the last look and not yet taken: at most what the tap holds.
+    /// Entries from the last poll that were not returned yet: at most as many as the tap holds.
     ready: VecDeque<Entry>,
     is_over: bool,
     next_piece: u64,
     lost_records: u64,
     missed: u64,
     figures_at: Option<Moment>,
-    /// As it was told last.
+    /// The status as last reported.
     status: Option<LinkStatus>,
 }
 
 impl LinkEntries {
-    /// Of this link. Must be called within a tokio runtime.
+    /// Entries of this link. Must be called within a tokio runtime.
     pub fn new(observed: LinkObserver, clock: Clock) -> Self {
         let mut tick = interval(POLL_INTERVAL);
         tick.set_missed_tick_behavior(MissedTickBehavior::Delay);
@@ -50,7 +54,7 @@ impl LinkEntries {
         }
     }
 
-    /// The next entry. `None` once the link's session has ended and everything of it was taken.
+    /// The next entry. `None` once the link's session has ended and all its entries were returned.
     pub async fn next(&mut self) -> Option<Entry> {
         loop {
             if let Some(entry) = self.ready.pop_front() {
@@ -72,7 +76,7 @@ impl LinkEntries {
         }
     }
 
-    /// Entries that were lost, because this reader was too slow, since it was asked last.
+    /// Number of entries lost since the last call, because this reader was too slow.
     pub fn take_missed(&mut self) -> u64 {
         std::mem::take(&mut self.missed)
     }
@@ -94,10 +98,10 @@ impl LinkEntries {
         self.ready.extend(report.map(Entry::Link));
     }
 
-    /// The status when it changed, the figures once a second.
+    /// Reports the status when it changed, and the statistics once per second.
     fn report(&mut self) -> Option<LinkReport> {
         let now = self.clock.now();
-        // A link that is closed tells nothing new, and its last status may not have been seen.
+        // A closed link has nothing new, but its last status may not have been reported.
         let may_be_new =
             self.observed.status.has_changed().unwrap_or(true) || self.status.is_none();
         let mut text = String::new();
@@ -133,4 +137,28 @@ impl LinkEntries {
 
 fn json<T: Serialize>(value: &T) -> String {
     serde_json::to_string(value).unwrap_or_default()
+}
+
+/// Records all entries until the link's session ends. In virtual time, which passes as fast as the computer can, the
+/// recorder keeps up; in real time nothing waits for it.
+pub async fn record(observed: LinkObserver, input: RecorderInput, clock: Clock) {
+    let mut entries = LinkEntries::new(observed, clock);
+    let mut given = 0_usize;
+    while let Some(entry) = entries.next().await {
+        report_missed(&mut entries, &input);
+        given = given.wrapping_add(1);
+        if clock.is_virtual() && given.is_multiple_of(SYNC_ENTRIES) {
+            input.push_in_step(entry);
+        } else {
+            input.push(entry);
+        }
+    }
+    report_missed(&mut entries, &input);
+}
+
+fn report_missed(entries: &mut LinkEntries, input: &RecorderInput) {
+    let missed = entries.take_missed();
+    if missed > 0 {
+        input.missed(missed);
+    }
 }

@@ -1,10 +1,9 @@
-//! One conversation with one hand: the wire's owner, the poll plan, arming and hold, reconnecting, statistics.
+//! The link to one hand: wire ownership, poll plan, arming and hold, reconnecting, statistics.
 //!
-//! [`handle::open`] starts a session and gives the window's end of it. The session ([`session`])
-//! owns the wire, asks one thing at a time (`bus`) and decides by priority what comes next: stop, hold,
-//! setpoints, requests, reads ([`poll`]). Settings, SAVE and reset are requests that end in a verdict
-//! ([`session`]). What went over the wire can be looked at afterwards
-//! ([`tap`], [`traffic`]).
+//! [`handle::open`] starts a session and returns the program's handle to it. The session ([`session`]) owns the wire,
+//! sends one request at a time (`bus`) and decides by priority what comes next: stop, hold, setpoints, requests, reads
+//! ([`poll`]). Settings, SAVE and reset are requests that end in a verdict ([`session`]). The traffic on the wire can
+//! be inspected afterwards ([`tap`], [`traffic`]).
 #![warn(missing_docs)]
 mod bus;
 pub mod clock;
@@ -30,7 +29,7 @@ pub mod status;
 pub mod stop;
 pub mod tap;
 pub mod traffic;
-mod wanted;
+pub(crate) mod wanted;
 
 pub use clock::Clock;
 pub use config::{LinkConfig, Wake};

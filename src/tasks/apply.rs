@@ -2,14 +2,14 @@
 
 use crate::hand::Setting;
 use crate::hand::overshoot::OvershootMap;
-use crate::link::RequestError;
+use crate::link::{LinkHandle, RequestError};
 use crate::params::backups::Backups;
 use crate::params::changes::{self, RowOutcome, RowVerdict, WritePlan};
 use crate::params::danger::worse;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::record::{NotSent, Verdict, Written};
-use crate::tasks::hand::{REACH_TIMEOUT, TaskHand, answers, once_at_rest};
+use crate::tasks::hand::{REACH_TIMEOUT, answers, once_at_rest};
 use crate::tasks::save::back_up;
 use crate::tasks::{Consent, ParamStep, Risks, TaskError, read};
 use std::path::PathBuf;
@@ -67,8 +67,8 @@ impl Applied {
 ///
 /// # Errors
 /// [`TaskError`]: then nothing was written.
-pub async fn apply<H: TaskHand>(
-    hand: &H,
+pub async fn apply(
+    hand: &LinkHandle,
     task: &Apply,
     mut tell: impl FnMut(ParamStep),
 ) -> Result<Applied, TaskError> {
@@ -111,8 +111,8 @@ pub async fn apply<H: TaskHand>(
 
 /// Writes all settings of a plan. What did not go out because the user armed meanwhile does not go out for the next group
 /// either.
-async fn write<H: TaskHand>(
-    hand: &H,
+async fn write(
+    hand: &LinkHandle,
     plan: &WritePlan,
     before: &Params,
 ) -> (Vec<RowOutcome>, Option<RequestError>) {
@@ -131,7 +131,7 @@ async fn write<H: TaskHand>(
 }
 
 /// Writes one group. If it is not known what the hand holds then, it is read once more, on a link that came back.
-async fn write_one<H: TaskHand>(hand: &H, setting: Setting) -> Result<Written, RequestError> {
+async fn write_one(hand: &LinkHandle, setting: Setting) -> Result<Written, RequestError> {
     let not_sent = |written: &Written| match written.verdict {
         Verdict::NotSent(why) => Some(why),
         _ => None,
@@ -154,7 +154,7 @@ async fn write_one<H: TaskHand>(hand: &H, setting: Setting) -> Result<Written, R
 }
 
 /// Puts back what changed or may have; true if the hand holds what it held before. What it holds then stands in the rows.
-async fn undo<H: TaskHand>(hand: &H, rows: &mut [RowOutcome]) -> bool {
+async fn undo(hand: &LinkHandle, rows: &mut [RowOutcome]) -> bool {
     let wanted = changes::undo_of(rows);
     if wanted.is_empty() {
         return true;

@@ -1,9 +1,8 @@
 //! The calibration of the force sensors: what must be so before, the request, and the offsets before and after (manual 2.6.6).
 
 use crate::hand::{Dof, Finger, ForceReading, HandSample, Moment, PerDof};
-use crate::link::{Clock, LinkStatus, RequestError};
+use crate::link::{Clock, LinkHandle, LinkStatus, RequestError};
 use crate::record::{Calibrated, LinkState, Record, Rest};
-use crate::tasks::hand::TaskHand;
 use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::time::{Instant, timeout_at};
@@ -175,8 +174,8 @@ pub struct CalibrateReport {
 }
 
 /// Calibrates, and measures the new offsets where it ended well.
-pub async fn calibrate<H: TaskHand>(
-    hand: &H,
+pub async fn calibrate(
+    hand: &LinkHandle,
     clock: Clock,
     mut tell: impl FnMut(CalibrateStep),
 ) -> CalibrateReport {

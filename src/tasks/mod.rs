@@ -1,31 +1,18 @@
-//! What takes several steps at a hand, each task written once as an async function. The window and the command line call the
-//! same. A task tells its steps as they begin and gives its result at the end; it asks the user nothing itself and draws nothing.
-//!
-//! What moves an armed hand over time is a [`Program`](program::Program): a pure state machine. [`drive`](drive::drive) is the one loop
-//! that runs them and has the safety rules.
+//! Operations of several steps that do not move an armed hand, each written once as an async function for window and command line. A
+//! task reports its steps as they begin and returns its result; it asks the user nothing itself and draws nothing.
 #![warn(missing_docs)]
 
 pub mod apply;
 pub mod calibrate;
-pub mod checkup;
-pub mod drive;
-pub mod exhibit;
-pub mod follow;
-pub mod grip;
 pub mod hand;
-pub mod move_to;
 pub mod place;
-pub mod play;
-pub mod program;
 pub mod read;
-pub mod recording;
 pub mod reset;
 pub mod save;
-pub mod series;
 #[cfg(test)]
 mod tests;
 
-pub use crate::tasks::hand::{Reach, TaskHand};
+pub use crate::tasks::hand::Reach;
 
 use crate::hand::Span;
 use crate::link::RequestError;

@@ -9,7 +9,7 @@ use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, decoded, span_of};
 use crate::record::Saved;
 use crate::store::on_thread;
-use crate::tasks::hand::{Reach, TaskHand, rests};
+use crate::tasks::hand::{Reach, rests};
 use crate::tasks::save::{back_up, save_noted};
 use crate::tasks::{TaskError, read};
 use futures::future::BoxFuture;

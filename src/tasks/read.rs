@@ -1,11 +1,11 @@
 //! Reading what a hand keeps. Writes nothing.
 
 use crate::hand::Span;
-use crate::link::RequestError;
+use crate::link::{LinkHandle, RequestError};
 use crate::params::rows::ParamId;
 use crate::params::values::{Params, SPANS};
 use crate::tasks::TaskError;
-use crate::tasks::hand::{REACH_TIMEOUT, RETRY_DELAY, TaskHand, answers};
+use crate::tasks::hand::{REACH_TIMEOUT, RETRY_DELAY, answers};
 use std::time::Duration;
 use tokio::time::sleep;
 
@@ -42,7 +42,7 @@ impl ReadRows {
 }
 
 /// Reads all rows, group by group; `took` is told each group as it comes.
-pub async fn rows<H: TaskHand>(hand: &H, mut took: impl FnMut(Span, &[u8])) -> ReadRows {
+pub async fn rows(hand: &LinkHandle, mut took: impl FnMut(Span, &[u8])) -> ReadRows {
     let mut rows = ReadRows::default();
     for span in SPANS {
         match group(hand, span).await {
@@ -60,7 +60,7 @@ pub async fn rows<H: TaskHand>(hand: &H, mut took: impl FnMut(Span, &[u8])) -> R
 ///
 /// # Errors
 /// As the link says, at the last try.
-pub async fn group<H: TaskHand>(hand: &H, span: Span) -> Result<Vec<u8>, RequestError> {
+pub async fn group(hand: &LinkHandle, span: Span) -> Result<Vec<u8>, RequestError> {
     let (mut tries, mut waits) = (TRIES, WAITS);
     loop {
         match hand.read(span).await {

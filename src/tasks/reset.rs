@@ -9,7 +9,7 @@ use crate::params::values::Params;
 use crate::record::{NotSent, Reset};
 use crate::store::on_thread;
 use crate::system::SystemError;
-use crate::tasks::hand::{Reach, TaskHand, once_at_rest};
+use crate::tasks::hand::{Reach, once_at_rest};
 use crate::tasks::read::ReadRows;
 use crate::tasks::save::back_up;
 use crate::tasks::{TaskError, read};

@@ -2,7 +2,7 @@
 //! (manual 2.6.4).
 
 use crate::hand::overshoot::OvershootMap;
-use crate::link::RequestError;
+use crate::link::{LinkHandle, RequestError};
 use crate::params::backups::Backups;
 use crate::params::danger::worse;
 use crate::params::values::Params;
@@ -10,7 +10,7 @@ use crate::record::{SaveDoubt, Saved};
 use crate::store::calendar::since_1970;
 use crate::store::on_thread;
 use crate::system::SystemError;
-use crate::tasks::hand::{TaskHand, once_at_rest};
+use crate::tasks::hand::once_at_rest;
 use crate::tasks::{BackupError, Consent, ParamStep, Risks, TaskError, read};
 use std::io;
 use std::path::PathBuf;
@@ -51,8 +51,8 @@ pub struct SaveReport {
 ///
 /// # Errors
 /// [`TaskError`]: then no SAVE went out.
-pub async fn save<H: TaskHand>(
-    hand: &H,
+pub async fn save(
+    hand: &LinkHandle,
     task: &Save,
     mut tell: impl FnMut(ParamStep),
 ) -> Result<SaveReport, TaskError> {
@@ -94,8 +94,8 @@ pub(crate) async fn back_up(
 }
 
 /// Notes the attempt, sends SAVE, and notes the result; why that could not be noted, if it could not.
-pub(crate) async fn save_noted<H: TaskHand>(
-    hand: &H,
+pub(crate) async fn save_noted(
+    hand: &LinkHandle,
     backups: &Backups,
     params: &Params,
     goes_out: impl FnOnce(),

@@ -98,7 +98,7 @@ fn source(path: &Path) -> Result<f64, Failure> {
     };
     let recorder = Recorder::start(plan(path))?;
     let (link, _records) = open(config, runtime.handle());
-    let pump = handscope::tasks::recording::record(link.observe(), recorder.input(), clock);
+    let pump = handscope::link::entries::record(link.observe(), recorder.input(), clock);
     runtime.spawn(pump);
     sleep(SOURCE);
     let status = recorder.end();

@@ -1,40 +1,39 @@
-//! The check-up that runs at a hand, and what the last one came to.
+//! The running check-up of a hand, and the last result.
 
 use crate::app::env::running::Running;
 use crate::checkup::CheckupPlan;
 use crate::checkup::report::{CheckupReport, PAGE_FILE};
 use crate::checkup::run::CheckupView;
 use crate::hand::{ArmEpoch, Moment};
+use crate::motion::checkup::ConcludedCheckup;
 use crate::record::Abort;
 use crate::store::BackgroundJob;
-use crate::tasks::checkup::ConcludedCheckup;
 use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
 use tokio::sync::oneshot;
 
-/// What the last kept check-up came to, where its report is.
+/// Result of reading the last stored check-up and the folder of its report; `None` if there is none.
 pub(crate) type KeptCheckup = io::Result<Option<(CheckupReport, Option<PathBuf>)>>;
 
-/// Check-ups of one hand.
 #[derive(Debug, Default)]
 pub struct HandCheckup {
-    /// The one that runs.
+    /// The running check-up.
     pub run: Option<CheckupRun>,
-    /// The last one: of this run of the program, or the last that was kept.
+    /// The last check-up: of this run of the program, else the last stored one.
     pub last: Option<ShownCheckup>,
-    /// Why those that were kept cannot be read.
+    /// Reason why the stored check-ups cannot be read.
     pub unread: Option<String>,
     pub(crate) looking: Option<BackgroundJob<KeptCheckup>>,
-    /// What was kept was looked for.
+    /// True once stored check-ups have been requested.
     pub(crate) is_looked: bool,
 }
 
-/// A check-up that is over.
+/// A finished check-up.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShownCheckup {
     pub report: CheckupReport,
-    /// Its page, if it was written.
+    /// HTML report; `None` if it was not written.
     pub page: Option<PathBuf>,
 }
 
@@ -45,46 +44,45 @@ impl ShownCheckup {
     }
 }
 
-/// A check-up on its way, as the window sees it.
+/// A running check-up, as the window sees it.
 #[derive(Debug)]
 pub struct CheckupRun {
-    /// Where it stands.
+    /// Current progress.
     pub view: CheckupView,
-    /// Its arming.
     pub epoch: ArmEpoch,
-    /// When the step of now began.
+    /// Start of the current step.
     pub since: Moment,
     pub(crate) end: Option<oneshot::Sender<Abort>>,
     pub(crate) task: Running<CheckupView, io::Result<ConcludedCheckup>>,
 }
 
 impl CheckupRun {
-    /// About how long the rest of it takes, if nothing ends it.
+    /// Approximate remaining time if nothing ends the check-up early.
     pub fn left(&self, now: Moment) -> Duration {
         self.view.left.saturating_sub(now.since(self.since))
     }
 
-    /// Ends it early. The stop itself is the caller's, and the task sees to it.
+    /// Ends the check-up early. The caller stops the hand, and the task makes sure of it.
     pub(crate) fn end(&mut self, why: Abort) {
         if let Some(end) = self.end.take() {
-            // One that is over hears it no more.
+            // A finished task no longer listens.
             let _heard = end.send(why);
         }
     }
 }
 
 impl HandCheckup {
-    /// True while the kept ones are being read, and nothing is known of any.
+    /// True while the stored check-ups are being read.
     pub const fn is_reading(&self) -> bool {
         self.looking.is_some()
     }
 }
 
-/// What the user asks for about check-ups. The hand is empty, they say.
+/// User requests concerning check-ups. By sending one, the user confirms that the hand is empty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum CheckupAction {
-    /// Run one, in the arming that is in force. Needs arming.
+    /// Start a check-up in the current arming. Needs arming.
     Start(CheckupPlan),
-    /// Arm the hand, and run one as soon as that holds.
+    /// Arm the hand, and start a check-up once it is armed.
     ArmAndStart(CheckupPlan),
 }

@@ -1,4 +1,4 @@
-//! The check-up that runs on the hand, and the kept ones that are looked for.
+//! The check-up that runs on the hand, and reading stored ones.
 
 use crate::app::checkup::state::{CheckupRun, HandCheckup, ShownCheckup};
 use crate::app::ctx::Ctx;
@@ -11,16 +11,16 @@ use crate::checkup::free_file;
 use crate::checkup::subject::Light;
 use crate::checkup::{Checkup, CheckupPlan};
 use crate::hand::{ArmEpoch, Setpoints};
+use crate::motion::checkup::{CheckupFiles, ConcludedCheckup, EndedCheckup};
+use crate::motion::drive::{Armed, drive};
 use crate::store::calendar::{day, since_1970, stamp};
 use crate::store::{BackgroundJob, create_folder, on_thread};
-use crate::tasks::checkup::{CheckupFiles, ConcludedCheckup, EndedCheckup};
-use crate::tasks::drive::{Armed, drive};
 use crate::transport::Endpoint;
 use std::io;
 use std::path::PathBuf;
 use tokio::sync::oneshot;
 
-/// Where the files of check-ups of a hand are in the window.
+/// Paths of a hand's check-up files in the window.
 pub(crate) fn files(hand: &Endpoint, settings: &Settings, env: &Env) -> CheckupFiles {
     let checks = env.settings_path.as_ref();
     let checks = checks.map(|path| path.with_file_name("checks"));
@@ -45,7 +45,7 @@ pub(crate) fn files(hand: &Endpoint, settings: &Settings, env: &Env) -> CheckupF
 }
 
 impl CheckupRun {
-    /// Begins a check-up.
+    /// Starts a check-up.
     pub(crate) fn begin(
         hand: SeriesHand<'_>,
         plan: CheckupPlan,
@@ -96,14 +96,16 @@ impl CheckupRun {
     }
 }
 
-/// Nothing moves where a check-up could not be kept or its report not be written.
+/// Prepares the destination folders. The hand does not move if the check-up could not be stored or its report not
+/// written.
 fn prepare(files: &CheckupFiles) -> io::Result<()> {
     files.prepare()?;
     files.report.as_deref().map_or(Ok(()), create_folder)
 }
 
 impl HandCheckup {
-    /// Takes in what the one that runs did. Once it is over: its arming, and what to tell.
+    /// Applies the progress of the running check-up. Once it has ended, returns its arming and the notices for the
+    /// user.
     pub(crate) fn news(&mut self) -> Option<(ArmEpoch, Vec<NoticeKind>)> {
         let run = self.run.as_mut()?;
         let (steps, end) = run.task.news();
@@ -138,12 +140,12 @@ impl HandCheckup {
         }
     }
 
-    /// Reads the kept ones because somebody looks at them; once, and not while one runs.
+    /// Reads the stored check-ups when their view is shown; once, and not while one runs.
     pub(crate) fn look(&mut self, files: CheckupFiles, env: &Env) {
         if self.run.is_some() || std::mem::replace(&mut self.is_looked, true) {
             return;
         }
-        // Nothing is kept of the built-in hand.
+        // Nothing is stored for the built-in hand.
         if files.kept.is_none() {
             return;
         }
@@ -151,7 +153,7 @@ impl HandCheckup {
         self.looking = Some(BackgroundJob::start(&env.runtime, &env.wake, look));
     }
 
-    /// Takes in what was read.
+    /// Applies the result of the read.
     pub(crate) fn tick(&mut self) {
         match BackgroundJob::take_from(&mut self.looking) {
             None => {}

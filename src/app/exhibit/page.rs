@@ -1,4 +1,4 @@
-//! What the user does on the page of an exhibition, and what it tells.
+//! User actions on the exhibition page, and the events of its task.
 
 use crate::app::env::Env;
 use crate::app::env::running::Running;
@@ -10,19 +10,19 @@ use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
 use crate::exhibit::run::{ExhibitStage, ExhibitView, ExhibitWish};
 use crate::hand::Moment;
+use crate::motion::exhibit::{self, ExhibitStep};
 use crate::store::{Saver, calendar};
-use crate::tasks::exhibit::{self, ExhibitStep};
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::mpsc;
 
-/// Wishes that may wait: users cannot press faster than a task takes them.
+/// Capacity of the queue of visitors' requests: users cannot press faster than the task reads them.
 const WISHES_MAX: usize = 64;
-/// What staff see closes by itself after this: nobody leaves it open for visitors.
+/// The staff panel closes by itself after this time, so that it is not left open for visitors.
 const STAFF_DURATION: Duration = Duration::from_secs(30);
 
 impl ExhibitState {
-    /// Begins at a hand that is connected, or will be. Nothing moves before staff arm.
+    /// Starts an exhibition on a hand that is connected, or will be. Nothing moves before staff arm.
     pub(crate) fn begin(
         start: Exhibition,
         hand: &Hand,
@@ -44,7 +44,7 @@ impl ExhibitState {
             exhibit::exhibit(&link, task_start, wanted, |step| steps.tell(step)).await;
         });
         let wrong_path = env.settings_path.as_deref().map(wrong_pins_file::beside);
-        // One line, read before anybody can type.
+        // Reads one line synchronously: it must be known before a PIN can be typed.
         let earlier = wrong_path.as_deref().map(wrong_pins_file::load);
         let earlier = earlier.unwrap_or_default();
         let resumed = |pin| PinGate::resumed(pin, earlier, env.clock.now());
@@ -76,8 +76,8 @@ impl ExhibitState {
         })
     }
 
-    /// Takes in what went on, and closes what staff left open. True if a visitor has gone and the next one finds the page as the
-    /// first did.
+    /// Applies the task's steps, and closes a staff panel left open. Returns true when a visitor has left and the page must be
+    /// reset for the next one.
     pub(crate) fn tick(&mut self, hand: &mut Hand, now: Moment) -> bool {
         self.report.tick(hand, calendar::since_1970(), now);
         self.keep_wrong_pins(now);
@@ -101,20 +101,20 @@ impl ExhibitState {
         }
         let after = self.view.stage;
         let plays = |stage| matches!(stage, ExhibitStage::Visit { .. });
-        // Somebody who only looked, and changed the language, is gone as well.
+        // A visitor who only looked and changed the language has left as well.
         let is_alone = before != after && after == ExhibitStage::Attract;
         plays(before) && !plays(after) || is_alone
     }
 
-    /// Keeps wrong PINs over a restart.
+    /// Saves wrong PINs so that they outlast a restart.
     fn keep_wrong_pins(&mut self, now: Moment) {
         let Some(gate) = &self.gate else { return };
         let since_start = now.since(Moment::ZERO);
-        // What cannot be written now is tried at the next wrong PIN; the gate itself goes on counting.
+        // A failed write is repeated at the next wrong PIN; the gate itself keeps counting.
         let _kept = self.wrong_pins.tick(&gate.wrong_pins(now), since_start);
     }
 
-    /// Does what the user asked for. True if the exhibition is to end.
+    /// Handles a user action. Returns true if the exhibition must end.
     pub(crate) fn act(&mut self, action: ExhibitAction, now: Moment) -> bool {
         let is_staff = matches!(self.staff, StaffPanel::Open { .. });
         match action {
@@ -130,20 +130,20 @@ impl ExhibitState {
             ExhibitAction::Pin(typed) => self.pin(typed, now),
             ExhibitAction::CloseStaff if self.gate.is_some() => self.staff = StaffPanel::Closed,
             ExhibitAction::Leave => return true,
-            // Nobody chose a PIN yet, so there is nothing that one would keep from visitors.
+            // Without a PIN there is nothing to protect from visitors.
             ExhibitAction::CloseStaff => return true,
             ExhibitAction::Enter | ExhibitAction::EnterFile => {}
         }
         false
     }
 
-    /// Passes on what the user did.
+    /// Forwards a visitor's request to the task.
     pub(crate) fn wish(&mut self, wish: ExhibitWish) {
-        // What does not fit is one of very many touches within a moment; a stop goes to the hand by another way, too.
+        // A full queue drops one of very many touches; a stop also reaches the hand by another path.
         let _taken = self.wishes.try_send(wish);
     }
 
-    /// Asks for the PIN, or goes on asking.
+    /// Asks for the PIN, or keeps asking.
     pub(crate) fn ask(&mut self, now: Moment) {
         if matches!(self.staff, StaffPanel::Closed) {
             let locked = self.gate.as_ref().and_then(|gate| gate.locked_until(now));

@@ -1,4 +1,4 @@
-//! What an exhibition shows, as plain values, and what the user may do in it.
+//! State of an exhibition as plain values, and the user's actions.
 
 use crate::app::env::running::Running;
 use crate::app::exhibit::kept_report::KeptReport;
@@ -7,96 +7,95 @@ use crate::exhibit::pin::{Pin, PinAnswer, PinGate, WrongPins};
 use crate::exhibit::plan::ExhibitPlan;
 use crate::exhibit::run::{ExhibitView, ExhibitWish};
 use crate::hand::Moment;
+use crate::motion::exhibit::{ExhibitStep, PageDrawn};
 use crate::store::Saver;
-use crate::tasks::exhibit::{ExhibitStep, PageDrawn};
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
-/// An exhibition that is ready to be shown.
+/// An exhibition ready to be shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exhibition {
-    /// What may be played.
+    /// Pieces, limits and texts of the exhibition.
     pub plan: Arc<ExhibitPlan>,
-    /// What stands beside its title.
+    /// Logo next to the title.
     pub logo: Option<Logo>,
-    /// The program ends with it.
+    /// True if the program exits when the exhibition ends.
     pub ends_program: bool,
 }
 
-/// A picture: four bytes a pixel, row by row.
+/// A picture with four bytes per pixel, row by row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Logo {
-    /// Pixels a row, and rows.
+    /// Width and height in pixels.
     pub size: [usize; 2],
     /// Red, green, blue, opacity.
     pub rgba: Arc<[u8]>,
 }
 
-/// What staff see of the page.
+/// State of the staff panel.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StaffPanel {
-    /// Nothing: visitors play.
+    /// Closed: visitors play.
     Closed,
-    /// Nobody chose a PIN yet: they do so, typing it twice.
+    /// No PIN is set yet: staff choose one by typing it twice.
     Choose {
-        /// What was typed first.
+        /// First entry.
         first: Option<Pin>,
-        /// What was typed was no PIN, or not the same one.
+        /// True if the last entry was not a valid PIN, or differed from the first.
         refused: bool,
     },
-    /// The PIN is asked for, by this moment at most.
+    /// The PIN is requested.
     Ask {
-        /// What became of the last one.
+        /// Result of the last entry.
         answer: Option<PinAnswer>,
-        /// Then it closes.
+        /// Time at which the panel closes.
         until: Moment,
     },
-    /// The PIN was right: arm, disarm, leave, until this moment at most.
+    /// The PIN was correct: staff can arm, disarm and leave.
     Open {
-        /// Then it closes.
+        /// Time at which the panel closes.
         until: Moment,
     },
 }
 
-/// What the user does at an exhibition.
+/// User actions at an exhibition.
 #[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum ExhibitAction {
-    /// Staff, in the window: show the exhibition that is built in.
+    /// Staff, in the window: start the built-in exhibition.
     Enter,
-    /// Staff, in the window: show the one of a file that is asked for.
+    /// Staff, in the window: ask for a file and start its exhibition.
     EnterFile,
-    /// What visitors do; arming and disarming passes with the staff panel open only.
+    /// A visitor's request; arming and disarming are accepted only with the staff panel open.
     Wish(ExhibitWish),
     AskPin,
-    /// This was typed.
+    /// A PIN was entered.
     Pin(String),
-    /// Close what staff see.
+    /// Close the staff panel.
     CloseStaff,
-    /// Leave the exhibition. Passes with the staff panel open only.
+    /// Leave the exhibition. Accepted only with the staff panel open.
     Leave,
 }
 
-/// An exhibition that goes on.
+/// A running exhibition.
 #[derive(Debug)]
 pub struct ExhibitState {
-    /// What may be played.
+    /// Pieces, limits and texts of the exhibition.
     pub plan: Arc<ExhibitPlan>,
-    /// What stands beside its title.
+    /// Logo next to the title.
     pub logo: Option<Logo>,
-    /// What the visitors' page shows.
+    /// State of the visitors' page.
     pub view: ExhibitView,
-    /// What staff see.
     pub staff: StaffPanel,
-    /// What was counted today, and its file.
+    /// Today's counts and their file.
     pub report: KeptReport,
     pub(crate) gate: Option<PinGate>,
-    /// The file that keeps wrong PINs over a restart.
+    /// File in which wrong PINs outlast a restart.
     pub(crate) wrong_pins: Saver<WrongPins>,
     pub(crate) ends_program: bool,
-    /// The language that it begins with for each visitor.
+    /// Initial language for each visitor.
     pub(crate) language: Language,
     pub(crate) wishes: mpsc::Sender<ExhibitWish>,
     pub(crate) task: Running<ExhibitStep, ()>,
-    /// When it was drawn last.
+    /// Time of the last drawing.
     pub(crate) drawn: Arc<PageDrawn>,
 }

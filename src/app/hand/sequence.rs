@@ -3,11 +3,11 @@
 use crate::app::env::running::Running;
 use crate::hand::Setpoints;
 use crate::hand::grip::GripThresholds;
+use crate::motion::play::{PlayCommand, PlayStep};
+use crate::motion::program::Ended;
 use crate::poses::library::EntryId;
 use crate::poses::player::{PlayEnd, PlayPhase, PlayView};
 use crate::record::Abort;
-use crate::tasks::play::{PlayCommand, PlayStep};
-use crate::tasks::program::Ended;
 use tokio::sync::mpsc;
 
 /// A sequence, a reaction, or a pose whose way has several parts, that runs or ran last.

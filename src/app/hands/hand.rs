@@ -26,10 +26,10 @@ use crate::hand::{
 use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
 use crate::link::{LeaseRefusal, LinkStatus, RequestError};
+use crate::motion::drive::Armed;
+use crate::motion::play::{self, PlayCommand, PlayStart};
 use crate::poses::player::{PlayMode, PlayPlan, PlayView};
 use crate::record::{Abort, ArmRefusal, LinkState, Record};
-use crate::tasks::drive::Armed;
-use crate::tasks::play::{self, PlayCommand, PlayStart};
 use crate::transport::Endpoint;
 use crate::trials::TrialPlan;
 use std::time::Duration;

@@ -6,9 +6,9 @@ use crate::app::inputs::{FollowOutcome, FollowRun, HandInputs, InputSource};
 use crate::hand::Moment;
 use crate::inputs::Offer;
 use crate::link::{LinkHandle, LinkStopper, Owner};
+use crate::motion::follow::{FollowEnd, FollowStart, FollowTerms, follow};
+use crate::motion::program::Ended;
 use crate::record::{Abort, Disarmed};
-use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
-use crate::tasks::program::Ended;
 use tokio::sync::{mpsc, watch};
 
 /// A source that is there and fresh.

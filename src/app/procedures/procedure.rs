@@ -1,4 +1,4 @@
-//! What a card shows and what the user may decide on it. Plain values; asks nobody.
+//! Contents of a card and the user's decisions on it. Plain values; requests nothing.
 
 use crate::app::env::running::Running;
 use crate::hand::Moment;
@@ -15,40 +15,40 @@ use futures::future::BoxFuture;
 use std::path::PathBuf;
 use tokio::sync::{mpsc, oneshot};
 
-/// What the user decides on a card.
+/// User decisions on a card.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::VariantNames, strum::IntoStaticStr)]
 pub enum ProcedureAction {
-    /// Do it.
+    /// Start the procedure.
     Begin,
-    /// The hand is where it should be.
+    /// Keep the new address.
     Keep,
-    /// Take it back.
+    /// Revert the change.
     GoBack,
-    /// Put it into flash.
+    /// Save to flash.
     Save,
-    /// Leave it out of flash.
+    /// Do not save to flash.
     LeaveUnsaved,
-    /// The card was read.
+    /// Close the card.
     Close,
 }
 
-/// Where a card stands.
+/// Stage of a card.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ProcedureStage<S, E> {
-    /// The user is asked.
+    /// Waiting for the user to start.
     Asking,
-    /// It is under way, since then.
+    /// In progress: the current step and its start.
     Doing(S, Moment),
     Over(E),
 }
 
 impl<S, E> ProcedureStage<S, E> {
-    /// True while something is done for it.
+    /// True while the procedure is running.
     pub const fn is_doing(&self) -> bool {
         matches!(self, Self::Doing(..))
     }
 
-    /// Takes in what the task told; true once it is over. `told` is asked whether a step is shown.
+    /// Applies the steps of the task; returns true once it has ended. The callback returns true for steps to show.
     pub(crate) fn take_news(
         &mut self,
         run: &mut Option<Running<S, E>>,
@@ -70,7 +70,7 @@ impl<S, E> ProcedureStage<S, E> {
         true
     }
 
-    /// The result, once it is there.
+    /// The result, once available.
     pub const fn end(&self) -> Option<&E> {
         match self {
             Self::Over(end) => Some(end),
@@ -79,54 +79,51 @@ impl<S, E> ProcedureStage<S, E> {
     }
 }
 
-/// One card.
+/// An open card.
 #[derive(Debug)]
 pub enum Procedure {
-    /// A change of what the hand is found by.
+    /// Change of the hand's address.
     Place(PlaceProcedure),
-    /// A return to the factory's parameters.
+    /// Reset to factory parameters.
     Reset(ResetProcedure),
-    /// A calibration of the force sensors.
+    /// Calibration of the force sensors.
     Calibrate(CalibrateProcedure),
 }
 
-/// A change of what the hand is found by.
+/// Change of the hand's address.
 #[derive(Debug)]
 pub struct PlaceProcedure {
     pub change: PlaceChange,
-    /// Where it stands.
     pub stage: ProcedureStage<PlaceStep, Result<PlaceReport, TaskError>>,
     pub backup: Option<PathBuf>,
-    /// What a SAVE would make last besides: it writes all that the hand holds.
+    /// Dangers of a SAVE, which also saves the hand's other parameters.
     pub dangers: Vec<Danger>,
     pub(crate) run: Option<Running<PlaceStep, Result<PlaceReport, TaskError>>>,
     pub(crate) keeps: Option<oneshot::Sender<bool>>,
     pub(crate) saves: Option<oneshot::Sender<bool>>,
 }
 
-/// A return to the factory's parameters.
+/// Reset to factory parameters.
 #[derive(Debug)]
 pub struct ResetProcedure {
-    /// Where the hand is before and after.
+    /// Addresses of the hand before and after.
     pub places: PlacePair,
-    /// Where it stands.
     pub stage: ProcedureStage<ResetStep, Result<ResetReport, TaskError>>,
     pub(crate) run: Option<Running<ResetStep, Result<ResetReport, TaskError>>>,
 }
 
-/// A calibration of the force sensors.
+/// Calibration of the force sensors.
 #[derive(Debug)]
 pub struct CalibrateProcedure {
-    /// What must be so before.
+    /// Preconditions.
     pub checks: Checks,
-    /// The offsets before, once it began.
+    /// Offsets before the calibration; `None` until it has started.
     pub before: Option<Offsets>,
-    /// Where it stands.
     pub stage: ProcedureStage<CalibrateStep, CalibrateReport>,
     pub(crate) run: Option<Running<CalibrateStep, CalibrateReport>>,
 }
 
-/// The card of a hand, if one is open, and where its task wants the link.
+/// The open card of a hand, if any, and its task's requests for a link.
 #[derive(Debug, Default)]
 pub struct Procedures {
     pub card: Option<Procedure>,
@@ -134,7 +131,7 @@ pub struct Procedures {
 }
 
 impl Procedure {
-    /// A card closes where nothing is under way.
+    /// True unless a procedure is running.
     pub const fn may_close(&self) -> bool {
         !match self {
             Self::Place(card) => card.stage.is_doing(),
@@ -145,7 +142,7 @@ impl Procedure {
 }
 
 impl PlaceProcedure {
-    /// Where the hand is, as far as the card knows; `None` if nobody does.
+    /// Address at which the hand is, as far as the card knows; `None` if unknown.
     pub fn place(&self) -> Option<WhichPlace> {
         match &self.stage {
             ProcedureStage::Over(Ok(report)) => report.end.place(),
@@ -157,22 +154,20 @@ impl PlaceProcedure {
     }
 }
 
-/// Asks the program for the link at a place.
+/// Request to open a link at an address.
 #[derive(Debug)]
 pub(crate) struct GoRequest {
     pub(crate) place: Endpoint,
     pub(crate) opened: oneshot::Sender<LinkHandle>,
 }
 
-/// Asks the program to go there.
+/// Sends link requests to the program.
 pub(crate) struct Asking {
     pub(crate) requests: mpsc::Sender<GoRequest>,
     pub(crate) wake: Wake,
 }
 
 impl Reach for Asking {
-    type Link = LinkHandle;
-
     async fn reach(&mut self, place: &Endpoint) -> Option<LinkHandle> {
         let (opened, open) = oneshot::channel();
         let place = place.clone();
@@ -183,7 +178,7 @@ impl Reach for Asking {
     }
 }
 
-/// What the user decides on the card; a card that is gone decides nothing.
+/// The user's decision on the card; a closed card yields false.
 pub(crate) fn decided(answer: oneshot::Receiver<bool>) -> BoxFuture<'static, bool> {
     Box::pin(async { answer.await.unwrap_or(false) })
 }

@@ -11,8 +11,8 @@ use crate::app::settings::Settings;
 use crate::app::state::State;
 use crate::hand::{Moment, Setpoints};
 use crate::inputs::pad::file;
+use crate::motion::follow::{FollowStart, FollowTerms};
 use crate::record::{ArmRefusal, Disarmed};
-use crate::tasks::follow::{FollowStart, FollowTerms};
 use crate::transport::dds::DdsPlace;
 
 /// Does what the user asked for at the shown hand.

@@ -6,11 +6,11 @@ use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::state::State;
 use crate::hand::{Angle, PerDof, Target};
+use crate::motion::play::PlayCommand;
 use crate::poses::library::{EntryId, LibraryPose, PoseId, SequenceId};
 use crate::poses::player::PlayMode;
 use crate::poses::preview::Preview;
 use crate::poses::{Play, Preset};
-use crate::tasks::play::PlayCommand;
 
 /// Keeps the pose of the hand that is shown, by this name or the next free one.
 pub(super) fn capture(state: &mut State, name: &str) {

@@ -1,4 +1,5 @@
-//! The recording being made of a hand: begun when a link opens, ended when it closes or the user wants none.
+//! The recording being made of a hand: from the opening of the link to its closing, or until the user turns recording
+//! off.
 
 use crate::app::env::Env;
 use crate::app::files::settings_file;
@@ -8,6 +9,7 @@ use crate::app::settings::{Settings, Zoom};
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::history::History;
+use crate::link::entries;
 use crate::link::{LinkHandle, LinkObserver};
 use crate::params::file::ParamsFile;
 use crate::params::values::Params;
@@ -19,47 +21,45 @@ use crate::record::{Entry, Event, EventKind};
 use crate::store::BackgroundJob;
 use crate::store::calendar::{day, since_1970, stamp};
 use crate::tasks::read::rows;
-use crate::tasks::recording;
 use crate::transport::Endpoint;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Settings are compared this often: whoever types or drags changes them with each frame.
+/// Interval at which settings are compared: typing or dragging changes them every frame.
 const SETTINGS_INTERVAL: Duration = Duration::from_secs(1);
 
-/// A recording under way.
+/// A recording in progress.
 #[derive(Debug)]
 pub struct HandRecording {
     recorder: Recorder,
     input: RecorderInput,
-    /// The hand, in the spelling of endpoints.
+    /// Endpoint of the hand, as text.
     pub hand: String,
     pub began: Moment,
-    /// What the hand keeps, as it was recorded last.
+    /// Persistent parameters of the hand, as last recorded.
     params: Params,
-    /// The hand was asked for that.
+    /// True once the parameters have been requested from the hand.
     is_asked: bool,
     asking: Option<BackgroundJob<Params>>,
-    /// The settings that were recorded last, and when they were looked at.
+    /// Settings as last recorded, and the time of the last comparison.
     settings: Option<(Settings, Moment)>,
-    /// How it goes, as of this frame.
+    /// Recorder status as of this frame.
     pub status: RecorderStatus,
 }
 
-/// What is recorded, and where it goes.
+/// Subject and destination of a recording.
 #[derive(Debug)]
 pub(crate) struct RecordingTarget<'a> {
-    /// The folder of recordings.
+    /// Recordings folder.
     pub(crate) folder: PathBuf,
-    /// The hand.
     pub(crate) endpoint: &'a Endpoint,
-    /// Its side, as the user says.
+    /// Side of the hand, as configured by the user.
     pub(crate) side: Side,
 }
 
 impl HandRecording {
-    /// Begins a recording of what is observed.
+    /// Starts recording what the observer receives.
     pub(crate) fn begin(
         target: &RecordingTarget<'_>,
         observed: LinkObserver,
@@ -78,7 +78,7 @@ impl HandRecording {
         };
         let recorder = Recorder::start(plan).ok()?;
         let input = recorder.input();
-        let pump = recording::record(observed, input.clone(), env.clock);
+        let pump = entries::record(observed, input.clone(), env.clock);
         env.runtime.spawn(pump);
         Some(Self {
             hand: target.endpoint.to_string(),
@@ -93,7 +93,7 @@ impl HandRecording {
         })
     }
 
-    /// Brings the status up to date, and takes in what the hand was asked for, and tells what happened to the file since.
+    /// Updates the status, applies the requested parameters, and publishes notices about the file.
     pub(crate) fn tick(&mut self, notices: &mut HandNotices<'_>, now: Moment) {
         let told = self.status.notices.len();
         let before = std::mem::replace(&mut self.status, self.recorder.status()).trouble;
@@ -115,12 +115,12 @@ impl HandRecording {
         }
     }
 
-    /// Ends the file and waits for that, at most a few seconds.
+    /// Closes the file, waiting at most a few seconds.
     pub(crate) fn end(self) {
         let _ended = self.recorder.end();
     }
 
-    /// Reads what the hand keeps, for the file alone: what the views show of it, and when, stays with those who ask for that. Once.
+    /// Reads the hand's persistent parameters once, for the file only: the views request and display their own.
     pub(crate) fn ask_params(&mut self, link: &LinkHandle, env: &Env) {
         if std::mem::replace(&mut self.is_asked, true) || !self.params.is_empty() {
             return;
@@ -130,12 +130,12 @@ impl HandRecording {
         self.asking = Some(BackgroundJob::start(&env.runtime, &env.wake, read));
     }
 
-    /// True once the hand was asked for what it keeps.
+    /// True once the parameters have been requested from the hand.
     pub const fn is_asked(&self) -> bool {
         self.is_asked
     }
 
-    /// Adds what the hand keeps, if that is not what was recorded last.
+    /// Records the hand's persistent parameters if they differ from those last recorded.
     pub(crate) fn params(&mut self, live: &Params, now: Moment) {
         if *live == self.params || live.is_empty() {
             return;
@@ -151,7 +151,7 @@ impl HandRecording {
         self.event(now, EventKind::Parameters, file.to_toml());
     }
 
-    /// Adds the settings of the program, if they are not what was recorded last. Where the window stands is nothing of a hand's.
+    /// Records the program's settings if they differ from those last recorded. The window layout and zoom are left out.
     pub(crate) fn settings(&mut self, settings: &Settings, now: Moment) {
         let looked = self.settings.as_ref().map(|(_, at)| *at);
         if looked.is_some_and(|at| now.since(at) < SETTINGS_INTERVAL) {
@@ -171,7 +171,7 @@ impl HandRecording {
         }
     }
 
-    /// Adds something that happened beside the link.
+    /// Records an event that did not come from the link.
     pub(crate) fn event(&self, at: Moment, kind: EventKind, words: String) {
         self.input.push(Entry::Event(Event { at, kind, words }));
     }
@@ -213,7 +213,7 @@ mod tests {
             wake: Arc::new(|| ()),
         };
         let (link, _records) = open(config, &Handle::current());
-        let pump = tokio::spawn(recording::record(link.observe(), input.clone(), clock));
+        let pump = tokio::spawn(entries::record(link.observe(), input.clone(), clock));
         sleep(Duration::from_secs(20)).await;
         pump.abort();
         let _aborted = pump.await;
@@ -228,24 +228,24 @@ mod tests {
     }
 }
 
-/// A recording that is drawn over another.
+/// A recording overlaid on the replayed one.
 #[derive(Debug)]
 pub struct BesideRecording {
-    /// Its name, or that of its file.
+    /// User-given name, else the file name.
     pub title: String,
     pub first: Moment,
-    /// What happened.
+    /// Events in the recording.
     pub marks: Vec<FileMark>,
-    /// What was measured.
+    /// Measurements in the recording.
     pub history: History,
-    /// The moment of the replayed recording at which both are aligned.
+    /// Moment of the replayed recording that is aligned with `other`.
     pub own: Moment,
-    /// The moment of this recording.
+    /// Moment of this recording that is aligned with `own`.
     pub other: Moment,
 }
 
 impl BesideRecording {
-    /// Seconds from the times of the replayed recording to those of this one.
+    /// Seconds to add to times of the replayed recording to get times of this one.
     pub fn offset_s(&self) -> f64 {
         self.other.secs() - self.own.secs()
     }

@@ -1,4 +1,4 @@
-//! What the user asks about grasp trials, and the series that runs on the hand.
+//! Handling of trial requests, and the series that runs on the hand.
 
 use crate::app::ctx::Ctx;
 use crate::app::env::running::Running;
@@ -12,10 +12,10 @@ use crate::app::trials::state::{
 use crate::hand::{ArmEpoch, Dof, HandSample, Moment};
 use crate::link::quirks::book;
 use crate::link::{Lease, LinkHandle};
+use crate::motion::drive::Armed;
+use crate::motion::series::{self, SeriesStep};
 use crate::record::Abort;
 use crate::store::calendar::{day, since_1970};
-use crate::tasks::drive::Armed;
-use crate::tasks::series::{self, SeriesStep};
 use crate::trials::overshoot_file::{MeasuredClose, closes_of};
 use crate::trials::plan_settings::to_settings;
 use crate::trials::search::{Finding, SettingsSearch};
@@ -27,19 +27,19 @@ use futures::{Stream, StreamExt as _, stream};
 use std::time::Duration;
 use tokio::sync::oneshot;
 
-/// Why a series cannot begin, besides its plan.
+/// Reason why a series cannot start, apart from its plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StartRefusal {
-    /// The user arms first.
+    /// The hand is not armed.
     NotArmed,
     /// A joint that would have to move is locked.
     Locked(Dof),
-    /// One runs already.
+    /// A series is already running.
     Runs,
 }
 
 impl TrialsState {
-    /// Carries out what needs neither a file nor the hand.
+    /// Handles actions that need neither a file nor the hand.
     pub(crate) fn act(&mut self, action: TrialAction, settings: &mut Settings) {
         match action {
             TrialAction::Plan(plan) => {
@@ -75,19 +75,20 @@ impl TrialsState {
         }
     }
 
-    /// Wants a session in its files; one that runs is kept at its end.
+    /// Queues a session for saving; a running one is saved when it ends.
     fn keep(&mut self, id: SessionId) {
         if self.running != Some(id) {
             self.to_keep.push_back(id);
         }
     }
 
-    /// The search whose trials go into this session.
+    /// The search that belongs to this session.
     fn search_of(&mut self, id: SessionId) -> Option<&mut Search> {
         self.search.as_mut().filter(|search| search.session == id)
     }
 
-    /// A series that was broken off with its link has ended there: no hand has it any more. What to tell of it.
+    /// Closes a series that was aborted with its link and is no longer run by any hand. Returns the notice for the
+    /// user.
     pub(crate) fn close_broken_off(
         &mut self,
         runs: impl Fn(SessionId) -> bool,
@@ -96,7 +97,7 @@ impl TrialsState {
         Some(self.close(session, Some(Abort::LinkLost)))
     }
 
-    /// The series that ran into this session is over; what to tell of it.
+    /// Closes the series of this session. Returns the notice for the user.
     fn close(&mut self, id: SessionId, aborted: Option<Abort>) -> NoticeKind {
         self.running = None;
         self.keep(id);
@@ -108,7 +109,7 @@ impl TrialsState {
     }
 }
 
-/// A hand that is armed for a series.
+/// A hand armed for a series.
 pub(crate) struct SeriesHand<'a> {
     pub(crate) link: LinkHandle,
     pub(crate) lease: Lease,
@@ -117,25 +118,25 @@ pub(crate) struct SeriesHand<'a> {
     pub(crate) connection: &'a Connection,
 }
 
-/// What a series did since it was looked at last.
+/// Changes of a series since the last poll.
 #[derive(Debug, Default)]
 pub(crate) struct SeriesNews {
-    /// Trials that began, in words.
+    /// Trials that started, with their descriptions.
     pub(crate) begun: Vec<(Moment, String)>,
-    /// What the trials measured that are over.
+    /// Measurements of the finished trials.
     pub(crate) measured: Vec<MeasuredClose>,
-    /// Set once it is over.
+    /// Set once the series has ended.
     pub(crate) end: Option<NoticeKind>,
 }
 
-/// Ends a program with what the window sends; never where the window sends nothing.
+/// Ends a program when the window sends a reason; stays pending if the sender is dropped.
 pub(crate) fn ends(ended: oneshot::Receiver<Abort>) -> impl Stream<Item = Abort> {
     let sent = stream::once(ended).filter_map(|sent| ready(sent.ok()));
     sent.chain(stream::pending())
 }
 
 impl SeriesRun {
-    /// Begins a series; `None` if it makes no sense.
+    /// Starts a series; `None` if the plan is invalid.
     pub(crate) fn begin(
         hand: SeriesHand<'_>,
         wanted: SeriesPlan,
@@ -201,7 +202,7 @@ impl SeriesRun {
         })
     }
 
-    /// Takes in what it did.
+    /// Applies the steps of the task and returns the changes.
     pub(crate) fn news(&mut self, trials: &mut TrialsState) -> SeriesNews {
         let mut news = SeriesNews::default();
         let Some(task) = &mut self.task else {
@@ -258,7 +259,7 @@ fn session_head(plan: TrialPlan, connection: &Connection) -> SessionHead {
     }
 }
 
-/// How a series ended: why early, if it did, and what a search came to.
+/// Result of a series: the reason for an early end, and the finding of a search.
 #[derive(Debug)]
 pub(crate) struct SeriesEnd {
     pub(crate) aborted: Option<Abort>,
@@ -268,35 +269,34 @@ pub(crate) struct SeriesEnd {
 /// A running series.
 #[derive(Debug)]
 pub struct SeriesRun {
-    /// Where it stands.
+    /// Current progress.
     pub view: SeriesView,
-    /// Its arming.
     pub epoch: ArmEpoch,
-    /// Where its trials go.
+    /// Session that receives the trials.
     pub session: SessionId,
     pub plan: TrialPlan,
-    /// When the trial of now began, or the wait for it.
+    /// Start of the current trial, or of the wait for it.
     pub since: Moment,
-    /// What times of the trial of now are counted from: the closing command, and its beginning before that.
+    /// Time origin of the current trial: the closing command, before that the start of the trial.
     pub zero: Moment,
-    /// About how long one trial takes with the rest after it.
+    /// Approximate duration of a trial including the rest after it.
     pub(crate) each: Duration,
     pub(crate) end: Option<oneshot::Sender<Abort>>,
     pub(crate) task: Option<Running<SeriesStep, SeriesEnd>>,
 }
 
 impl SeriesRun {
-    /// About how long the rest of it takes, if nothing ends it.
+    /// Approximate remaining time if nothing ends the series early.
     pub fn left(&self, now: Moment) -> Duration {
         let ahead = self.view.total.saturating_sub(self.view.number);
         let ahead = self.each * u32::try_from(ahead).unwrap_or(u32::MAX);
         ahead + self.each.saturating_sub(now.since(self.since))
     }
 
-    /// Ends it early. The stop itself is the caller's, and the task sees to it.
+    /// Ends the series early. The caller stops the hand, and the task makes sure of it.
     pub(crate) fn end(&mut self, why: Abort) {
         if let Some(end) = self.end.take() {
-            // One that is over hears it no more.
+            // A finished task no longer listens.
             let _heard = end.send(why);
         }
     }

@@ -13,12 +13,12 @@ use crate::checkup::{Checkup, CheckupPlan, expected};
 use crate::cli::out::{Out, end};
 use crate::cli::trial::drive::ArmedHand;
 use crate::link::ArmRequest;
+use crate::motion::checkup::{CheckupFiles, EndedCheckup};
 use crate::store::{self, on_thread};
-use crate::tasks::checkup::{CheckupFiles, EndedCheckup};
 use anyhow::{Context as _, bail};
 use std::path::Path;
 
-/// Runs the check-up. Fails if it ended early, or if something is to be done.
+/// Runs the check-up. Fails if it ended early, or if a figure requires action.
 pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
     let plan = CheckupPlan { press: args.press };
     if !args.arm {
@@ -89,7 +89,8 @@ fn files(args: &CheckArgs) -> anyhow::Result<CheckupFiles> {
     })
 }
 
-/// Nothing moves where a check-up could not be kept or its report not be written.
+/// Prepares the destination folders. The hand does not move if the check-up could not be stored or its report not
+/// written.
 fn prepare(files: &CheckupFiles) -> anyhow::Result<()> {
     files.earlier().with_context(|| {
         let name = name(files.kept.as_deref());

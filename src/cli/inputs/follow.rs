@@ -1,4 +1,4 @@
-//! `follow`: a hand follows what another program sends, as lines of JSON or over DDS, a gamepad or another hand, once the user lets it.
+//! `follow`: a hand follows another program (JSON lines or DDS), a gamepad or another hand, once the user permits it.
 
 use crate::cli::inputs::consent::{self, ConsentFrom};
 use crate::cli::inputs::source::{Allowed, FollowSource, SourceArgs};
@@ -9,10 +9,10 @@ use crate::cli::session;
 use crate::hand::{DriveHeat, Force, HandSample, Moment, PerDof, Speed};
 use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates, Records};
+use crate::motion::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
+use crate::motion::program::Ended;
 use crate::record::{Abort, Disarmed, Record};
 use crate::shell::interrupt::Interrupt;
-use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
-use crate::tasks::program::Ended;
 use crate::transport::Endpoint;
 use anyhow::{anyhow, bail};
 use serde_json::json;
@@ -23,11 +23,11 @@ use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, sleep, timeout};
 
-/// How often it is told how it goes.
+/// Interval of progress reports.
 const REPORT_INTERVAL: Duration = Duration::from_secs(1);
-/// How often it is looked whether somebody sends.
+/// Polling interval for senders.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
-/// How long the hand may take to say where it is.
+/// Maximum time until the hand reports its position.
 const READY_TIMEOUT: Duration = Duration::from_secs(5);
 
 #[derive(Debug, clap::Args)]
@@ -149,7 +149,8 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
     SideRecording::and(done, recording.end().await)
 }
 
-/// How a command ends that could move the hand. It has stopped it, if that could be done.
+/// Combines the results at the end of a command that could move the hand. The hand has been stopped if that was
+/// possible.
 fn leave(ended: anyhow::Result<()>, stopped: anyhow::Result<()>) -> anyhow::Result<()> {
     let Err(why) = ended else { return stopped };
     if why.is::<ReaderGone>() {
@@ -166,7 +167,7 @@ fn leave(ended: anyhow::Result<()>, stopped: anyhow::Result<()>) -> anyhow::Resu
     Err(why)
 }
 
-/// Waits until the hand says where it is.
+/// Waits until the hand has reported its angles and faults.
 async fn known(
     link: &LinkHandle,
     records: &mut Records,
@@ -197,7 +198,7 @@ struct FollowCommand<'a> {
 }
 
 impl FollowCommand<'_> {
-    /// Follows whoever sends, each time that the user lets it.
+    /// Follows senders, each time with the user's permission.
     async fn go_on(&mut self) -> anyhow::Result<Infallible> {
         self.teller.out.line(&self.source.ready())?;
         self.teller.out.flush()?;
@@ -213,7 +214,7 @@ impl FollowCommand<'_> {
         }
     }
 
-    /// Follows until that ends; what keeps it from being told ends it as well.
+    /// Follows until that ends; a failed progress report ends it as well.
     async fn follow(&mut self, owner: Owner) -> anyhow::Result<Ended<FollowEnd>> {
         let offers = self.source.follow();
         let start = FollowStart {
@@ -227,7 +228,7 @@ impl FollowCommand<'_> {
         let (untold, mut failed) = mpsc::channel(1);
         let tell = |view| {
             if let Err(error) = teller.tell(source, Some(view), clock.now()) {
-                // One is enough.
+                // One error is enough.
                 let _again = untold.try_send(error);
             }
         };
@@ -238,7 +239,7 @@ impl FollowCommand<'_> {
         }
     }
 
-    /// Asks whether the hand may be moved again, and waits for the answer.
+    /// Asks the user for permission to move the hand again, and waits for the answer.
     async fn ask(&mut self, why: &str) -> anyhow::Result<()> {
         let earlier = consent::forget_earlier(self.args.consent);
         let earlier = self.telling_meanwhile(earlier).await?;
@@ -254,7 +255,7 @@ impl FollowCommand<'_> {
         given.map_err(|nobody| anyhow!("{why}, and {nobody}"))
     }
 
-    /// Goes on telling how it stands while something is waited for.
+    /// Continues progress reports while waiting.
     async fn telling_meanwhile<T>(&mut self, wait: impl Future<Output = T>) -> anyhow::Result<T> {
         let mut wait = pin!(wait);
         loop {
@@ -265,7 +266,7 @@ impl FollowCommand<'_> {
         }
     }
 
-    /// Waits until there is somebody to follow; for ever if the hand is not to move.
+    /// Waits for a sender to follow; forever if the hand must not move.
     async fn sender(&mut self) -> anyhow::Result<(Owner, String)> {
         loop {
             self.look()?;
@@ -277,7 +278,7 @@ impl FollowCommand<'_> {
         }
     }
 
-    /// Takes in what was read while nothing is followed, and tells how it stands.
+    /// Applies readings while nothing is followed, and reports the progress.
     fn look(&mut self) -> anyhow::Result<()> {
         while let Some(record) = self.records.try_next() {
             if let Record::Reading { sample, .. } = record {
@@ -289,7 +290,7 @@ impl FollowCommand<'_> {
     }
 }
 
-/// Why nothing is followed any longer, and what that did to the hand.
+/// Reason why following ended, and its effect on the hand.
 fn ended(end: Ended<FollowEnd>, sender: &str) -> String {
     let why = match end {
         Ok(FollowEnd::Silent | FollowEnd::Gone) => format!("{sender} fell silent"),
@@ -316,15 +317,15 @@ fn ended(end: Ended<FollowEnd>, sender: &str) -> String {
     format!("{why}: the hand was stopped")
 }
 
-/// Prints how it goes: at each change, and each second.
+/// Prints the progress: at each change, and every second.
 struct ProgressPrinter<'a> {
     out: &'a mut Out,
     json: bool,
-    /// What the user is asked now: why the hand does not move.
+    /// Question that awaits the user's answer: the reason why the hand does not move.
     question: Option<String>,
     /// The warmest drive, if one is warm.
     heat: Option<DriveHeat>,
-    /// Odd stops that were reported.
+    /// Number of irregular stops reported.
     odd_stops: u64,
     told: Option<((Option<FollowPhase>, bool), Moment)>,
 }

@@ -1,4 +1,4 @@
-//! How a command about parameters reaches the hand: one link at a time, and where it may be next.
+//! Connection to the hand for parameter commands: one link at a time, at each possible address.
 
 use crate::app::files::settings_file;
 use crate::cli::session::{self, ANSWER_TIMEOUT};
@@ -14,13 +14,13 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::sleep;
 
-/// Often enough to see whether the hand moves.
+/// Rate that suffices to detect motion of the hand.
 const ONLY_THE_STATE: PollRates = PollRates {
     state_hz: 20.0,
     tactile_hz: 0.0,
     settings_hz: 0.0,
 };
-/// Between giving up a port and taking it again.
+/// Pause between closing a port and reopening it.
 const PORT_RESTS: Duration = Duration::from_millis(300);
 
 /// Opens the link and waits for the hand. Must be called within a tokio runtime.
@@ -28,15 +28,13 @@ pub(crate) async fn open(hand: &Endpoint) -> anyhow::Result<LinkHandle> {
     session::reach(hand, ONLY_THE_STATE).await
 }
 
-/// Opens one link after the other, where the hand may be.
+/// Opens one link after another at the possible addresses of the hand.
 #[derive(Default)]
 pub(crate) struct LinkOpener {
     has_been_open: bool,
 }
 
 impl Reach for LinkOpener {
-    type Link = LinkHandle;
-
     async fn reach(&mut self, place: &Endpoint) -> Option<LinkHandle> {
         if std::mem::replace(&mut self.has_been_open, true) {
             sleep(PORT_RESTS).await;
@@ -46,7 +44,7 @@ impl Reach for LinkOpener {
     }
 }
 
-/// Who said --yes keeps what was asked for; SAVE is a command of its own.
+/// Decisions under --yes: the change is kept, and not saved, because SAVE is a separate command.
 pub(crate) fn said_yes() -> Decisions {
     Decisions {
         keeps: Box::pin(ready(true)),
@@ -54,7 +52,7 @@ pub(crate) fn said_yes() -> Decisions {
     }
 }
 
-/// What trials measured of a hand, by which its warnings go. Where that cannot be read they go by another hand.
+/// Measured overshoot of a hand, used by its warnings. If it cannot be read, the warnings use data of another hand.
 pub(crate) fn overshoot(hand: &Endpoint) -> Arc<OvershootMap> {
     let file =
         settings_file::default_path().and_then(|settings| overshoot_file::file_of(&settings, hand));

@@ -1,14 +1,13 @@
-//! A recording beside what another command does: the same file as `record` makes. What goes wrong with it is told, and holds nothing
-//! up.
+//! A recording made alongside another command, in the same format as `record`. Its errors are reported and do not delay the command.
 
 use crate::cli::out::file::nothing_at;
 use crate::cli::out::say;
 use crate::cli::recordings::record::{FileTold, tell_parameters};
 use crate::hand::kinematics::Side;
+use crate::link::entries;
 use crate::link::{Clock, LinkHandle};
 use crate::record::file::{Opening, PART_LENGTH, Recorder, RecordingPlan, SystemDisk};
 use crate::store::calendar;
-use crate::tasks::recording;
 use crate::transport::Endpoint;
 use anyhow::{Context as _, bail};
 use std::path::Path;
@@ -17,23 +16,23 @@ use std::time::Duration;
 use tokio::task::{JoinHandle, spawn_blocking};
 use tokio::time::{interval, timeout};
 
-/// How often it is looked whether the disk is well.
+/// Polling interval of the recorder status.
 const POLL_INTERVAL: Duration = Duration::from_millis(200);
-/// A link that is closed ends in less.
+/// Maximum time until a closed link has ended.
 const LINK_END_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// A recording that goes on by itself, if one was asked for.
+/// A recording in the background, if requested.
 pub(crate) struct SideRecording(Option<Running>);
 
 struct Running {
     recorder: Arc<Recorder>,
     pump: JoinHandle<()>,
-    /// Tells what the hand keeps, and then how the disk is.
+    /// Records the hand's persistent parameters, then reports the recorder status.
     beside: JoinHandle<()>,
 }
 
 impl SideRecording {
-    /// Records what happens at this link from now on, into a file that is not there yet. Must be called within a tokio runtime.
+    /// Starts recording the link into a new file. Must be called within a tokio runtime.
     pub(crate) fn begin(
         path: Option<&Path>,
         link: &LinkHandle,
@@ -56,7 +55,7 @@ impl SideRecording {
         say(&format!("recording {hand} to {}", path.display()));
         let recorder = Arc::new(recorder);
         let observed = link.observe();
-        let pump = tokio::spawn(recording::record(observed, recorder.input(), clock));
+        let pump = tokio::spawn(entries::record(observed, recorder.input(), clock));
         let beside = watch(Arc::clone(&recorder), link.clone(), hand.clone(), clock);
         Ok(Self(Some(Running {
             recorder,
@@ -65,7 +64,7 @@ impl SideRecording {
         })))
     }
 
-    /// Ends the file here, though the link goes on.
+    /// Closes the file while the link stays open.
     pub(crate) async fn end_here(self) -> anyhow::Result<()> {
         if let Some(running) = &self.0 {
             running.pump.abort();
@@ -73,17 +72,18 @@ impl SideRecording {
         self.end().await
     }
 
-    /// Ends the file. Fails if it could not be written. The link must be closed, or it goes on being recorded.
+    /// Closes the file. Fails if it could not be written. The link must be closed first, otherwise recording continues
+    /// until a timeout.
     pub(crate) async fn end(self) -> anyhow::Result<()> {
         let Some(running) = self.0 else { return Ok(()) };
         running.beside.abort();
-        // It keeps the link open.
+        // The task keeps the link open.
         let _aborted = running.beside.await;
         let _ended = timeout(LINK_END_TIMEOUT, running.pump).await;
         let Some(recorder) = Arc::into_inner(running.recorder) else {
             bail!("the recording was not ended: it is still written to");
         };
-        // A slow disk must not hold up the hand. It ends early only with the program.
+        // A slow disk must not delay the hand. The task fails only at program exit.
         let status = spawn_blocking(move || recorder.end()).await;
         let status = status.context("the recording was not ended")?;
         if let Some(trouble) = status.trouble {
@@ -97,7 +97,7 @@ impl SideRecording {
         Ok(())
     }
 
-    /// How the command beside it ends: a recording that failed is a failure, whatever else was.
+    /// Combines both results: a failed recording is a failure, whatever the command returns.
     pub(crate) fn and(
         done: anyhow::Result<()>,
         recorded: anyhow::Result<()>,
@@ -112,7 +112,7 @@ impl SideRecording {
     }
 }
 
-/// Asks once what the hand keeps, and then says what becomes of the file.
+/// Records the hand's persistent parameters once, then reports changes of the file's status.
 async fn watch(recorder: Arc<Recorder>, link: LinkHandle, hand: Endpoint, clock: Clock) {
     tell_parameters(&link, &hand, &recorder.input(), clock).await;
     drop(link);

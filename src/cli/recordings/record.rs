@@ -1,4 +1,4 @@
-//! `record`: everything that a hand reports, into a recording file, until the time is up or the user ends it. Writes nothing to the
+//! `record`: records everything that a hand reports into a file, until the time is up or the user ends it. Writes nothing to the
 //! hand.
 
 use crate::app::env::day_folder;
@@ -8,6 +8,7 @@ use crate::cli::parse::seconds;
 use crate::cli::recordings::recording_file::add_files;
 use crate::cli::session;
 use crate::hand::kinematics::Side;
+use crate::link::entries;
 use crate::link::{Clock, LinkHandle, PollRates};
 use crate::params::file::ParamsFile;
 use crate::record::file::recorder::RecorderInput;
@@ -17,7 +18,7 @@ use crate::record::file::{
 use crate::record::{Entry, Event, EventKind};
 use crate::shell::interrupt::Interrupt;
 use crate::store::calendar;
-use crate::tasks::{read, recording};
+use crate::tasks::read;
 use crate::transport::Endpoint;
 use anyhow::{Context as _, anyhow, bail};
 use serde_json::{Value, json};
@@ -27,13 +28,13 @@ use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::{sleep, timeout};
 
-/// How often it is looked whether the disk and the hand are well.
+/// Polling interval of the recorder and the link.
 const POLL_INTERVAL: Duration = Duration::from_millis(200);
-/// A hand answers what it keeps in less; after this the recording does without.
+/// Maximum time to read the persistent parameters; after it the recording omits them.
 const PARAMETERS_TIMEOUT: Duration = Duration::from_secs(10);
-/// The first bytes are on the disk long before.
+/// Maximum time until the first bytes are on the disk.
 const FILE_TIMEOUT: Duration = Duration::from_secs(3);
-/// A link that is closed ends in less.
+/// Maximum time until a closed link has ended.
 const LINK_END_TIMEOUT: Duration = Duration::from_secs(2);
 
 #[derive(Debug, clap::Args)]
@@ -79,7 +80,7 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
     })
     .context("cannot start the recorder")?;
     let input = recorder.input();
-    let pump = tokio::spawn(recording::record(observed, input.clone(), clock));
+    let pump = tokio::spawn(entries::record(observed, input.clone(), clock));
     let length = async {
         match args.length {
             Some(length) => sleep(length).await,
@@ -113,7 +114,7 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
     finish(out, &path, &recorder.end(), done)
 }
 
-/// The file, which must not be there.
+/// Path of the new file.
 fn path(args: &RecordArgs, opening: &Opening) -> anyhow::Result<PathBuf> {
     if let Some(path) = &args.out {
         nothing_at(path, "--out")?;
@@ -153,7 +154,7 @@ fn cannot_write(path: &Path, trouble: &str) -> anyhow::Error {
     )
 }
 
-/// Records what the hand keeps, if it tells.
+/// Records the hand's persistent parameters, if they can be read.
 pub(crate) async fn tell_parameters(
     link: &LinkHandle,
     hand: &Endpoint,
@@ -178,7 +179,7 @@ pub(crate) async fn tell_parameters(
     }));
 }
 
-/// Says once each when the disk or the hand fails, and when they are well again. Never ends by itself.
+/// Reports failures of the disk or the hand, and their recovery, once each. Never ends by itself.
 async fn watch(recorder: &Recorder, link: &LinkHandle, hand: &Endpoint) -> anyhow::Result<()> {
     let (mut told, mut lost) = (FileTold::default(), None);
     loop {
@@ -196,7 +197,7 @@ async fn watch(recorder: &Recorder, link: &LinkHandle, hand: &Endpoint) -> anyho
     }
 }
 
-/// What was said of the file that is being written.
+/// The reported status of the file being written.
 #[derive(Default)]
 pub(crate) struct FileTold {
     trouble: Option<String>,
@@ -204,7 +205,7 @@ pub(crate) struct FileTold {
 }
 
 impl FileTold {
-    /// Says what is new: that it was moved or removed, that the disk fails, and that it is well again.
+    /// Reports changes: the file was moved or removed, writing fails, or works again.
     pub(crate) fn tell(&mut self, recorder: &Recorder) {
         let RecorderStatus {
             trouble, notices, ..
@@ -226,7 +227,7 @@ impl FileTold {
     }
 }
 
-/// Reads the file back and says what is in it, also where the recording failed.
+/// Reads the file back and reports its contents, even if the recording failed.
 fn finish(
     out: &mut Out,
     asked: &Path,
@@ -245,7 +246,7 @@ fn finish(
     let file = RecordingFile::open(path)
         .map_err(|error| anyhow!("cannot read {} back: {error}", path.display()));
     let object = statistics(path, file.as_ref().ok(), status);
-    // What it failed of says more than that the file cannot be read, or is empty.
+    // The cause of the failure is more informative than an unreadable or empty file.
     let failed = done.and(written).and(file.and_then(|file| {
         if file.overview().counts.states > 0 {
             return Ok(());
@@ -259,7 +260,7 @@ fn finish(
     failed.and(told)
 }
 
-/// What is in the file; `null` where it cannot be read.
+/// Statistics of the file; `null` where it cannot be read.
 fn statistics(path: &Path, file: Option<&RecordingFile>, status: &RecorderStatus) -> Value {
     let counts = file.map(|file| file.overview().counts);
     let length = file.map(|file| file.last().since(file.first()).as_secs_f64());

@@ -1,5 +1,4 @@
-//! A series on a real link: the user's word to arm, Ctrl-C as a stop, and the trials as they end. Decides nothing about
-//! trials.
+//! A series on a real link: arming by the user, Ctrl-C as a stop, and the results. Contains no trial logic.
 
 use crate::cli::out::{Out, say};
 use crate::cli::session;
@@ -9,12 +8,12 @@ use crate::cli::trial::results::{ResultsWanted, TrialResults};
 use crate::hand::{HandSample, Setpoints};
 use crate::link::Stop;
 use crate::link::{ArmRequest, Clock, Lease, LinkHandle, Owner, Records};
+use crate::motion::drive::{self, Armed, Driven, stop_words};
+use crate::motion::program::Program;
+use crate::motion::series;
 use crate::record::Abort;
 use crate::record::Record;
 use crate::shell::interrupt::Interrupt;
-use crate::tasks::drive::{self, Armed, Driven, stop_words};
-use crate::tasks::program::Program;
-use crate::tasks::series;
 use crate::transport::Endpoint;
 use crate::trials::{TrialPlan, TrialSeries};
 use anyhow::bail;
@@ -22,9 +21,9 @@ use futures::{Stream, StreamExt as _, stream};
 use std::time::Duration;
 use tokio::time::{Instant, sleep, timeout};
 
-/// How often the time is checked while nothing is read.
+/// Interval of time checks while nothing is read.
 const TICK: Duration = Duration::from_millis(5);
-/// How long the hand may take to report its state, and to acknowledge its limits.
+/// Maximum time for the hand to report its state, and to acknowledge its limits.
 const READY_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Runs the plan on the hand.
@@ -86,7 +85,7 @@ impl ArmedHand {
         })
     }
 
-    /// Where the trials go. The folder is made only now: nothing is left behind by a hand that is not there.
+    /// Destination of the trials. The folder is created only now: a missing hand leaves nothing behind.
     pub(crate) async fn results<'a>(
         &self,
         out: &'a mut Out,
@@ -116,8 +115,8 @@ impl ArmedHand {
         driven
     }
 
-    /// Runs a program to its end, says what the user must know of the stop, and waits until the hand is not armed any
-    /// more. `report` as of [`drive`](drive::drive).
+    /// Runs a program to its end, reports an unconfirmed stop, and waits until the hand is disarmed. `report` is as for
+    /// [`drive`](drive::drive).
     pub(crate) async fn run<P: Program<Input = Abort>>(
         &mut self,
         program: P,
@@ -129,7 +128,7 @@ impl ArmedHand {
         driven
     }
 
-    /// Says what the user must know of the stop, and waits until the hand is not armed any more.
+    /// Reports an unconfirmed stop, and waits until the hand is disarmed.
     pub(crate) async fn let_go(&self, stop: Option<Stop>) {
         if stop == Some(Stop::NotConfirmed) {
             say(session::NOT_CONFIRMED);
@@ -156,7 +155,7 @@ pub(crate) fn by_user(interrupt: &mut Interrupt) -> impl Stream<Item = Abort> {
     once.chain(stream::pending())
 }
 
-/// Waits until the hand tells where it is, and arms it as the user asked for.
+/// Waits until the hand has reported its position, and arms it as the user requested.
 async fn make_ready(
     link: &LinkHandle,
     records: &mut Records,
@@ -177,7 +176,7 @@ async fn make_ready(
     }
     let lease = link.grant(Owner::Task);
     if let Err(why) = link.arm(lease, limits)?.await {
-        // A lost link or a stop says more than that the arming was dropped.
+        // A lost link or a stop is more informative than a dropped arming.
         link.check(lease)?;
         bail!("the hand cannot be armed: {why}");
     }
@@ -189,7 +188,7 @@ async fn make_ready(
     Ok((lease, seen))
 }
 
-/// Takes the next record, or lets a moment pass.
+/// Receives the next record, or waits for a tick.
 async fn take_news(records: &mut Records, seen: &mut HandSample) -> anyhow::Result<()> {
     match timeout(TICK, records.next()).await {
         Ok(Some(Record::Reading { sample, .. })) => *seen = *sample,

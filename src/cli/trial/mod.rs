@@ -9,10 +9,10 @@ pub(crate) mod results;
 pub(crate) use args::TrialArgs;
 
 use crate::cli::out::{Out, WrongUsage};
-use crate::tasks::drive::stop_words;
+use crate::motion::drive::stop_words;
 use anyhow::bail;
 
-/// Runs the series. Fails if it ended early, or if no setting is what was wanted.
+/// Runs the series. Fails if it ended early, or if no setting meets the criterion.
 pub(crate) async fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
     args::check_joints(&args.joint, &args.pose)?;
     let plan = args.plan();

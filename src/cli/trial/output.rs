@@ -2,14 +2,14 @@
 
 use crate::cli::trial::args::TrialArgs;
 use crate::hand::Dof;
-use crate::tasks::drive::EndReport;
+use crate::motion::drive::EndReport;
 use crate::trials::best::{MetricSpread, Score, best, scores};
 use crate::trials::columns::COLUMNS;
 use crate::trials::measure::unseen::PeakDoubt;
 use crate::trials::{Criterion, JointMetrics, TrialPlan, TrialSetting, TrialSummary};
 use serde_json::{Value, json};
 
-/// A series that is over, and what its settings came to.
+/// A finished series, and the scores of its settings.
 pub(crate) struct Outcome {
     trials: Vec<TrialSummary>,
     pub(crate) report: EndReport,
@@ -19,7 +19,7 @@ pub(crate) struct Outcome {
 }
 
 impl Outcome {
-    /// Scores the settings that were tried, and finds the best if a criterion asks for it.
+    /// Scores the settings that were tried, and finds the best one if there is a criterion.
     pub(crate) fn of(
         trials: Vec<TrialSummary>,
         report: EndReport,
@@ -36,12 +36,12 @@ impl Outcome {
         }
     }
 
-    /// Why it ended early, in words.
+    /// Text about an early end.
     pub(crate) fn aborted_words(&self) -> Option<String> {
         self.report.aborted.map(|why| format!("ended early: {why}"))
     }
 
-    /// Why nothing was measured, if there is no trial of which anything is known.
+    /// Reason why nothing was measured, if no trial has any result.
     pub(crate) fn nothing_words(&self) -> Option<String> {
         let joints = self.trials.iter().flat_map(|trial| &trial.joints);
         let empty = joints.map(|joint| Some((joint.dof, joint.dead_drive, joint.why_empty()?)));
@@ -84,7 +84,7 @@ impl Outcome {
         }})
     }
 
-    /// The same for people: the settings, where there were several trials, and the best.
+    /// The same as text: the scores if there were several trials, and the best setting.
     pub(crate) fn lines(&self) -> Vec<String> {
         let spread = |spread: Option<MetricSpread>| match spread {
             None => "-".to_owned(),
@@ -109,23 +109,23 @@ impl Outcome {
     }
 }
 
-/// One trial: `{"trial": {…}}`. What is not known is null.
+/// One trial: `{"trial": {…}}`. Unknown values are null.
 pub(crate) fn trial_json(trial: &TrialSummary) -> Value {
     let mut line = json!(trial);
     if let Some(line) = line.as_object_mut() {
-        // In a file each joint is a table `joint` of its own.
+        // In a file each joint is a separate table `joint`.
         let joints = line.remove("joint").unwrap_or_else(|| json!([]));
         line.insert("joints".into(), joints);
     }
     json!({"trial": line})
 }
 
-/// The joints that close, in words.
+/// Names of the joints that close.
 pub(crate) fn joints(plan: &TrialPlan) -> String {
     plan.joints().map(Dof::name).collect::<Vec<_>>().join(", ")
 }
 
-/// One line for each joint.
+/// One line per joint.
 pub(crate) fn trial_lines(trial: &TrialSummary, of: usize) -> Vec<String> {
     let head = format!("trial {} of {of}, {}:", trial.number, trial.setting);
     if let Some(why) = &trial.aborted {
@@ -136,7 +136,7 @@ pub(crate) fn trial_lines(trial: &TrialSummary, of: usize) -> Vec<String> {
     joints.chain(disturbed(trial)).collect()
 }
 
-/// What made a trial count for nothing, or kept this program from running in it.
+/// Reason why a trial does not count, or why this program stalled during it.
 fn disturbed(trial: &TrialSummary) -> Option<String> {
     let busy = trial.stall_s.map(|stall_s| {
         format!("this computer was busy: the program did not run for {stall_s:.2} s")

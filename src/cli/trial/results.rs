@@ -1,5 +1,5 @@
-//! The trials that are over: shown, and written where that is asked. The files are written on a thread of their own: a slow disk
-//! must not make the hand's feedback old.
+//! Results of trials: printed, and written to files if requested. Files are written on a separate thread: a slow disk must not
+//! delay the hand's feedback.
 
 use crate::app::files::settings_file;
 use crate::cli::out::{Out, say};
@@ -7,9 +7,9 @@ use crate::cli::trial::output::{trial_json, trial_lines};
 use crate::hand::overshoot::OvershootMap;
 use crate::link::LinkHandle;
 use crate::link::quirks::book;
+use crate::motion::series::SeriesStep;
 use crate::record::Abort;
 use crate::store::calendar::{day, since_1970};
-use crate::tasks::series::SeriesStep;
 use crate::transport::Endpoint;
 use crate::trials::overshoot_file::{self, MeasuredClose, closes_of};
 use crate::trials::session::SessionHead;
@@ -21,34 +21,34 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::thread::JoinHandle;
 
-/// Trials that wait to be written while the next runs.
+/// Capacity of the queue of trials to write.
 const WAITING_MAX: usize = 16;
 
-/// Where results go, and of which hand they are.
+/// Destination of the results, and their hand.
 #[derive(Clone, Copy)]
 pub(crate) struct ResultsWanted<'a> {
     pub(crate) hand: &'a Endpoint,
     pub(crate) json: bool,
     pub(crate) folder: Option<&'a Path>,
-    /// What the report names the best setting by.
+    /// Criterion by which the report names the best setting.
     pub(crate) criterion: Option<Criterion>,
 }
 
-/// Takes each trial as it ends.
+/// Receives each trial as it ends.
 pub(crate) struct TrialResults<'a> {
     out: &'a mut Out,
     json: bool,
     writer: Option<Writer>,
     trials: Vec<TrialSummary>,
-    /// What trials measured of the hand is added to this file, by threads that may wait.
+    /// Overshoot file of the hand, extended by threads that may wait.
     map: Option<PathBuf>,
     adding: Vec<JoinHandle<io::Result<OvershootMap>>>,
     total: usize,
-    /// What could not be shown or written first.
+    /// First error of printing or writing.
     error: Option<anyhow::Error>,
 }
 
-/// The way to the thread that writes, and the thread.
+/// Sender to the writing thread, and the thread.
 type Writer = (
     mpsc::SyncSender<Trial>,
     JoinHandle<io::Result<TrialSessionWriter>>,
@@ -89,7 +89,7 @@ impl<'a> TrialResults<'a> {
         })
     }
 
-    /// Takes a step of the series; false if it cannot be shown or written, which ends the series.
+    /// Handles a step of the series; returns false if it cannot be printed or written, which ends the series.
     pub(crate) fn take(&mut self, step: SeriesStep) -> bool {
         if let Err(error) = self.out.flush() {
             self.error.get_or_insert(error);
@@ -125,7 +125,7 @@ impl<'a> TrialResults<'a> {
         shown.and_then(|()| self.out.flush()).and(written)
     }
 
-    /// Adds what a trial measured to what is known of the hand.
+    /// Adds the measurements of a trial to the overshoot file.
     fn keep(&mut self, closes: Vec<MeasuredClose>) {
         if let Some(file) = self.map.clone().filter(|_| !closes.is_empty()) {
             let add = move || overshoot_file::add(&file, &closes, &day(since_1970()));
@@ -133,7 +133,7 @@ impl<'a> TrialResults<'a> {
         }
     }
 
-    /// Waits until all is written, and gives the trials. `note` is what the session came to, for its file.
+    /// Waits until all is written, and returns the trials. `note` is the result for the session file.
     pub(crate) fn close(
         self,
         aborted: Option<Abort>,

@@ -11,12 +11,12 @@ use crate::cli::trial::drive::ArmedHand;
 use crate::cli::trial::output::joints;
 use crate::cli::trial::results::ResultsWanted;
 use crate::cli::tune::output::SearchReport;
-use crate::tasks::series;
+use crate::motion::series;
 use crate::trials::TrialSeries;
 use crate::trials::search::SettingsSearch;
 use anyhow::bail;
 
-/// Runs the search. Fails if it ended early, or if there is nothing to claim.
+/// Runs the search. Fails if it ended early, or if there is no claim.
 pub(crate) async fn run(out: &mut Out, args: &TuneArgs) -> anyhow::Result<()> {
     check_joints(&args.joint, &args.pose)?;
     let search =

@@ -1,21 +1,21 @@
-//! What a search came to as JSON, a contract with scripts, and as lines of text. Pure.
+//! Result of a search as JSON, a contract with scripts, and as lines of text. Pure.
 
 use crate::cli::tune::args::TuneArgs;
-use crate::tasks::drive::{EndReport, stop_words};
+use crate::motion::drive::{EndReport, stop_words};
 use crate::trials::search::{Claim, ComparedThreshold, Finding, FoundApproach, Tried, Untold};
 use serde_json::{Value, json};
 
-/// How a search ended.
+/// Result of a search.
 pub(crate) struct SearchReport {
-    /// How its series ended.
+    /// End of its series.
     pub(crate) series: EndReport,
-    /// What it came to; `None` if it was ended early.
+    /// The finding; `None` if the search ended early.
     pub(crate) finding: Option<Finding>,
-    /// Every close that was tried, also of a search that was ended early.
+    /// All closes that were tried, also if the search ended early.
     pub(crate) tried: Vec<Tried>,
 }
 
-/// The last line: `{"tune": {…}}`. What is not known is null.
+/// The last line: `{"tune": {…}}`. Unknown values are null.
 pub(crate) fn json(args: &TuneArgs, report: &SearchReport) -> Value {
     let claim = claim(report);
     let goal = args.goal();
@@ -56,7 +56,7 @@ pub(crate) fn table(args: &TuneArgs, report: &SearchReport) -> toml::Table {
     table.unwrap_or_default()
 }
 
-/// A value that is not known has no key in TOML.
+/// Removes unknown values, as TOML has no null.
 fn without_nulls(value: &Value) -> Value {
     match value {
         Value::Object(map) => {
@@ -70,7 +70,7 @@ fn without_nulls(value: &Value) -> Value {
     }
 }
 
-/// The same for people: what was tried, the result, what could not be told.
+/// The same as text: closes tried, result, open questions.
 pub(crate) fn lines(report: &SearchReport) -> Vec<String> {
     let Some(claim) = claim(report) else {
         return Vec::new();
@@ -104,7 +104,7 @@ pub(crate) fn lines(report: &SearchReport) -> Vec<String> {
     lines
 }
 
-/// Why there is no claim, if there is none.
+/// Reason if there is no claim.
 pub(crate) fn no_claim(report: &SearchReport) -> Option<String> {
     let aborted = report.series.aborted;
     let early = aborted.map(|why| {
@@ -134,13 +134,13 @@ fn untold(report: &SearchReport) -> &[Untold] {
         .map_or(&[], |finding| &finding.untold)
 }
 
-/// What was found out of the drives, where there is an offset that it matters for.
+/// Findings about the drives that show a notable offset.
 fn compared(report: &SearchReport) -> impl Iterator<Item = &ComparedThreshold> {
     let all = report.finding.iter().flat_map(|finding| &finding.compared);
     all.filter(|own| own.is_notable() && own.compared.is_some())
 }
 
-/// Of each confirming close the highest of its joints, g.
+/// Peak over all joints of each confirming close, g.
 fn peaks(claim: &Claim) -> Vec<f64> {
     let highest = |nth: usize| {
         let peaks = claim

@@ -1,5 +1,6 @@
 //! Every order of losses, power cuts and answers in a change of place, on a hand of three facts: what is said in the end was seen.
 
+use crate::fake::{Asked, FakeHand, Fate};
 use crate::hand::ModbusException;
 use crate::link::RequestError;
 use crate::params::backups::Backups;
@@ -10,7 +11,7 @@ use crate::tasks::TaskError;
 use crate::tasks::place::{
     CONFIRM_TIMEOUT, Decisions, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, change_place,
 };
-use crate::tasks::tests::fake::{Asked, FakeHand, FakeReach, Fate, place_write};
+use crate::tasks::tests::reach::{FakeReach, place_write};
 use crate::transport::Endpoint;
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -1,5 +1,6 @@
 //! A hand of which it is not known whether it rests is not written, whichever task wants to.
 
+use crate::fake::{Asked, FakeHand, Fate, WELL};
 use crate::hand::{Dof, Setting};
 use crate::params::backups::Backups;
 use crate::params::changes::RowVerdict;
@@ -8,13 +9,12 @@ use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 use crate::record::{Calibrated, NotSent, Rest, Saved};
 use crate::tasks::Consent;
-use crate::tasks::TaskHand;
 use crate::tasks::apply::{Apply, Otherwise, apply};
 use crate::tasks::calibrate::{Check, Checks, calibrate};
 use crate::tasks::place::{Decisions, PlaceChange, PlaceEnd, change_place};
 use crate::tasks::reset::{ResetEnd, places, reset};
 use crate::tasks::save::{Save, save};
-use crate::tasks::tests::fake::{Asked, FakeHand, FakeReach, Fate, WELL};
+use crate::tasks::tests::reach::FakeReach;
 use std::time::Duration;
 use tempfile::TempDir;
 use tokio::time::{Instant, sleep};
@@ -24,7 +24,7 @@ const WHY: NotSent = NotSent::RestUnknown;
 /// A hand whose status is missing or old: the link holds back what needs rest.
 fn unknown() -> FakeHand {
     let hand = FakeHand::new();
-    hand.facts().status.rest = Rest::Unknown;
+    hand.change(|status| status.rest = Rest::Unknown);
     hand.script(|asked| match asked {
         Asked::Read(_) => Fate::Answered,
         _ => Fate::NotSent(WHY),
@@ -137,7 +137,7 @@ async fn an_armed_hand_is_not_asked_again() {
 async fn where_a_hand_is_found_is_not_changed_unless_it_is_known_to_rest() {
     for rest in [Rest::Unknown, Rest::Moving] {
         let hand = FakeHand::new();
-        hand.facts().status.rest = rest;
+        hand.change(|status| status.rest = rest);
         let place = "rs485:/dev/x?id=1".parse().unwrap();
         let change = PlaceChange {
             id: ParamId::HandId,

@@ -1,5 +1,6 @@
 //! Reading, applying, saving and resetting: what is asked in which order, and what is said of what was lost.
 
+use crate::fake::{Asked, FakeHand, Fate};
 use crate::hand::{Dof, ModbusException, Setting, Span};
 use crate::link::RequestError;
 use crate::params::backups::Backups;
@@ -12,7 +13,7 @@ use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
 use crate::tasks::read::{group, rows};
 use crate::tasks::reset::{ResetEnd, ResetReport, ResetStep, places, reset};
 use crate::tasks::save::{Save, SaveReport, save};
-use crate::tasks::tests::fake::{Asked, FakeHand, FakeReach, Fate};
+use crate::tasks::tests::reach::FakeReach;
 use crate::tasks::{Consent, ParamStep, TaskError};
 use tempfile::TempDir;
 

@@ -9,11 +9,11 @@ use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Setpoints, Target}
 use handscope::inputs::follow::{FollowLimits, FollowPhase};
 use handscope::inputs::{Offer, OfferLimits};
 use handscope::link::{self, Clock, HoldToRun, Lease, LinkHandle, Owner, Records};
+use handscope::motion::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
+use handscope::motion::program::Ended;
 use handscope::record::Abort;
 use handscope::record::{ArmRefusal, Disarmed, Record, WriteCause};
 use handscope::sim::{SharedHand, SimConfig};
-use handscope::tasks::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
-use handscope::tasks::program::Ended;
 use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::sync::{mpsc, watch};

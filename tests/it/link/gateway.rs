@@ -10,12 +10,12 @@ use handscope::hand::{
     Angle, Dof, Force, HandSample, ModbusException, PerDof, Setpoints, Speed, Target,
 };
 use handscope::link::{ArmRequest, LinkStatus, LinkTrouble, TouchVariant};
+use handscope::motion::drive::Armed;
+use handscope::motion::grip::{GripEnd, GripStart, grip};
+use handscope::motion::move_to::{MoveEnd, MoveStart, move_to};
+use handscope::motion::series::RATES;
 use handscope::record::{Disarmed, Hold, LinkState};
 use handscope::sim::{Scenario, SharedHand, SimConfig};
-use handscope::tasks::drive::Armed;
-use handscope::tasks::grip::{GripEnd, GripStart, grip};
-use handscope::tasks::move_to::{MoveEnd, MoveStart, move_to};
-use handscope::tasks::series::RATES;
 use std::sync::Arc;
 use tokio::time::{Duration, Instant, sleep};
 

@@ -6,6 +6,7 @@ use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
 use handscope::app::state::State;
 use handscope::hand::{Angle, Dof, Fault, Finger, Force, PerDof, Span, Speed};
+use handscope::motion::program::Ended;
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use handscope::poses::library::{EntryId, Millis, PoseId, SequenceId, SequenceStep};
 use handscope::poses::player::{PlayEnd, PlayPhase};
@@ -13,7 +14,6 @@ use handscope::poses::starter::starter;
 use handscope::poses::{Play, Preset};
 use handscope::record::{Abort, Disarmed};
 use handscope::sim::Object;
-use handscope::tasks::program::Ended;
 use tokio::time::Duration;
 
 /// Two poses, each captured and then edited, and a sequence of both.

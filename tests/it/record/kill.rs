@@ -68,7 +68,7 @@ fn child_records_until_it_is_killed() {
     })
     .unwrap();
     let (link, _records) = open(config, runtime.handle());
-    let record = handscope::tasks::recording::record(link.observe(), recorder.input(), clock);
+    let record = handscope::link::entries::record(link.observe(), recorder.input(), clock);
     runtime.spawn(record);
     let mut out = std::io::stdout();
     while writeln!(out, "beat {}", nanos_now()).is_ok() {

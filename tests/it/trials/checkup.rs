@@ -8,11 +8,11 @@ use handscope::checkup::report::{CheckupReport, Keeping};
 use handscope::checkup::{Checkup, CheckupPlan, Light, Part, Subject};
 use handscope::hand::register::FORCE_ACT;
 use handscope::hand::{ArmEpoch, Dof, Fault, Finger, Moment, Span};
+use handscope::motion::checkup::{CheckupFiles, EndedCheckup};
+use handscope::motion::drive::Driven;
 use handscope::record::Abort;
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, ForceCompared, Object};
-use handscope::tasks::checkup::{CheckupFiles, EndedCheckup};
-use handscope::tasks::drive::Driven;
 use handscope::transport::Endpoint;
 
 /// Noise of a force sensor, either way.

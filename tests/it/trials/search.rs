@@ -8,12 +8,12 @@ use futures::future::ready;
 use futures::{StreamExt as _, stream};
 use handscope::hand::{Angle, Dof, Fault, HandSample, PerDof};
 use handscope::link::{LinkConfig, Owner, Stop};
+use handscope::motion::drive::{Armed, EndReport};
+use handscope::motion::series::{RATES, SeriesStep, arm_limits, trials};
 use handscope::record::Abort;
 use handscope::record::{LinkState, Record};
 use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
-use handscope::tasks::drive::{Armed, EndReport};
-use handscope::tasks::series::{RATES, SeriesStep, arm_limits, trials};
 use handscope::trials::TrialSeries;
 use handscope::trials::search::{
     Compared, Finding, NoClaim, SearchGoal, SearchStage, SettingsSearch,

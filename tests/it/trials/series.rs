@@ -7,11 +7,11 @@ use futures::stream::pending;
 use handscope::hand::register::GESTURE_FORCE_CLB;
 use handscope::hand::{Angle, Dof, Fault, Force, HandSample, PerDof, Speed};
 use handscope::link::{ArmRequest, Clock, LinkConfig};
+use handscope::motion::drive::{Armed, EndReport, drive};
+use handscope::motion::series::RATES;
 use handscope::record::Abort;
 use handscope::record::{Disarmed, Hold, LinkState, Record};
 use handscope::sim::{BodyParams, Personality, Scenario, SharedHand, SimConfig, SimHand};
-use handscope::tasks::drive::{Armed, EndReport, drive};
-use handscope::tasks::series::RATES;
 use handscope::trials::best::{best, scores};
 use handscope::trials::{
     Approach, Criterion, EarlyEnd, Limits, Trial, TrialEvent, TrialGrid, TrialKind, TrialPlan,

@@ -8,6 +8,7 @@ use handscope::hand::{
     Setpoints, Span, Speed,
 };
 use handscope::link::LinkStatus;
+use handscope::motion::program::{Order, Program, Seen};
 use handscope::record::Abort;
 use handscope::record::LinkState;
 use handscope::sim::body_params::JointBody;
@@ -16,7 +17,6 @@ use handscope::sim::body_params::run_on::{MetThreshold, run_on_g};
 use handscope::sim::{
     BodyParams, Contact, ForceCompared, Object, Personality, Scenario, SimConfig, SimHand,
 };
-use handscope::tasks::program::{Order, Program, Seen};
 use handscope::trials::search::tolerance::{Assurance, tolerance_factor};
 use handscope::trials::search::{Claim, Finding, FoundApproach, SearchGoal, SettingsSearch};
 use handscope::trials::{Approach, Trial, TrialGrid, TrialPlan, TrialSeries, TrialSetting, Until};

@@ -1,5 +1,5 @@
-//! `share --stdio`: the program that started this one moves and watches the hand by lines of JSON on standard input and output.
-//! The hand is stopped when standard input ends, however that program does.
+//! `share --stdio`: the parent program moves and watches the hand by lines of JSON on standard input and output. The hand is
+//! stopped when standard input ends, for whatever reason that program ends.
 
 mod ask;
 mod pipe;
@@ -18,11 +18,11 @@ use crate::hand::{ArmEpoch, Group, HandCommand, HandSample};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, Records};
+use crate::motion::drive::{Armed, STOP_LOST};
+use crate::motion::follow::{FollowEnd, FollowStart, FollowTerms, follow};
+use crate::motion::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
+use crate::motion::program::Ended;
 use crate::record::{Disarmed, LinkState, Record, Rest};
-use crate::tasks::drive::{Armed, STOP_LOST};
-use crate::tasks::follow::{FollowEnd, FollowStart, FollowTerms, follow};
-use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
-use crate::tasks::program::Ended;
 use crate::transport::Endpoint;
 use futures::future::{BoxFuture, FutureExt as _, OptionFuture};
 use serde_json::{Value, json};
@@ -31,41 +31,41 @@ use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, interval, sleep, timeout};
 
-/// Version of the lines.
+/// Version of the protocol.
 const VERSION: u64 = 1;
-/// How often it is looked how the hand stands.
+/// Polling interval of the hand's state.
 const POLL_INTERVAL: Duration = Duration::from_millis(20);
-/// How long the hand may take to be armed, a stop before it included.
+/// Maximum time for arming, including a stop before it.
 const ARM_TIMEOUT: Duration = Duration::from_secs(5);
-/// So long a lost link is waited for at the end, as the hand may go on to where the program sent it: for one dial that fails, and
-/// one that does not.
+/// Maximum wait for a lost link at the end, because the hand may still be moving to its last target: covers one failed dial and
+/// one successful one.
 const RECONNECT_TIMEOUT: Duration = Duration::from_secs(6);
 const LINK_LOST: RefusalKind = RefusalKind::Ended(Disarmed::LinkLost);
-/// Targets that may wait to be followed.
+/// Capacity of the queue of targets to follow.
 const OFFERS_MAX: usize = 64;
 
-/// The hand that is shared, and as what.
+/// The shared hand and its properties.
 pub(crate) struct StdioHand<'a> {
     pub(crate) link: &'a LinkHandle,
     pub(crate) endpoint: &'a Endpoint,
     pub(crate) side: Side,
-    /// Where the gateway listens, if there is one.
+    /// Listening address of the gateway, if there is one.
     pub(crate) gateway: Option<SocketAddr>,
 }
 
-/// How a task ended.
+/// Result of a task.
 enum Done {
     Armed(Result<Right, Refused>),
     Moved(Result<Box<MoveReport>, Refused>),
     Followed(Result<Ended<FollowEnd>, Refused>),
-    /// The hand was stopped; whether feedback shows that it rests.
+    /// The hand was stopped; fails unless feedback shows that it rests.
     Stopped(anyhow::Result<()>),
     Cleared(Result<(), Refused>),
 }
 
-/// A task at the hand. One at a time.
+/// A task on the hand. There is one at a time.
 struct Task {
-    /// Whom its end is told to; `null` for nobody.
+    /// ID for the reply; `null` for no reply.
     id: Value,
     done: BoxFuture<'static, Done>,
     kind: TaskKind,
@@ -81,18 +81,18 @@ impl Task {
     }
 }
 
-/// What it means that a task is dropped.
+/// Kind of a task, which determines the effect of dropping it.
 enum TaskKind {
-    /// It takes the right to move the hand, which nobody has yet if it is dropped.
+    /// Acquires control of the hand; no controller has it yet if the task is dropped.
     Arms,
-    /// It follows what comes here, until it is dropped: that ends nothing else.
+    /// Follows targets sent here until dropped, which ends nothing else.
     Follows(mpsc::Sender<Offer>),
-    /// It moves the hand, which goes on to its targets.
+    /// Moves the hand, which continues to its targets if the task is dropped.
     Moves,
     Other,
 }
 
-/// The right to move the hand, from `arm` to its end.
+/// Control of the hand, from `arm` to its end.
 #[derive(Clone, Copy)]
 struct Right {
     lease: Lease,
@@ -104,17 +104,17 @@ struct Script<'a> {
     told: Told<'a>,
     seen: HandSample,
     grip: GripEstimator,
-    /// Records that were missed, as far as that was told.
+    /// Number of missed records reported so far.
     missed: u64,
     right: Option<Right>,
     task: Option<Task>,
     recording: Option<SideRecording>,
-    /// The recording that is being ended, and whom that is told to.
+    /// The recording being closed, and the ID for its reply.
     ending: Option<(Value, BoxFuture<'static, anyhow::Result<()>>)>,
     is_live: bool,
 }
 
-/// Serves until standard input ends, nobody reads standard output, or the user ends it. A hand that may be moved is stopped.
+/// Serves until standard input ends, standard output is closed, or the user ends it. A hand that may move is stopped.
 pub(crate) async fn serve<'a>(
     out: &'a mut Out,
     hand: StdioHand<'a>,
@@ -163,7 +163,7 @@ impl Script<'_> {
             let task = OptionFuture::from(self.task.as_mut().map(|task| &mut task.done));
             let ending = OptionFuture::from(self.ending.as_mut().map(|ending| &mut ending.1));
             tokio::select! {
-                // Each in its turn: whoever writes lines without a pause keeps nothing else from being looked at.
+                // Polled in turn: a continuous stream of lines must not block the other sources.
                 line = lines.recv() => match line {
                     Some(line) => self.obey(Asked::parse(&line, self.hand.side))?,
                     None => return Ok(()),
@@ -179,10 +179,10 @@ impl Script<'_> {
         }
     }
 
-    /// Stops a hand that may move, and ends the recording.
+    /// Stops a hand that may move, and closes the recording.
     async fn leave(mut self) -> anyhow::Result<()> {
         let link = self.hand.link;
-        // Perhaps nobody reads any more what it tells.
+        // The reader of the output may be gone.
         let _told = self.end_task(LeaseRefusal::Ended(Disarmed::Stop).into());
         let _told = self.look();
         if link.status().owes_stop() {
@@ -211,13 +211,14 @@ impl Script<'_> {
         SideRecording::and(done, recorded)
     }
 
-    /// Whether the hand may go on to where the program sent it, also after a link that was lost and is back; unless another moves it.
+    /// True if the hand may continue to its last target, also after a link that was lost and restored, unless another controller
+    /// moves it.
     fn is_to_stop(&self) -> bool {
         let status = self.hand.link.status();
         status.owes_stop() && status.state.is_live() || self.holds().is_some()
     }
 
-    /// Whether the hand is known to have nothing left to do for the program.
+    /// True if the hand is known to have completed all motion for the program.
     fn is_at_rest(&self) -> bool {
         let is_motion = |task: &Task| matches!(task.kind, TaskKind::Follows(_) | TaskKind::Moves);
         let status = self.hand.link.status();
@@ -225,13 +226,13 @@ impl Script<'_> {
         !goes_on && status.rest == Rest::Resting
     }
 
-    /// The right to move the hand, if it still holds.
+    /// The control of the hand, if still valid.
     fn holds(&self) -> Option<Right> {
         self.right
             .filter(|right| self.hand.link.check(right.lease).is_ok())
     }
 
-    /// A state, told as `watch` has it.
+    /// Applies a record; a state is published in the format of `watch`.
     fn take(&mut self, record: Record, records: &Records) -> Result<(), NobodyReads> {
         let Record::Reading { sample, fresh } = record else {
             return Ok(());
@@ -251,7 +252,7 @@ impl Script<'_> {
         self.told.state(state, missed)
     }
 
-    /// Tells what happened to the link and to the right to move the hand.
+    /// Publishes changes of the link and of the control of the hand; stops the hand if the output is stuck.
     fn look(&mut self) -> Result<(), NobodyReads> {
         let status = self.hand.link.status();
         if status.state.is_live() != self.is_live {
@@ -276,11 +277,11 @@ impl Script<'_> {
         Ok(())
     }
 
-    /// The right to move the hand is over, which was not asked for.
+    /// Handles the unrequested loss of control of the hand.
     fn lose(&mut self, why: &Refused) -> Result<(), NobodyReads> {
         self.right = None;
         if why.kind == LINK_LOST {
-            // The hand goes on to where it was sent: a stop waits for it.
+            // The hand continues to its last target: a stop is queued until the link is back.
             drop(self.hand.link.stop());
         }
         self.told
@@ -289,7 +290,7 @@ impl Script<'_> {
 
     fn reply(&mut self, id: &Value, done: Result<Value, Refused>) -> Result<(), NobodyReads> {
         if id.is_null() {
-            // Nobody waits for it; what is wrong is told all the same.
+            // Success without an ID is not reported; an error is reported in any case.
             return match done {
                 Ok(_) => Ok(()),
                 Err(no) => self
@@ -303,7 +304,7 @@ impl Script<'_> {
         })
     }
 
-    /// Does what is asked. What was wrong in a line that ends a motion is told once that is under way.
+    /// Handles a request. An error in a line that ends a motion is reported once the end is under way.
     fn obey(&mut self, asked: Asked) -> Result<(), NobodyReads> {
         let odd = asked
             .odd
@@ -359,7 +360,7 @@ impl Script<'_> {
         self.reply(&id, done.map(|()| json!({})))
     }
 
-    /// The right to move the hand, or why there is none.
+    /// The control of the hand, or the reason why it is missing.
     fn right(&mut self) -> Result<Right, Refused> {
         let right = self.right.ok_or_else(|| {
             Refused::new(
@@ -371,7 +372,7 @@ impl Script<'_> {
         Ok(right)
     }
 
-    /// Ends what goes on; the hand is told nothing by that.
+    /// Ends the current task, without sending anything to the hand.
     fn end_task(&mut self, why: Refused) -> Result<(), NobodyReads> {
         let Some(task) = self.task.take() else {
             return Ok(());
@@ -387,14 +388,14 @@ impl Script<'_> {
         self.reply(&task.id, Err(why))
     }
 
-    /// Begins a task in place of what goes on.
+    /// Starts a task in place of the current one.
     fn begin(&mut self, task: Task) -> Result<(), NobodyReads> {
         self.end_task(Refused::replaced())?;
         self.task = Some(task);
         Ok(())
     }
 
-    /// Stops the hand, whoever moves it, and waits for what feedback says of it.
+    /// Stops the hand, whichever controller moves it, and waits for confirmation by feedback.
     fn stop(&mut self, id: Value) -> Result<(), NobodyReads> {
         self.hand.link.stop();
         self.right = None;
@@ -404,8 +405,8 @@ impl Script<'_> {
         self.begin(Task::of(id, stopping))
     }
 
-    /// Takes the right to move the hand, unless another has it. Where the hand is armed already only its limits change, at once, and
-    /// what moves it goes on.
+    /// Acquires control of the hand, unless another controller has it. If the hand is armed already, only its limits change,
+    /// immediately, and its motion continues.
     fn arm(&mut self, id: Value, limits: LimitsAsk) -> Result<(), NobodyReads> {
         let held = self.holds();
         let limits = limits.over(held.map_or(ArmRequest::GENTLE, |right| right.limits));
@@ -452,10 +453,10 @@ impl Script<'_> {
         })
     }
 
-    /// Lets the hand follow a target, as a stream of them is followed.
+    /// Makes the hand follow a target, as one of a stream.
     fn follow(&mut self, id: Value, right: Right, line: StreamLine) -> Result<(), NobodyReads> {
         if line.held == Some(false) && self.followed_by().is_none() {
-            // Nothing is followed; what moves the hand is ended all the same.
+            // Nothing is followed; any other motion of the hand is ended nevertheless.
             self.end_task(LeaseRefusal::Ended(Disarmed::Released).into())?;
             let done = self.hand.link.halt(right.lease);
             return self.reply(&id, done.map(|()| json!({})).map_err(Refused::from));
@@ -464,13 +465,13 @@ impl Script<'_> {
             at: self.hand.link.clock().now(),
             aims: line.aims,
             gap: line.gap,
-            // A motion before may have set others.
+            // An earlier motion may have changed the limits.
             limits: OfferLimits {
                 force: right.limits.force.map(Some),
                 speed: right.limits.speed.map(Some),
             },
             held: line.held,
-            // A script may rightly stand still; it is heard, or silent.
+            // A script may send the same target repeatedly; only silence counts as a loss.
             mark: None,
         };
         if self.followed_by().is_none() {
@@ -496,13 +497,13 @@ impl Script<'_> {
             })?;
         }
         if let Some(offers) = self.followed_by() {
-            // One that is not followed in time is not missed: the next is newer.
+            // A target that does not fit is dropped: the next one is newer.
             let _full = offers.try_send(offer);
         }
         self.reply(&id, Ok(json!({})))
     }
 
-    /// Where targets go, while they are followed.
+    /// Sender of targets while they are followed.
     fn followed_by(&self) -> Option<&mpsc::Sender<Offer>> {
         match &self.task.as_ref()?.kind {
             TaskKind::Follows(offers) => Some(offers),
@@ -510,7 +511,7 @@ impl Script<'_> {
         }
     }
 
-    /// Begins or ends a recording. Its end is told once the file is whole.
+    /// Starts or ends a recording. The end is reported once the file is complete.
     fn record(&mut self, id: Value, path: Option<&std::path::Path>) -> Result<(), NobodyReads> {
         let StdioHand {
             link,
@@ -546,7 +547,7 @@ impl Script<'_> {
         )
     }
 
-    /// A recording is over, and whole if that is so.
+    /// Reports the end of a recording; an error if the file is incomplete.
     fn ended(&mut self, whole: anyhow::Result<()>) -> Result<(), NobodyReads> {
         let whole = whole.map_err(|why| Refused::new(RefusalKind::Refused, format!("{why:#}")));
         match self.ending.take() {
@@ -555,7 +556,7 @@ impl Script<'_> {
         }
     }
 
-    /// A task is over.
+    /// Handles the result of a task.
     fn finish(&mut self, done: Done) -> Result<(), NobodyReads> {
         let Some(Task { id, .. }) = self.task.take() else {
             return Ok(());
@@ -565,7 +566,7 @@ impl Script<'_> {
                 self.right = Some(right);
                 self.reply(&id, Ok(json!({})))
             }
-            // What it had before may hold, or have ended meanwhile.
+            // The previous control may still be valid, or have ended meanwhile.
             Done::Armed(Err(no)) => {
                 let lost = self.right.is_some() && self.holds().is_none();
                 self.reply(&id, Err(no.clone()))?;
@@ -587,7 +588,7 @@ impl Script<'_> {
         }
     }
 
-    /// What a motion came to. A hand that took too long is stopped.
+    /// Result of a motion. A hand that took too long is stopped.
     fn moved(&mut self, report: &MoveReport) -> Result<Value, Refused> {
         let link = self.hand.link;
         let end = match report.end {
@@ -601,7 +602,7 @@ impl Script<'_> {
             }
             Err(_) => {
                 self.right()?;
-                // The right holds, and the arming is over all the same.
+                // The control is still valid, but the arming has ended.
                 let why = link.status().disarmed.map(|why| why.to_string());
                 return Err(Refused::new(
                     RefusalKind::Disarmed,
@@ -612,7 +613,7 @@ impl Script<'_> {
         Ok(json!({"end": end, "grip": grip_json(&report.grip, link.clock().now())}))
     }
 
-    /// Nothing is followed any more. A script that fell silent may go on; the hand was stopped.
+    /// Handles the end of following. A script that fell silent may continue; the hand was stopped.
     fn followed(&mut self, followed: Result<Ended<FollowEnd>, Refused>) -> Result<(), NobodyReads> {
         let lost = match followed {
             Err(no) => no,
@@ -632,7 +633,7 @@ impl Script<'_> {
     }
 }
 
-/// Takes the right to move the hand and arms it, once its link and a stop before let it. A right that is held stays.
+/// Acquires control of the hand and arms it, once its link and an earlier stop permit it. Existing control is kept.
 async fn granted(
     link: &LinkHandle,
     held: Option<Right>,
@@ -661,14 +662,14 @@ async fn granted(
         };
         match armed(link, right).await {
             Ok(_epoch) => return Ok(right),
-            // Nothing moved yet: it begins anew with a link that is back.
+            // Nothing has moved yet: retry when the link is back.
             Err(no) if no.kind == LINK_LOST && held.is_none() && Instant::now() < until => {}
             Err(no) => return Err(no),
         }
     }
 }
 
-/// Arms the hand under a right that was granted, once a stop before is over.
+/// Arms the hand under an existing lease, once an earlier stop has completed.
 async fn armed(link: &LinkHandle, right: Right) -> Result<ArmEpoch, Refused> {
     let until = Instant::now() + ARM_TIMEOUT;
     while link.status().state == LinkState::Holding && Instant::now() < until {

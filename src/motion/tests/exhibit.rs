@@ -13,10 +13,10 @@ use crate::hand::{
 };
 use crate::link::Clock;
 use crate::link::LinkStatus;
+use crate::motion::exhibit::{ExhibitStart, ExhibitStep, PageDrawn, exhibit};
+use crate::motion::tests::booth::BoothHand;
 use crate::record::{Disarmed, LinkState};
 use crate::soak;
-use crate::tasks::exhibit::{ExhibitStart, ExhibitStep, PageDrawn, exhibit};
-use crate::tasks::tests::booth::BoothHand;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -124,7 +124,6 @@ impl Booth {
     }
 
     fn stop(&self) {
-        use crate::tasks::TaskHand as _;
         self.hand.facts().person_armed = false;
         self.hand.stop();
         self.wish(ExhibitWish::Stop);

@@ -1,14 +1,13 @@
 //! The rules that hold for every program, on a hand that only notes what it is told.
 
+use crate::fake::{Asked, FakeHand, Said, WELL};
 use crate::hand::{
     Angle, ArmEpoch, Dof, Fault, Faults, Groups, HandSample, Moment, Setpoints, Target,
 };
 use crate::link::{Owner, Stop};
+use crate::motion::drive::{Armed, EndReport, drive};
+use crate::motion::program::{Ended, Order, Program, Seen};
 use crate::record::{Abort, Disarmed, LinkState, SetpointConflict, SetpointRegister};
-use crate::tasks::TaskHand;
-use crate::tasks::drive::{Armed, EndReport, drive};
-use crate::tasks::program::{Ended, Order, Program, Seen};
-use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use futures::stream::pending;
 use std::time::Duration;
 use tokio::task::JoinHandle;
@@ -91,7 +90,7 @@ async fn whatever_breaks_a_program_off_it_is_named_and_the_hand_is_stopped() {
     let wrote = Some(FOREIGN);
     let ways: [(Break, Abort); 8] = [
         (
-            |hand| hand.facts().status.state = LinkState::Offline,
+            |hand| hand.change(|status| status.state = LinkState::Offline),
             Abort::LinkLost,
         ),
         (|hand| hand.arm_as(2), Abort::ArmedAnew),
@@ -108,14 +107,14 @@ async fn whatever_breaks_a_program_off_it_is_named_and_the_hand_is_stopped() {
             },
         ),
         (
-            |hand| hand.facts().status.state = LinkState::Fault,
+            |hand| hand.change(|status| status.state = LinkState::Fault),
             Abort::Fault { joint: None },
         ),
         (
             |hand| {
                 // The reading waits when the link tells of the fault.
                 hand.says(Said { faults: 1, ..WELL });
-                hand.facts().status.state = LinkState::Fault;
+                hand.change(|status| status.state = LinkState::Fault);
             },
             Abort::Fault {
                 joint: Some((Dof::Little, fault)),
@@ -138,7 +137,7 @@ async fn whatever_breaks_a_program_off_it_is_named_and_the_hand_is_stopped() {
         (
             |hand| {
                 hand.disarm_for(Disarmed::OtherController);
-                hand.facts().status.foreign_setpoint = Some(FOREIGN);
+                hand.change(|status| status.foreign_setpoint = Some(FOREIGN));
             },
             Abort::OtherController { wrote },
         ),
@@ -189,7 +188,7 @@ async fn while_a_program_keeps_the_hand_disarmed_whoever_moves_it_ends_it_with_a
         (|hand| hand.arm_as(2), Abort::ArmedAnew),
         (
             |hand| {
-                hand.facts().status.foreign_setpoint = Some(FOREIGN);
+                hand.change(|status| status.foreign_setpoint = Some(FOREIGN));
             },
             Abort::OtherController { wrote },
         ),

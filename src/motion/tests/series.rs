@@ -1,13 +1,12 @@
 //! What a series sends and what ends it, on a hand that only notes what it is told.
 
+use crate::fake::{Asked, FakeHand, Said, WELL};
 use crate::hand::{Angle, ArmEpoch, Dof, Fault, Faults, Force, HandSample, PerDof, Speed, Target};
 use crate::link::Stop;
 use crate::link::{Owner, PollRates};
+use crate::motion::drive::{Armed, Driven, EndReport};
+use crate::motion::series::{RATES, SeriesStep, trials};
 use crate::record::{Abort, Disarmed, LinkState};
-use crate::tasks::TaskHand;
-use crate::tasks::drive::{Armed, Driven, EndReport};
-use crate::tasks::series::{RATES, SeriesStep, trials};
-use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan};
 use crate::trials::runner::Stage;
 use crate::trials::series::TrialSeries;
@@ -266,7 +265,7 @@ async fn a_lost_link_and_another_arming_end_it() {
     type Break = fn(&FakeHand);
     let ways: [(Break, Abort, Option<Stop>); 3] = [
         (
-            |hand| hand.facts().status.state = LinkState::Offline,
+            |hand| hand.change(|status| status.state = LinkState::Offline),
             Abort::LinkLost,
             Some(Stop::LinkLost),
         ),

@@ -2,11 +2,10 @@
 
 use crate::checkup::Checkup;
 use crate::hand::{Force, Groups, HandSample, Moment, PerDof, Speed};
-use crate::link::{ArmRequest, PollRates};
+use crate::link::{ArmRequest, LinkHandle, PollRates};
+use crate::motion::drive::{Armed, Driven, drive};
+use crate::motion::program::{Ended, Order, Program, Seen};
 use crate::record::Abort;
-use crate::tasks::drive::{Armed, Driven, drive};
-use crate::tasks::hand::TaskHand;
-use crate::tasks::program::{Ended, Order, Program, Seen};
 use crate::trials::limits::Stall;
 use crate::trials::plan::TrialPlan;
 use crate::trials::search::{SearchProgress, SettingsSearch};
@@ -34,8 +33,8 @@ pub enum SeriesStep {
 
 /// Runs a series of trials to its end. `report` says whether it could store or show the step; if not, the series ends.
 /// At the end the hand is not armed any more.
-pub async fn trials<H: TaskHand>(
-    hand: &H,
+pub async fn trials(
+    hand: &LinkHandle,
     armed: Armed,
     mut series: TrialSeries,
     ends: impl Stream<Item = Abort>,

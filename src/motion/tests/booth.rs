@@ -4,19 +4,19 @@
 use crate::exhibit::plan::{ExhibitPiece, ExhibitPlan, MotionLimits};
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, CurrentReading, Dof, Fault, Group, Groups, HandCommand,
-    HandSample, Moment, PerDof, Setpoints, Setting, Span, Target, TemperatureReading, Timed,
+    HandSample, Moment, PerDof, Setpoints, Target, TemperatureReading, Timed,
 };
-use crate::link::lease::LeaseBook;
-use crate::link::{
-    ArmRequest, Clock, Lease, LeaseRefusal, LinkStatus, Owner, PollRates, Records, RequestError,
-};
-use crate::record::{Calibrated, Disarmed, LinkState, Record, Reset, Rest, Saved, Written};
+use crate::link::handle::channels;
+use crate::link::request::Request;
+use crate::link::wanted::{AskedArm, Ends, PendingControl};
+use crate::link::{Clock, LinkHandle, LinkStatus};
+use crate::record::{Disarmed, LinkState, Record, Rest};
 use crate::sim::drive::{Drive, DriveGoal, DriveSettings, position_of};
-use crate::tasks::TaskHand;
 use std::collections::{BTreeSet, VecDeque};
+use std::ops::Deref;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
-use tokio::sync::broadcast;
+use tokio::sync::{broadcast, mpsc, watch};
 use tokio::time::sleep;
 
 /// The world goes on in steps of this while something moves, …
@@ -25,8 +25,6 @@ const STEP: Duration = Duration::from_millis(50);
 const SLOW_STEP: Duration = Duration::from_millis(500);
 /// Readings that a hold may go to.
 const TOLD: usize = 6;
-/// Records that may wait for a reader.
-const RECORDS: usize = 64;
 /// How long the link takes to arm: it writes the limits first.
 const ARM_DELAY: Duration = Duration::from_millis(40);
 
@@ -43,7 +41,8 @@ pub(crate) struct BoothFacts {
     /// The wish to arm that is under way, by its number.
     arming: Option<u64>,
     armings: u64,
-    book: LeaseBook,
+    wanted: Arc<watch::Sender<PendingControl>>,
+    published: watch::Sender<LinkStatus>,
     records: broadcast::Sender<Record>,
     /// What may be sent at all.
     allowed: PerDof<BTreeSet<Angle>>,
@@ -63,8 +62,17 @@ pub(crate) struct BoothFacts {
 /// One hand at a booth. Copies are the same hand.
 #[derive(Clone)]
 pub(crate) struct BoothHand {
+    link: LinkHandle,
     facts: Arc<Mutex<BoothFacts>>,
     pub(crate) clock: Clock,
+}
+
+impl Deref for BoothHand {
+    type Target = LinkHandle;
+
+    fn deref(&self) -> &LinkHandle {
+        &self.link
+    }
 }
 
 fn targets_of(piece: &ExhibitPiece) -> impl Iterator<Item = PerDof<Option<Angle>>> + '_ {
@@ -86,7 +94,16 @@ impl BoothHand {
         }
         // Where the thumb goes out of the index's way.
         allowed[Dof::ThumbBend].insert(Angle::nearest(800));
-        let facts = BoothFacts {
+        let clock = Clock::start();
+        let (link, ends, _) = channels(clock);
+        let Ends {
+            wanted,
+            requests,
+            records,
+            status,
+            ..
+        } = ends;
+        let mut facts = BoothFacts {
             status: LinkStatus {
                 state: LinkState::Monitoring,
                 rest: Rest::Resting,
@@ -107,8 +124,9 @@ impl BoothHand {
             epoch: 0,
             arming: None,
             armings: 0,
-            book: LeaseBook::default(),
-            records: broadcast::channel(RECORDS).0,
+            wanted: Arc::clone(&wanted),
+            published: status,
+            records,
             allowed,
             limits: plan.limits,
             person_armed: false,
@@ -118,10 +136,14 @@ impl BoothHand {
             hottest: 0.0,
             sent: Vec::new(),
         };
+        facts.publish();
         let hand = Self {
+            link,
             facts: Arc::new(Mutex::new(facts)),
-            clock: Clock::start(),
+            clock,
         };
+        tokio::spawn(hand.clone().obey_all(wanted));
+        tokio::spawn(hand.clone().serve_all(requests));
         let world = hand.clone();
         tokio::spawn(async move {
             loop {
@@ -141,6 +163,7 @@ impl BoothHand {
         let now = self.clock.now();
         let mut facts = self.facts();
         facts.go_on(now);
+        facts.publish();
         facts.status.armed.is_some() || facts.drives.iter().any(|(_, one)| one.status().is_moving())
     }
 
@@ -154,6 +177,7 @@ impl BoothHand {
             LinkState::Offline
         };
         facts.person_armed = false;
+        facts.publish();
     }
 
     /// The computer slept: the link is lost, and back before anybody looks at it.
@@ -166,6 +190,7 @@ impl BoothHand {
             // Nobody may be listening.
             let _heard = facts.records.send(Record::State { at, state });
         }
+        facts.publish();
     }
 
     /// The link's own reasons.
@@ -173,6 +198,7 @@ impl BoothHand {
         let mut facts = self.facts();
         facts.disarm(why);
         facts.person_armed = false;
+        facts.publish();
     }
 
     /// A drive reports a fault.
@@ -181,6 +207,7 @@ impl BoothHand {
         facts.drives[dof].inject(fault);
         let now = self.clock.now();
         facts.go_on(now);
+        facts.publish();
     }
 
     pub(crate) fn angle(&self, dof: Dof) -> f64 {
@@ -277,7 +304,7 @@ impl BoothFacts {
 
     fn disarm(&mut self, why: Disarmed) {
         if !why.is_asked_for() {
-            self.book.end(why);
+            self.wanted.send_modify(|wanted| wanted.book.end(why));
         }
         self.arming = None;
         if self.status.armed.take().is_some() {
@@ -286,7 +313,8 @@ impl BoothFacts {
         }
     }
 
-    fn arm(&mut self, request: ArmRequest) {
+    fn arm(&mut self, asked: AskedArm) {
+        let request = asked.request;
         if self.status.state != LinkState::Monitoring || self.sample.angle.is_none() {
             return;
         }
@@ -303,6 +331,13 @@ impl BoothFacts {
         self.status.armed = Some(ArmEpoch(self.epoch));
         self.status.disarmed = None;
         self.status.state = LinkState::Armed;
+        self.publish();
+        // The exhibition may have given up waiting.
+        let _heard = asked.answer.send(Ok(ArmEpoch(self.epoch)));
+    }
+
+    fn publish(&mut self) {
+        self.published.send_replace(self.status.clone());
     }
 
     fn complain(&mut self, what: String) {
@@ -344,146 +379,91 @@ impl BoothFacts {
     }
 }
 
-impl TaskHand for BoothHand {
-    fn status(&self) -> LinkStatus {
-        self.facts().status.clone()
+impl BoothHand {
+    async fn obey_all(self, ends: Arc<watch::Sender<PendingControl>>) {
+        let mut news = ends.subscribe();
+        while news.changed().await.is_ok() {
+            let mut control = PendingControl::default();
+            ends.send_if_modified(|wanted| {
+                control = wanted.take();
+                false
+            });
+            self.obey(control);
+        }
     }
 
-    fn records(&self) -> Records {
-        Records::of(self.facts().records.subscribe())
-    }
-
-    async fn read(&self, _span: Span) -> Result<Vec<u8>, RequestError> {
-        Err(RequestError::NotConnected)
+    fn obey(&self, control: PendingControl) {
+        let now = self.clock.now();
+        let mut facts = self.facts();
+        if control.stop {
+            facts.stop(control.why.unwrap_or(Disarmed::Stop));
+        } else if control.disarm {
+            facts.disarm(control.why.unwrap_or(Disarmed::Person));
+        }
+        if let Some(asked) = control.arm {
+            facts.armings += 1;
+            let number = facts.armings;
+            facts.arming = Some(number);
+            let hand = self.clone();
+            tokio::spawn(async move {
+                sleep(ARM_DELAY).await;
+                let mut facts = hand.facts();
+                if facts.arming == Some(number) {
+                    facts.arming = None;
+                    facts.arm(asked);
+                }
+            });
+        }
+        if let Some(setpoints) = control.setpoints {
+            facts.set(&setpoints, now);
+        }
+        facts.publish();
     }
 
     /// Clearing holds first, and takes a moment.
-    async fn write(&self, command: HandCommand) -> Result<(), RequestError> {
-        assert_eq!(command, HandCommand::ClearErrors);
-        self.facts().hold();
-        sleep(Duration::from_millis(100)).await;
-        let mut facts = self.facts();
-        facts.clears += 1;
-        facts
-            .drives
-            .iter_mut()
-            .for_each(|(_, drive)| drive.clear_errors());
-        Ok(())
-    }
-
-    async fn set_kept(&self, _setting: Setting) -> Result<Written, RequestError> {
-        Err(RequestError::NotConnected)
-    }
-
-    async fn set_unread(&self, _setting: Setting) -> Result<(), RequestError> {
-        Err(RequestError::NotConnected)
-    }
-
-    async fn save(&self) -> Result<Saved, RequestError> {
-        Err(RequestError::NotConnected)
-    }
-
-    async fn reset(&self) -> Result<Reset, RequestError> {
-        Err(RequestError::NotConnected)
-    }
-
-    async fn calibrate(&self) -> Result<Calibrated, RequestError> {
-        Err(RequestError::NotConnected)
-    }
-
-    fn stop(&self) {
-        let mut facts = self.facts();
-        facts.book.end(Disarmed::Stop);
-        facts.stop(Disarmed::Stop);
-    }
-
-    fn disarm(&self) {
-        let mut facts = self.facts();
-        facts.book.end(Disarmed::Person);
-        facts.disarm(Disarmed::Person);
-    }
-
-    fn grant(&self, owner: Owner) -> Lease {
-        self.facts().book.grant(owner)
-    }
-
-    fn check(&self, lease: Lease) -> Result<(), LeaseRefusal> {
-        self.facts().book.check(lease)
-    }
-
-    fn arm(&self, lease: Lease, request: ArmRequest) -> Result<(), LeaseRefusal> {
-        let mut facts = self.facts();
-        facts.book.check(lease)?;
-        facts.armings += 1;
-        let number = facts.armings;
-        facts.arming = Some(number);
-        let hand = self.clone();
-        tokio::spawn(async move {
-            sleep(ARM_DELAY).await;
-            let mut facts = hand.facts();
-            if facts.arming == Some(number) {
-                facts.arming = None;
-                facts.arm(request);
-            }
-        });
-        Ok(())
-    }
-
-    fn run_until(&self, lease: Lease, _until: Moment) -> Result<(), LeaseRefusal> {
-        self.check(lease)
-    }
-
-    fn halt(&self, lease: Lease) -> Result<(), LeaseRefusal> {
-        let mut facts = self.facts();
-        facts.book.check(lease)?;
-        facts.stop(Disarmed::Released);
-        Ok(())
-    }
-
-    fn rest(&self, lease: Lease) -> Result<(), LeaseRefusal> {
-        let mut facts = self.facts();
-        facts.book.check(lease)?;
-        facts.disarm(Disarmed::Released);
-        Ok(())
-    }
-
-    fn give_back(&self, lease: Lease, why: Disarmed) -> Result<(), LeaseRefusal> {
-        let mut facts = self.facts();
-        facts.book.check(lease)?;
-        facts.book.end(why);
-        facts.stop(why);
-        Ok(())
-    }
-
-    fn set(&self, lease: Lease, setpoints: &Setpoints) -> Result<(), LeaseRefusal> {
-        let now = self.clock.now();
-        let mut facts = self.facts();
-        facts.book.check(lease)?;
-        if facts.status.armed != Some(setpoints.epoch) {
-            return Ok(());
+    async fn serve_all(self, mut requests: mpsc::Receiver<Request>) {
+        while let Some(request) = requests.recv().await {
+            let Request::Command(HandCommand::ClearErrors, _, answer) = request else {
+                panic!("an exhibition does not ask for {request:?}");
+            };
+            self.facts().hold();
+            sleep(Duration::from_millis(100)).await;
+            let mut facts = self.facts();
+            facts.clears += 1;
+            facts
+                .drives
+                .iter_mut()
+                .for_each(|(_, drive)| drive.clear_errors());
+            // The exhibition may be over.
+            let _heard = answer.send(Ok(()));
         }
-        facts.go_on(now);
+    }
+}
+
+impl BoothFacts {
+    fn set(&mut self, setpoints: &Setpoints, now: Moment) {
+        if self.status.armed != Some(setpoints.epoch) {
+            return;
+        }
+        self.go_on(now);
         for dof in Dof::ALL {
             if let Some(speed) = setpoints.speed[dof] {
-                facts.settings[dof].speed = speed.get().into();
+                self.settings[dof].speed = speed.get().into();
             }
             if let Some(force) = setpoints.force[dof] {
-                facts.settings[dof].threshold_g = force.get().into();
+                self.settings[dof].threshold_g = force.get().into();
             }
         }
-        facts.check(setpoints);
-        let now_ms = facts.now_ms;
+        self.check(setpoints);
+        let now_ms = self.now_ms;
         for dof in Dof::ALL {
             if let Some(Target::Go(to)) = setpoints.angle[dof] {
                 let to = DriveGoal::Position(position_of(to.get().into()));
-                facts.drives[dof].command(to, now_ms);
+                self.drives[dof].command(to, now_ms);
             }
         }
-        if facts.sent.len() < 1000 {
-            facts.sent.push((now, *setpoints));
+        if self.sent.len() < 1000 {
+            self.sent.push((now, *setpoints));
         }
-        Ok(())
     }
-
-    fn read_at(&self, _rates: PollRates) {}
 }

@@ -7,13 +7,12 @@ use crate::hand::{
     Angle, AngleReading, ArmEpoch, Force, Group, Groups, HandCommand, HandSample, Moment, PerDof,
     Setpoints, Speed, Target,
 };
-use crate::link::Stop;
 use crate::link::session::watch::other_controller::OtherController;
+use crate::link::{LinkHandle, Stop};
+use crate::motion::drive::{Armed, drive};
+use crate::motion::program::{Ended, Order, Program, Seen};
 use crate::poses::way::{WayPart, pinch_way};
 use crate::record::{Abort, Rest};
-use crate::tasks::drive::{Armed, drive};
-use crate::tasks::hand::TaskHand;
-use crate::tasks::program::{Ended, Order, Program, Seen};
 use futures::Stream;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -70,8 +69,8 @@ pub struct GripReport {
 
 /// Grips. At the end the hand is not armed any more. Of a grip that was [held](GripEnd::Held) or [reached](GripEnd::Reached) it keeps its
 /// targets: it goes on pressing what it holds, up to the force threshold.
-pub async fn grip<H: TaskHand>(
-    hand: &H,
+pub async fn grip(
+    hand: &LinkHandle,
     armed: Armed,
     start: GripStart,
     ends: impl Stream<Item = Abort>,

@@ -1,17 +1,16 @@
 //! What a sequence sends and what ends it, on a hand that only notes what it is told.
 
+use crate::fake::{Asked, FakeHand, Said, WELL};
 use crate::hand::gap::Gap;
 use crate::hand::grip::GripEstimator;
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target};
 use crate::link::Owner;
+use crate::motion::drive::Armed;
+use crate::motion::play::{PlayCommand, PlayStart, PlayStep, play};
+use crate::motion::program::Ended;
 use crate::poses::library::{EntryId, SequenceId};
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView};
 use crate::record::{Abort, Disarmed, LinkState};
-use crate::tasks::TaskHand;
-use crate::tasks::drive::Armed;
-use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
-use crate::tasks::program::Ended;
-use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::sync::mpsc;
@@ -202,14 +201,18 @@ async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
     type Break = fn(&mut Bench);
     let by = |why| Abort::Disarmed { why: Some(why) };
     let ways: [(Break, Ended<PlayEnd>); 7] = [
-        (|bench| bench.hand.stop(), Err(by(Disarmed::Stop))),
+        (|bench| drop(bench.hand.stop()), Err(by(Disarmed::Stop))),
         (|bench| bench.hand.disarm(), Err(by(Disarmed::Person))),
         (
-            |bench| bench.hand.facts().status.state = LinkState::Fault,
+            |bench| bench.hand.change(|status| status.state = LinkState::Fault),
             Err(Abort::Fault { joint: None }),
         ),
         (
-            |bench| bench.hand.facts().status.state = LinkState::Offline,
+            |bench| {
+                bench
+                    .hand
+                    .change(|status| status.state = LinkState::Offline)
+            },
             Err(Abort::LinkLost),
         ),
         (|bench| bench.hand.arm_as(2), Err(Abort::ArmedAnew)),

@@ -6,13 +6,13 @@ use crate::hand::grip::GripEstimator;
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Groups, HandSample, Moment, PerDof, Setpoints, Target,
 };
+use crate::link::LinkHandle;
+use crate::motion::drive::{Armed, drive};
+use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
 use crate::poses::player::{PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView, Player, ReactionCue};
 use crate::poses::reaction::TouchWatch;
 use crate::poses::way::Targets;
 use crate::record::Abort;
-use crate::tasks::drive::{Armed, drive};
-use crate::tasks::hand::TaskHand;
-use crate::tasks::program::{AfterAbort, Ended, Order, Program, Seen};
 use futures::stream::poll_fn;
 use tokio::sync::mpsc;
 
@@ -52,8 +52,8 @@ pub enum PlayStep {
 }
 
 /// Plays.
-pub async fn play<H: TaskHand>(
-    hand: &H,
+pub async fn play(
+    hand: &LinkHandle,
     armed: Armed,
     start: PlayStart,
     mut commands: mpsc::Receiver<PlayCommand>,

@@ -1,29 +1,29 @@
-//! The hand of task tests: a memory, a flash, a power switch and a script of what goes wrong. Speaks no protocol.
+//! The hand of unit tests: behind a real link handle, in place of a session, a memory, a flash and a script of what goes wrong. Speaks no
+//! protocol.
 
 use crate::hand::{
-    AngleReading, ArmEpoch, Faults, ForceReading, Group, HandCommand, HandSample, Moment, PerDof,
+    AngleReading, ArmEpoch, Faults, Force, ForceReading, Group, HandSample, Moment, PerDof,
     RegisterWrite, Setpoints, Setting, Span, Speed, Status, TemperatureReading, Timed,
 };
-use crate::link::lease::LeaseBook;
-use crate::link::{
-    ArmRequest, Clock, Lease, LeaseRefusal, LinkStatus, Owner, PollRates, Records, RequestError,
-};
+use crate::link::handle::channels;
+use crate::link::request::Request;
+use crate::link::wanted::{Ends, PendingControl};
+use crate::link::{ArmRequest, Clock, LinkHandle, LinkStatus, PollRates, RequestError};
 use crate::params::changes::plan_writes;
-use crate::params::place;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{Params, decoded, span_of};
 use crate::record::{
     Calibrated, Disarmed, Hold, LinkState, NotSent, Record, Reset, Rest, Saved, Verdict, Written,
 };
-use crate::tasks::{Reach, TaskHand};
-use crate::transport::Endpoint;
+use std::ops::Deref;
 use std::sync::{Arc, Mutex, MutexGuard};
-use tokio::sync::broadcast;
+use std::time::Duration;
+use tokio::sync::{broadcast, mpsc, watch};
 
-/// Bytes of memory: more than any address of a kept row.
+/// Bytes of memory: more than any address of a persistent row.
 const MEMORY: usize = 4096;
-/// Records that may wait for a task.
-const RECORDS: usize = 64;
+/// A request takes this long, so that no task spins.
+const REQUEST_DURATION: Duration = Duration::from_millis(5);
 
 /// One thing that a hand was asked or told.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,44 +63,67 @@ pub(crate) enum Fate {
 
 type Script = Box<dyn FnMut(&Asked) -> Fate + Send>;
 
-/// What there is of the hand and its link.
+/// State of the hand, and what its session was told.
 pub(crate) struct Facts {
-    pub(crate) status: LinkStatus,
     memory: Vec<u8>,
     flash: Vec<u8>,
-    pub(crate) asked: Vec<Asked>,
+    asked: Vec<Asked>,
+    runs_until: Option<Moment>,
     script: Script,
-    records: broadcast::Sender<Record>,
-    book: LeaseBook,
 }
 
 /// One hand on an open link. Copies are the same hand.
 #[derive(Clone)]
 pub(crate) struct FakeHand {
+    link: LinkHandle,
     facts: Arc<Mutex<Facts>>,
+    wanted: Arc<watch::Sender<PendingControl>>,
+    status: watch::Sender<LinkStatus>,
+    records: broadcast::Sender<Record>,
     pub(crate) clock: Clock,
 }
 
+impl Deref for FakeHand {
+    type Target = LinkHandle;
+
+    fn deref(&self) -> &LinkHandle {
+        &self.link
+    }
+}
+
 impl FakeHand {
-    /// A hand as delivered, watched, at rest, with 100 in all its defaults.
+    /// A hand as delivered, monitored, at rest, with 100 in all its defaults. Must be called within a tokio runtime.
     pub(crate) fn new() -> Self {
+        let clock = Clock::start();
+        let (link, ends, _) = channels(clock);
+        let Ends {
+            wanted,
+            requests,
+            records,
+            status,
+            ..
+        } = ends;
         let facts = Facts {
-            status: LinkStatus {
-                state: LinkState::Monitoring,
-                rest: Rest::Resting,
-                ..LinkStatus::default()
-            },
             memory: vec![0; MEMORY],
             flash: Vec::new(),
             asked: Vec::new(),
+            runs_until: None,
             script: Box::new(|_| Fate::Answered),
-            records: broadcast::channel(RECORDS).0,
-            book: LeaseBook::default(),
         };
         let hand = Self {
+            link,
             facts: Arc::new(Mutex::new(facts)),
-            clock: Clock::start(),
+            wanted,
+            status,
+            records,
+            clock,
         };
+        hand.change(|status| {
+            status.state = LinkState::Monitoring;
+            status.rest = Rest::Resting;
+        });
+        tokio::spawn(hand.clone().obey_all());
+        tokio::spawn(hand.clone().serve_all(requests));
         let mut params = Params::factory();
         for id in ParamId::all() {
             if params.get(id).is_none() {
@@ -114,8 +137,13 @@ impl FakeHand {
         hand
     }
 
-    pub(crate) fn facts(&self) -> MutexGuard<'_, Facts> {
+    fn facts(&self) -> MutexGuard<'_, Facts> {
         self.facts.lock().unwrap()
+    }
+
+    /// The session publishes another status.
+    pub(crate) fn change(&self, change: impl FnOnce(&mut LinkStatus)) {
+        self.status.send_modify(change);
     }
 
     /// From now on this decides what becomes of each request.
@@ -126,6 +154,15 @@ impl FakeHand {
     /// What was asked since the last call.
     pub(crate) fn asked(&self) -> Vec<Asked> {
         std::mem::take(&mut self.facts().asked)
+    }
+
+    /// The newest setpoints since [`Self::asked`] was called.
+    pub(crate) fn last_move(&self) -> Option<Setpoints> {
+        let facts = self.facts();
+        facts.asked.iter().rev().find_map(|asked| match asked {
+            Asked::Move(setpoints) => Some(*setpoints),
+            _ => None,
+        })
     }
 
     /// What it holds in a row.
@@ -157,9 +194,17 @@ impl FakeHand {
 
     /// The user armed it.
     pub(crate) fn arm_as(&self, epoch: u64) {
-        let mut facts = self.facts();
-        facts.status.state = LinkState::Armed;
-        facts.status.armed = Some(ArmEpoch(epoch));
+        self.change(|status| {
+            status.state = LinkState::Armed;
+            status.armed = Some(ArmEpoch(epoch));
+        });
+    }
+
+    /// The session disarms it for this reason.
+    pub(crate) fn disarm_for(&self, why: Disarmed) {
+        self.wanted.send_modify(|wanted| wanted.book.end(why));
+        self.disarmed();
+        self.change(|status| status.disarmed = Some(why));
     }
 
     /// It says this of itself now, on all joints.
@@ -186,17 +231,92 @@ impl FakeHand {
             sample: Arc::new(sample),
             fresh,
         };
-        // Nobody may be listening.
-        let _heard = self.facts().records.send(record);
+        // There may be no reader.
+        let _heard = self.records.send(record);
     }
 
-    async fn ask(&self, asked: Asked) -> Fate {
-        // A request takes a while, so that no task spins.
-        tokio::time::sleep(std::time::Duration::from_millis(5)).await;
+    fn disarmed(&self) {
+        self.change(|status| {
+            status.armed = None;
+            if status.state == LinkState::Armed {
+                status.state = LinkState::Monitoring;
+            }
+        });
+    }
+
+    fn held(&self) {
+        let at = self.clock.now();
+        self.change(|status| {
+            status.armed = None;
+            if status.state.is_live() {
+                status.state = LinkState::Monitoring;
+                status.hold = Hold::Confirmed { at, rest: at };
+            }
+        });
+    }
+
+    async fn obey_all(self) {
+        let mut news = self.wanted.subscribe();
+        while news.changed().await.is_ok() {
+            let mut control = PendingControl::default();
+            self.wanted.send_if_modified(|wanted| {
+                control = wanted.take();
+                false
+            });
+            self.obey(control);
+        }
+    }
+
+    fn obey(&self, control: PendingControl) {
+        if control.stop {
+            self.note(Asked::Stop);
+            self.held();
+        } else if control.disarm {
+            self.note(Asked::Disarm);
+            self.disarmed();
+        }
+        if let Some(rates) = control.rates {
+            self.note(Asked::ReadAt(rates));
+        }
+        let before = std::mem::replace(&mut self.facts().runs_until, control.runs_until);
+        if let Some(until) = control.runs_until.filter(|until| before != Some(*until)) {
+            self.note(Asked::RunUntil(until));
+        }
+        if let Some(arm) = control.arm {
+            self.note(Asked::Arm(arm.request));
+        }
+        if let Some(setpoints) = control.setpoints {
+            self.note(Asked::Move(setpoints));
+        }
+    }
+
+    fn note(&self, asked: Asked) {
+        self.facts().asked.push(asked);
+    }
+
+    async fn serve_all(self, mut requests: mpsc::Receiver<Request>) {
+        while let Some(request) = requests.recv().await {
+            tokio::time::sleep(REQUEST_DURATION).await;
+            // The task that asked may be gone.
+            let _heard = match request {
+                Request::Read(span, answer) => answer.send(self.read_now(span)).is_ok(),
+                Request::Set(setting, answer) => answer.send(self.set_now(setting)).is_ok(),
+                Request::SetUnread(setting, answer) => {
+                    answer.send(self.set_unread_now(setting)).is_ok()
+                }
+                Request::Save(answer) => answer.send(self.save_now()).is_ok(),
+                Request::Reset(answer) => answer.send(self.reset_now()).is_ok(),
+                Request::Calibrate(answer) => answer.send(self.calibrate_now()).is_ok(),
+                Request::Command(command, ..) => panic!("no task here asks for {command:?}"),
+            };
+        }
+    }
+
+    fn ask(&self, asked: Asked) -> Fate {
         let mut script = {
             let mut facts = self.facts();
             facts.asked.push(asked.clone());
-            if !facts.status.state.is_live() {
+            if !self.status().state.is_live() {
                 return Fate::Fails(RequestError::NotConnected);
             }
             std::mem::replace(&mut facts.script, Box::new(|_| Fate::Answered))
@@ -205,10 +325,6 @@ impl FakeHand {
         let fate = script(&asked);
         self.facts().script = script;
         fate
-    }
-
-    fn note(&self, asked: Asked) {
-        self.facts().asked.push(asked);
     }
 }
 
@@ -239,51 +355,9 @@ fn timeout(address: u16) -> RequestError {
     RequestError::Timeout { address, after_ms }
 }
 
-impl Facts {
-    fn disarm(&mut self) {
-        self.status.armed = None;
-        if self.status.state == LinkState::Armed {
-            self.status.state = LinkState::Monitoring;
-        }
-    }
-
-    fn hold_now(&mut self, at: Moment) {
-        self.status.armed = None;
-        if self.status.state.is_live() {
-            self.status.state = LinkState::Monitoring;
-            self.status.hold = Hold::Confirmed { at, rest: at };
-        }
-    }
-}
-
 impl FakeHand {
-    /// The session disarms it for this reason.
-    pub(crate) fn disarm_for(&self, why: Disarmed) {
-        let mut facts = self.facts();
-        facts.book.end(why);
-        facts.disarm();
-        facts.status.disarmed = Some(why);
-    }
-
-    fn hold(&self, why: Disarmed) {
-        let at = self.clock.now();
-        let mut facts = self.facts();
-        facts.book.end(why);
-        facts.hold_now(at);
-    }
-}
-
-impl TaskHand for FakeHand {
-    fn status(&self) -> LinkStatus {
-        self.facts().status.clone()
-    }
-
-    fn records(&self) -> Records {
-        Records::of(self.facts().records.subscribe())
-    }
-
-    async fn read(&self, span: Span) -> Result<Vec<u8>, RequestError> {
-        match self.ask(Asked::Read(span)).await {
+    fn read_now(&self, span: Span) -> Result<Vec<u8>, RequestError> {
+        match self.ask(Asked::Read(span)) {
             Fate::Answered => {
                 let facts = self.facts();
                 Ok(facts.bytes(&facts.memory, span).to_vec())
@@ -294,13 +368,9 @@ impl TaskHand for FakeHand {
         }
     }
 
-    async fn write(&self, command: HandCommand) -> Result<(), RequestError> {
-        panic!("no task here asks for {command:?}")
-    }
-
-    async fn set_unread(&self, setting: Setting) -> Result<(), RequestError> {
+    fn set_unread_now(&self, setting: Setting) -> Result<(), RequestError> {
         let address = setting.span().address;
-        match self.ask(Asked::SetUnread(setting)).await {
+        match self.ask(Asked::SetUnread(setting)) {
             Fate::Answered => self.facts().take(&setting),
             Fate::AnswerLost => {
                 self.facts().take(&setting);
@@ -317,9 +387,9 @@ impl TaskHand for FakeHand {
         Ok(())
     }
 
-    async fn set_kept(&self, setting: Setting) -> Result<Written, RequestError> {
+    fn set_now(&self, setting: Setting) -> Result<Written, RequestError> {
         let span = setting.span();
-        let verdict = match self.ask(Asked::Keep(setting)).await {
+        let verdict = match self.ask(Asked::Keep(setting)) {
             Fate::Answered => {
                 self.facts().take(&setting);
                 Verdict::Applied
@@ -348,8 +418,8 @@ impl TaskHand for FakeHand {
         })
     }
 
-    async fn save(&self) -> Result<Saved, RequestError> {
-        match self.ask(Asked::Save).await {
+    fn save_now(&self) -> Result<Saved, RequestError> {
+        match self.ask(Asked::Save) {
             Fate::Answered => {
                 self.facts().burn();
                 Ok(Saved::Confirmed)
@@ -365,8 +435,8 @@ impl TaskHand for FakeHand {
         }
     }
 
-    async fn reset(&self) -> Result<Reset, RequestError> {
-        let fate = self.ask(Asked::Reset).await;
+    fn reset_now(&self) -> Result<Reset, RequestError> {
+        let fate = self.ask(Asked::Reset);
         if matches!(fate, Fate::Answered | Fate::AnswerLost) {
             let settings = plan_writes(&Params::factory(), &Params::default()).settings;
             for setting in settings {
@@ -383,76 +453,13 @@ impl TaskHand for FakeHand {
         }
     }
 
-    async fn calibrate(&self) -> Result<Calibrated, RequestError> {
-        match self.ask(Asked::Calibrate).await {
+    fn calibrate_now(&self) -> Result<Calibrated, RequestError> {
+        match self.ask(Asked::Calibrate) {
             Fate::Answered => Ok(Calibrated::Finished),
             Fate::NotSent(why) => Ok(Calibrated::NotSent(why)),
             Fate::Fails(error) => Err(error),
             other => panic!("a calibration does not end as {other:?}"),
         }
-    }
-
-    fn stop(&self) {
-        self.note(Asked::Stop);
-        self.hold(Disarmed::Stop);
-    }
-
-    fn disarm(&self) {
-        self.note(Asked::Disarm);
-        let mut facts = self.facts();
-        facts.book.end(Disarmed::Person);
-        facts.disarm();
-    }
-
-    fn grant(&self, owner: Owner) -> Lease {
-        self.facts().book.grant(owner)
-    }
-
-    fn check(&self, lease: Lease) -> Result<(), LeaseRefusal> {
-        self.facts().book.check(lease)
-    }
-
-    fn arm(&self, lease: Lease, request: ArmRequest) -> Result<(), LeaseRefusal> {
-        self.check(lease)?;
-        self.note(Asked::Arm(request));
-        Ok(())
-    }
-
-    fn set(&self, lease: Lease, setpoints: &Setpoints) -> Result<(), LeaseRefusal> {
-        self.check(lease)?;
-        self.note(Asked::Move(*setpoints));
-        Ok(())
-    }
-
-    fn run_until(&self, lease: Lease, until: Moment) -> Result<(), LeaseRefusal> {
-        self.check(lease)?;
-        self.note(Asked::RunUntil(until));
-        Ok(())
-    }
-
-    fn halt(&self, lease: Lease) -> Result<(), LeaseRefusal> {
-        self.check(lease)?;
-        self.note(Asked::Stop);
-        self.facts().hold_now(self.clock.now());
-        Ok(())
-    }
-
-    fn rest(&self, lease: Lease) -> Result<(), LeaseRefusal> {
-        self.check(lease)?;
-        self.note(Asked::Disarm);
-        self.facts().disarm();
-        Ok(())
-    }
-
-    fn give_back(&self, lease: Lease, why: Disarmed) -> Result<(), LeaseRefusal> {
-        self.check(lease)?;
-        self.note(Asked::Stop);
-        self.hold(why);
-        Ok(())
-    }
-
-    fn read_at(&self, rates: PollRates) {
-        self.note(Asked::ReadAt(rates));
     }
 }
 
@@ -464,7 +471,7 @@ pub(crate) struct Said {
     pub(crate) celsius: u8,
     pub(crate) faults: u8,
     /// SPEED_SET and FORCE_SET.
-    pub(crate) limits: Option<(Speed, crate::hand::Force)>,
+    pub(crate) limits: Option<(Speed, Force)>,
 }
 
 /// A well hand, open and free.
@@ -497,23 +504,4 @@ impl Said {
             ..HandSample::default()
         }
     }
-}
-
-/// Goes where the hand may be: it is there where `is_there` says so.
-pub(crate) struct FakeReach<F> {
-    pub(crate) hand: FakeHand,
-    pub(crate) is_there: F,
-}
-
-impl<F: FnMut(&Endpoint) -> bool + Send> Reach for FakeReach<F> {
-    type Link = FakeHand;
-
-    async fn reach(&mut self, place: &Endpoint) -> Option<FakeHand> {
-        (self.is_there)(place).then(|| self.hand.clone())
-    }
-}
-
-/// The write of a row by which a hand is found.
-pub(crate) fn place_write(id: ParamId, value: Value) -> Asked {
-    Asked::SetUnread(place::setting(id, value).unwrap())
 }

@@ -2,10 +2,9 @@
 //! arming, another controller, stalls, and the stop that follows an early end.
 
 use crate::hand::{ArmEpoch, HandSample, Moment, Setpoints};
-use crate::link::{Clock, Lease, LeaseRefusal, LinkStatus, PollRates, Records, Stop};
+use crate::link::{Clock, Lease, LeaseRefusal, LinkHandle, LinkStatus, PollRates, Records, Stop};
+use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
 use crate::record::{Abort, Disarmed, LinkState, Record, SetpointConflict, WriteCause};
-use crate::tasks::hand::TaskHand;
-use crate::tasks::program::{AfterAbort, Ended, Order, Program, Seen};
 use crate::trials::limits::{Stall, fault, heat_reason};
 use futures::{FutureExt as _, Stream, StreamExt as _};
 use std::pin::pin;
@@ -97,8 +96,8 @@ pub struct EndReport {
 
 /// Runs a program to its end. `report` sees it after each step, with what was sent in it, and says whether it could store or show
 /// what is new; if not, the program is aborted. If `inputs` ends, whoever ran the program moves the hand in another way.
-pub async fn drive<H: TaskHand, P: Program>(
-    hand: &H,
+pub async fn drive<P: Program>(
+    hand: &LinkHandle,
     start: impl Into<DriveStart>,
     mut program: P,
     inputs: impl Stream<Item = P::Input>,
@@ -165,10 +164,10 @@ pub async fn drive<H: TaskHand, P: Program>(
         match (program.ended(), P::AFTER_ABORT) {
             (Some(Err(Abort::TakenOver)), _) => {}
             (Some(Err(Abort::NotKept)), _) | (Some(Err(_)), AfterAbort::Stop) => {
-                stop = Some(hand.stopped().await);
+                stop = Some(hand.stop().await);
             }
-            (Some(Err(Abort::LinkLost)), AfterAbort::StopAfterLinkLoss) => hand.stop(),
-            _ if order == Some(Order::Stop) => stop = Some(hand.stopped().await),
+            (Some(Err(Abort::LinkLost)), AfterAbort::StopAfterLinkLoss) => drop(hand.stop()),
+            _ if order == Some(Order::Stop) => stop = Some(hand.stop().await),
             _ => {}
         }
     }
@@ -180,8 +179,8 @@ pub async fn drive<H: TaskHand, P: Program>(
     Driven { program, end, stop }
 }
 
-struct Driving<'a, H> {
-    hand: &'a H,
+struct Driving<'a> {
+    hand: &'a LinkHandle,
     records: Records,
     sample: HandSample,
     armed_by: ArmedBy,
@@ -191,7 +190,7 @@ struct Driving<'a, H> {
     turns: Turns,
 }
 
-impl<H: TaskHand> Driving<'_, H> {
+impl Driving<'_> {
     fn read<P: Program>(&mut self, program: &mut P, record: Option<Record>, now: Moment) {
         match record {
             Some(Record::Reading { sample, fresh }) => {
@@ -223,7 +222,7 @@ impl<H: TaskHand> Driving<'_, H> {
                 Ok(())
             }
             Order::Stop => Ok(()),
-            Order::Arm(request) => hand.arm(lease, request),
+            Order::Arm(request) => hand.arm(lease, request).map(drop),
             Order::Halt => hand.halt(lease),
             Order::RunUntil(until) => hand.run_until(lease, until),
             Order::GiveBack(why) => hand.give_back(lease, why),

@@ -6,12 +6,11 @@ use crate::exhibit::run::{
 };
 use crate::hand::grip::GripEstimator;
 use crate::hand::{HandCommand, HandSample, Moment, PerDof, Setpoints};
-use crate::link::{Clock, Lease, LeaseRefusal, Owner};
+use crate::link::{Clock, Lease, LeaseRefusal, LinkHandle, Owner};
+use crate::motion::drive::Armed;
+use crate::motion::play::{PlayCommand, PlayStart, PlayStep, play};
 use crate::poses::player::{PlayMode, PlayPlan};
 use crate::record::{Disarmed, Record};
-use crate::tasks::drive::Armed;
-use crate::tasks::hand::TaskHand;
-use crate::tasks::play::{PlayCommand, PlayStart, PlayStep, play};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -66,8 +65,8 @@ pub enum ExhibitStep {
 }
 
 /// Runs until nobody wishes anything any more; then what plays is held and the hand disarmed. Writes nothing before the user arms.
-pub async fn exhibit<H: TaskHand>(
-    hand: &H,
+pub async fn exhibit(
+    hand: &LinkHandle,
     start: ExhibitStart,
     mut wishes: mpsc::Receiver<ExhibitWish>,
     mut tell: impl FnMut(ExhibitStep),
@@ -147,8 +146,8 @@ async fn ended(playing: &mut Option<PlayingPiece>) {
     }
 }
 
-struct ExhibitTask<'a, H> {
-    hand: &'a H,
+struct ExhibitTask<'a> {
+    hand: &'a LinkHandle,
     run: ExhibitRun,
     locked: PerDof<bool>,
     sample: HandSample,
@@ -162,7 +161,7 @@ struct ExhibitTask<'a, H> {
     drawn: Arc<PageDrawn>,
 }
 
-impl<H: TaskHand> ExhibitTask<'_, H> {
+impl ExhibitTask<'_> {
     fn obey_all(&mut self) {
         loop {
             let status = self.hand.status();

@@ -1,5 +1,6 @@
 //! What a grip by size sends and how it ends, on a hand that only notes what it is told.
 
+use crate::fake::{Asked, FakeHand, WELL};
 use crate::hand::feedback::tactile::TactileBlock;
 use crate::hand::gap::Gap;
 use crate::hand::grip::GripEstimator;
@@ -8,11 +9,9 @@ use crate::hand::{
     Speed, Status, Target, Timed,
 };
 use crate::link::Owner;
+use crate::motion::drive::Armed;
+use crate::motion::grip::{GripEnd, GripReport, GripStart, grip};
 use crate::record::{Abort, Disarmed, LinkState, Rest};
-use crate::tasks::TaskHand;
-use crate::tasks::drive::Armed;
-use crate::tasks::grip::{GripEnd, GripReport, GripStart, grip};
-use crate::tasks::tests::fake::{Asked, FakeHand, WELL};
 use futures::{StreamExt as _, stream};
 use std::cell::Cell;
 use std::time::Duration;
@@ -117,16 +116,7 @@ impl Bench {
 
     /// The setpoints that the hand holds now.
     fn read_back(&self, sample: &mut HandSample) {
-        let moved = self
-            .hand
-            .facts()
-            .asked
-            .iter()
-            .rev()
-            .find_map(|asked| match asked {
-                Asked::Move(setpoints) => Some(*setpoints),
-                _ => None,
-            });
+        let moved = self.hand.last_move();
         let known = self.holds.get();
         let told = moved.map(|moved| self.taken(&moved, known.as_ref()));
         self.holds.set(told.or(known));
@@ -167,7 +157,8 @@ impl Bench {
     }
 
     fn moves(&self, yes: bool) {
-        self.hand.facts().status.rest = if yes { Rest::Moving } else { Rest::Resting };
+        self.hand
+            .change(|status| status.rest = if yes { Rest::Moving } else { Rest::Resting });
     }
 
     /// Index and thumb bend as they were sent since the last call, each with its speed.
@@ -280,11 +271,15 @@ async fn whatever_ends_it_nothing_is_sent_afterwards() {
             },
         ),
         (
-            |bench| bench.hand.facts().status.state = LinkState::Fault,
+            |bench| bench.hand.change(|status| status.state = LinkState::Fault),
             Abort::Fault { joint: None },
         ),
         (
-            |bench| bench.hand.facts().status.state = LinkState::Offline,
+            |bench| {
+                bench
+                    .hand
+                    .change(|status| status.state = LinkState::Offline)
+            },
             Abort::LinkLost,
         ),
         (

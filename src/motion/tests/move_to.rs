@@ -1,14 +1,13 @@
 //! What a motion to targets sends and how it ends, on a hand that only notes what it is told.
 
+use crate::fake::{Asked, FakeHand, Said, WELL};
 use crate::hand::grip::GripEstimator;
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Speed, Target};
 use crate::link::{ArmRequest, Owner};
+use crate::motion::drive::Armed;
+use crate::motion::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
 use crate::poses::way::Targets;
 use crate::record::{Abort, Disarmed, LinkState, Rest};
-use crate::tasks::TaskHand;
-use crate::tasks::drive::Armed;
-use crate::tasks::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
-use crate::tasks::tests::fake::{Asked, FakeHand, Said, WELL};
 use std::time::Duration;
 use tokio::task::JoinHandle;
 use tokio::time::sleep;
@@ -39,7 +38,7 @@ impl Bench {
             seen: HandSample::default(),
             clock: hand.clock,
         };
-        hand.facts().status.rest = Rest::Moving;
+        hand.change(|status| status.rest = Rest::Moving);
         let link = hand.clone();
         let task = tokio::spawn(async move { move_to(&link, armed, start).await });
         Self { hand, task }
@@ -101,7 +100,7 @@ async fn one_that_settles_waits_for_rest() {
     let bench = Bench::start(ALL, true);
     bench.at(400, 80).await;
     assert!(!bench.task.is_finished());
-    bench.hand.facts().status.rest = Rest::Resting;
+    bench.hand.change(|status| status.rest = Rest::Resting);
     bench.at(400, 3).await;
     assert_eq!(bench.task.await.unwrap().end, Ok(MoveEnd::Reached));
 }
@@ -110,7 +109,7 @@ async fn one_that_settles_waits_for_rest() {
 async fn a_joint_that_rests_elsewhere_was_stopped() {
     let bench = Bench::start(ALL, false);
     // What is read right after it was sent shows a hand that does not move yet.
-    bench.hand.facts().status.rest = Rest::Resting;
+    bench.hand.change(|status| status.rest = Rest::Resting);
     bench.at(1000, 20).await;
     assert!(!bench.task.is_finished());
     bench.at(700, 60).await;
@@ -141,11 +140,11 @@ async fn whatever_ends_it_nothing_is_sent_afterwards() {
             },
         ),
         (
-            |hand| hand.facts().status.state = LinkState::Fault,
+            |hand| hand.change(|status| status.state = LinkState::Fault),
             Abort::Fault { joint: None },
         ),
         (
-            |hand| hand.facts().status.state = LinkState::Offline,
+            |hand| hand.change(|status| status.state = LinkState::Offline),
             Abort::LinkLost,
         ),
         (

@@ -3,12 +3,11 @@
 
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{Angle, ArmEpoch, Groups, HandSample, Moment, Setpoints, Speed, Target};
-use crate::link::ArmRequest;
+use crate::link::{ArmRequest, LinkHandle};
+use crate::motion::drive::{Armed, drive};
+use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
 use crate::poses::way::{Targets, way};
 use crate::record::{Abort, Rest};
-use crate::tasks::drive::{Armed, drive};
-use crate::tasks::hand::TaskHand;
-use crate::tasks::program::{AfterAbort, Ended, Order, Program, Seen};
 use futures::stream::pending;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -52,7 +51,7 @@ pub struct MoveReport {
 }
 
 /// Moves, until the joints are there or the hand rests elsewhere.
-pub async fn move_to<H: TaskHand>(hand: &H, armed: Armed, start: MoveStart) -> MoveReport {
+pub async fn move_to(hand: &LinkHandle, armed: Armed, start: MoveStart) -> MoveReport {
     let program = Moving {
         epoch: armed.epoch,
         legs: None,

@@ -9,11 +9,10 @@ use crate::inputs::follow::{
     Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase, HOLD_TIMEOUT,
 };
 use crate::inputs::{Offer, OfferLimits};
-use crate::link::{ArmRequest, Clock, HoldToRun, Lease};
+use crate::link::{ArmRequest, Clock, HoldToRun, Lease, LinkHandle};
+use crate::motion::drive::{ArmedBy, DriveStart, drive};
+use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
 use crate::record::{Abort, Disarmed};
-use crate::tasks::drive::{ArmedBy, DriveStart, drive};
-use crate::tasks::hand::TaskHand;
-use crate::tasks::program::{AfterAbort, Ended, Order, Program, Seen};
 use futures::stream::poll_fn;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -75,8 +74,8 @@ pub enum FollowEnd {
 }
 
 /// Follows until the source or the lease ends.
-pub async fn follow<H: TaskHand>(
-    hand: &H,
+pub async fn follow(
+    hand: &LinkHandle,
     start: FollowStart,
     mut offers: mpsc::Receiver<Offer>,
     mut tell: impl FnMut(FollowView),

@@ -1,0 +1,15 @@
+//! Everything that moves an armed hand over time. Each motion is a [`Program`](program::Program), a pure state machine: readings, time and
+//! user input in, orders out. [`drive`](drive::drive) is the one loop that runs them, and has the safety rules.
+#![warn(missing_docs)]
+
+pub mod checkup;
+pub mod drive;
+pub mod exhibit;
+pub mod follow;
+pub mod grip;
+pub mod move_to;
+pub mod play;
+pub mod program;
+pub mod series;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,9 @@
+//! Orders that programs send to a hand, and how they end, on a hand without a protocol.
+
+mod booth;
+mod drive;
+mod exhibit;
+mod grip;
+mod move_to;
+mod play;
+mod series;
