@@ -18,8 +18,6 @@ pub(crate) type KeptCheckup = io::Result<Option<(CheckupReport, Option<PathBuf>)
 
 #[derive(Debug, Default)]
 pub struct HandCheckup {
-    /// The running check-up.
-    pub run: Option<CheckupRun>,
     /// The last check-up: of this run of the program, else the last stored one.
     pub last: Option<ShownCheckup>,
     /// Reason why the stored check-ups cannot be read.

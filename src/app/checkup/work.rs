@@ -10,7 +10,7 @@ use crate::app::trials::work::{SeriesHand, ends};
 use crate::checkup::free_file;
 use crate::checkup::subject::Light;
 use crate::checkup::{Checkup, CheckupPlan};
-use crate::hand::{ArmEpoch, Setpoints};
+use crate::hand::Setpoints;
 use crate::motion::checkup::{CheckupFiles, ConcludedCheckup, EndedCheckup};
 use crate::motion::drive::{Armed, drive};
 use crate::store::calendar::{day, since_1970, stamp};
@@ -103,22 +103,20 @@ fn prepare(files: &CheckupFiles) -> io::Result<()> {
     files.report.as_deref().map_or(Ok(()), create_folder)
 }
 
-impl HandCheckup {
-    /// Applies the progress of the running check-up. Once it has ended, returns its arming and the notices for the
-    /// user.
-    pub(crate) fn news(&mut self) -> Option<(ArmEpoch, Vec<NoticeKind>)> {
-        let run = self.run.as_mut()?;
-        let (steps, end) = run.task.news();
+impl CheckupRun {
+    /// Applies the progress of the task, and returns its result once it has ended.
+    pub(crate) fn news(&mut self) -> Option<io::Result<ConcludedCheckup>> {
+        let (steps, end) = self.task.news();
         for (at, view) in steps {
-            (run.view, run.since) = (view, at);
+            (self.view, self.since) = (view, at);
         }
-        let epoch = run.epoch;
-        let end = end?;
-        self.run = None;
-        Some((epoch, self.over(end)))
+        end
     }
+}
 
-    fn over(&mut self, end: io::Result<ConcludedCheckup>) -> Vec<NoticeKind> {
+impl HandCheckup {
+    /// Stores the result of a check-up for display, and returns the notices for the user.
+    pub(crate) fn over(&mut self, end: io::Result<ConcludedCheckup>) -> Vec<NoticeKind> {
         match end {
             Err(error) => vec![NoticeKind::not_saved(PathBuf::from("checks"), &error)],
             Ok(ConcludedCheckup { report, written }) => {
@@ -140,9 +138,9 @@ impl HandCheckup {
         }
     }
 
-    /// Reads the stored check-ups when their view is shown; once, and not while one runs.
+    /// Reads the stored check-ups when their view is shown, once.
     pub(crate) fn look(&mut self, files: CheckupFiles, env: &Env) {
-        if self.run.is_some() || std::mem::replace(&mut self.is_looked, true) {
+        if std::mem::replace(&mut self.is_looked, true) {
             return;
         }
         // Nothing is stored for the built-in hand.

@@ -9,6 +9,7 @@ use crate::app::hand::controls::{HeldOtherwise, JointChange};
 use crate::app::hand::status_news::StatusReport;
 use crate::app::hand::{Activity, Connection, Controls, HoldKey, RecordedMover, SequenceRun};
 use crate::app::hands::free_force::HandFreeForce;
+use crate::app::hands::running::{AskedSeries, MotionRun, RunningMotion};
 use crate::app::inputs::HandInputs;
 use crate::app::notices::{HandNotices, NoticeKind, RequestKind};
 use crate::app::params::ParamsState;
@@ -16,20 +17,19 @@ use crate::app::procedures::Procedures;
 use crate::app::readings::{Measured, Readings};
 use crate::app::recordings::recording::HandRecording;
 use crate::app::settings::Settings;
-use crate::app::slot::{HandLabel, place_name};
-use crate::app::trials::{HandOvershoot, SeriesPlan, SeriesRun, StartRefusal};
-use crate::checkup::CheckupPlan;
+use crate::app::slot::{HandLabel, SlotId, place_name};
+use crate::app::trials::{HandOvershoot, StartRefusal};
 use crate::hand::kinematics::Side;
 use crate::hand::{
     Angle, ArmEpoch, Dof, Gesture, GestureRoute, HandCommand, Moment, PerDof, Setpoints,
 };
 use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
-use crate::link::{LeaseRefusal, LinkStatus, RequestError};
+use crate::link::{LeaseRefusal, LinkStatus, Owner, RequestError};
 use crate::motion::drive::Armed;
 use crate::motion::play::{self, PlayCommand, PlayStart};
 use crate::poses::player::{PlayMode, PlayPlan, PlayView};
-use crate::record::{Abort, ArmRefusal, LinkState, Record};
+use crate::record::{ArmRefusal, LinkState, Record};
 use crate::transport::Endpoint;
 use crate::trials::TrialPlan;
 use std::time::Duration;
@@ -40,15 +40,6 @@ use tokio::sync::mpsc;
 pub(crate) const REST_TIMEOUT: Duration = Duration::from_millis(600);
 /// Commands to a sequence that may wait: the user cannot press faster than a task takes them.
 const COMMANDS_MAX: usize = 16;
-
-/// A series that begins once the hand is armed for it.
-#[derive(Debug, Clone, PartialEq)]
-pub enum AskedSeries {
-    /// Trials.
-    Trials(Box<SeriesPlan>),
-    /// A check-up.
-    Checkup(CheckupPlan),
-}
 
 /// Everything about one hand.
 #[derive(Debug, Default)]
@@ -61,17 +52,13 @@ pub struct Hand {
     pub readings: Readings,
     pub measured: Measured,
     pub controls: Controls,
-    /// The sequence that runs, or ran last.
-    pub sequence: Option<SequenceRun>,
-    /// The series of trials that runs.
-    pub series: Option<SeriesRun>,
-    /// What begins once the arming that was asked for with it holds, and when that was.
-    pub series_asked: Option<(AskedSeries, Moment)>,
+    /// The program that moves the hand.
+    pub running: RunningMotion,
     /// What trials measured of it.
     pub overshoot: HandOvershoot,
     /// What its joints read when they touch nothing.
     pub(crate) free_force: HandFreeForce,
-    /// The check-up that runs, and the last one.
+    /// The last check-up.
     pub checkup: HandCheckup,
     /// The open procedure: change of id or address, reset, calibration.
     pub procedures: Procedures,
@@ -100,7 +87,7 @@ impl Hand {
             Activity::Series
         } else if let Some(owner) = self.connection.outside_owner() {
             Activity::Following(owner)
-        } else if self.sequence.as_ref().is_some_and(SequenceRun::is_running) {
+        } else if self.running.sequence().is_some_and(SequenceRun::is_running) {
             Activity::Playing
         } else {
             Activity::Idle
@@ -122,9 +109,16 @@ impl Hand {
         locked.map(StartRefusal::Locked).or(not_armed)
     }
 
-    /// Whether a series of trials or a check-up runs.
+    /// True while a series of trials or a check-up runs.
     pub const fn runs_series(&self) -> bool {
-        self.series.is_some() || self.checkup.run.is_some()
+        self.running.runs_series()
+    }
+
+    /// Slot of the hand that leads this one.
+    pub fn leader(&self) -> Option<SlotId> {
+        let mirror = self.inputs.mirror.as_ref()?;
+        let follows = self.running.follows(Owner::Mirror);
+        follows.then_some(mirror.leader)
     }
 
     /// What a live hand holds of a joint, where that is not what was set.
@@ -220,9 +214,7 @@ impl Hand {
             // Of the connection.
             connection: before.connection,
             readings: Readings::default(),
-            sequence: None,
-            series: None,
-            series_asked: None,
+            running: RunningMotion::default(),
             checkup: HandCheckup::default(),
             inputs: HandInputs::default(),
             recording: None,
@@ -271,7 +263,7 @@ impl Hand {
             }
             Record::State { .. } | Record::Answered { .. } => {}
             Record::ArmRefused { at, reason } => {
-                self.series_asked = None;
+                self.running.forget_arming();
                 notices.push(*at, NoticeKind::ArmRefused(*reason));
             }
         }
@@ -346,7 +338,9 @@ impl Hand {
         }
         let may_arm = self.activity().lets_arm() && self.arm_refusal(ctx.now).is_none();
         self.arm(ctx);
-        self.series_asked = may_arm.then_some((asked, ctx.now));
+        if may_arm {
+            self.running.0 = Some(MotionRun::Arming(asked, ctx.now));
+        }
     }
 
     /// Holds now. Works in every state; whatever was armed is not any more, at once. Without a live link it says that
@@ -356,13 +350,7 @@ impl Hand {
             ctx.tell(NoticeKind::StopNotSent);
             self.measured.history.mark(ctx.now, MarkKind::StopNotSent);
         }
-        if let Some(run) = &mut self.series {
-            run.end(Abort::Person);
-        }
-        if let Some(run) = &mut self.checkup.run {
-            run.end(Abort::Person);
-        }
-        self.series_asked = None;
+        self.running.end_series();
         self.controls.held.forget_press();
         self.follow();
     }
@@ -370,7 +358,7 @@ impl Hand {
     /// Lets no setpoint pass any more. The hand keeps what it was told.
     pub(crate) fn disarm(&mut self, now: Moment) {
         self.connection.disarm(now);
-        self.series_asked = None;
+        self.running.forget_arming();
         self.controls.held.forget_press();
         self.follow();
     }
@@ -408,7 +396,7 @@ impl Hand {
         let wanted = self.controls.take(dof, change, self.own_epoch());
         if let JointChange::Lock(_) = change {
             self.follow();
-            if let Some(run) = &self.sequence {
+            if let Some(run) = self.running.sequence() {
                 run.command(PlayCommand::Lock(self.controls.locked()));
             }
         }
@@ -456,7 +444,7 @@ impl Hand {
 
     /// The user moves the hand: what moved it before does not any more.
     pub(crate) fn take_over(&mut self) {
-        if let Some(run) = &mut self.sequence {
+        if let Some(run) = self.running.sequence_mut() {
             run.leave();
         }
         self.connection.take_over();
@@ -493,13 +481,13 @@ impl Hand {
         let task = Running::start(env, |steps| async move {
             play::play(&link, armed, start, wanted, |step| steps.tell(step)).await
         });
-        self.sequence = Some(SequenceRun {
+        self.running.0 = Some(MotionRun::Sequence(SequenceRun {
             entry,
             view: PlayView::first(now),
             commands: Some(commands),
             task: Some(task),
             thresholds,
-        });
+        }));
         true
     }
 

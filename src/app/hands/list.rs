@@ -71,7 +71,7 @@ impl HandList {
         let before = |slot| {
             let mut all = self.iter();
             let hand = all.find(|hand| hand.label.slot == slot)?;
-            hand.inputs.leader()
+            hand.leader()
         };
         let line = std::iter::successors(Some(leader), |slot| before(*slot));
         line.take(HANDS_MAX).any(|slot| slot == follower)

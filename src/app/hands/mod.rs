@@ -5,6 +5,7 @@ pub mod grip;
 pub mod hand;
 pub mod list;
 pub mod mover;
+pub mod running;
 
 #[cfg(test)]
 mod news_tests;

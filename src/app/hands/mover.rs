@@ -60,13 +60,13 @@ impl Mover {
         if let Some(then) = hand.recorded {
             return recorded_mover(then, link);
         }
-        if let Some(run) = &hand.series {
+        if let Some(run) = hand.running.series() {
             return Some(Self::Series(run.view.number, run.view.total));
         }
-        if let Some(run) = &hand.checkup.run {
+        if let Some(run) = hand.running.checkup_run() {
             return Some(Self::Checkup(run.view.done + 1, run.view.total));
         }
-        if let Some(run) = hand.sequence.as_ref().filter(|run| run.is_running()) {
+        if let Some(run) = hand.running.sequence().filter(|run| run.is_running()) {
             return Some(Self::Playing(run.entry, run.view.at));
         }
         if link.rest != Rest::Moving || connection.commanded && came_to_rest(hand, now) {

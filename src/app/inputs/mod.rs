@@ -118,8 +118,6 @@ pub struct HandInputs {
     pub dds_view: Option<DdsState>,
     /// What was to be opened last and was not, and why.
     pub refused: Option<(InputKind, OpenRefusal)>,
-    /// What the hand follows.
-    pub follow: Option<FollowRun>,
 }
 
 #[derive(Debug)]
@@ -184,23 +182,10 @@ impl HandInputs {
         });
     }
 
-    /// Whether the hand follows what is sent on DDS.
-    pub(crate) fn follows_dds(&self) -> bool {
-        let mut run = self.follow.iter();
-        run.any(|run| run.owner == Owner::Dds)
-    }
-
     /// Whether another hand obeys the same sender on DDS.
     pub(crate) fn other_follows_dds(&self) -> bool {
         let mut joined = self.dds.iter();
         joined.any(|joined| joined.others.now().is_some())
-    }
-
-    /// The slot of the hand that leads this one now.
-    pub fn leader(&self) -> Option<SlotId> {
-        let run = self.follow.as_ref()?;
-        let mirror = self.mirror.as_ref()?;
-        (run.owner == Owner::Mirror).then_some(mirror.leader)
     }
 
     /// True while something from outside is listened to or served: a badge says so.

@@ -12,7 +12,7 @@ use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource};
 use crate::link::ArmRequest;
 use crate::record::file::Opening;
 use crate::share::dds::SharedOnDds;
-use crate::share::fleet::{self, FleetCard, OtherFollowers};
+use crate::share::fleet::{FleetCard, OtherFollowers};
 use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{Gateway, GatewayConfig, SILENCE, Writers};
 use crate::store::calendar::since_1970;
@@ -161,18 +161,6 @@ impl HandInputs {
         match joined {
             Ok(joined) => self.dds = Some(joined),
             Err(error) => self.refused = Some((InputKind::Dds, OpenRefusal::Dds(error))),
-        }
-    }
-
-    /// What others are told of this hand.
-    pub(crate) fn fleet_card(&self, name: &str, side: Side, settings: &Settings) -> FleetCard {
-        FleetCard {
-            host: fleet::host(),
-            name: name.to_owned(),
-            side,
-            at: self.gateway.as_ref().map(Gateway::address),
-            first_may_move: settings.first_client_moves,
-            follows: self.follows_dds(),
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::app::checkup::work::files;
 use crate::app::ctx::Ctx;
 use crate::app::hand::SequenceRun;
 use crate::app::hands::Hand;
-use crate::app::hands::hand::AskedSeries;
+use crate::app::hands::running::{AskedSeries, MotionRun};
 use crate::app::notices::NoticeKind;
 use crate::app::params::ParamsHand;
 use crate::app::poses::PoseState;
@@ -37,18 +37,18 @@ pub(super) struct Shared<'a> {
 /// Lets one hand go on.
 pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     hand.take_news(&mut ctx.notices, ctx.now);
-    let ran = hand.sequence.as_ref().is_some_and(SequenceRun::is_running);
-    let played = hand.sequence.as_mut().map(SequenceRun::news);
+    let ran = hand.running.sequence().is_some_and(SequenceRun::is_running);
+    let played = hand.running.sequence_mut().map(SequenceRun::news);
     if let Some(sent) = played {
         sent.iter().for_each(|setpoints| hand.sent(setpoints));
     }
-    let thresholds = hand.sequence.as_ref().map(SequenceRun::thresholds);
+    let thresholds = hand.running.sequence().map(SequenceRun::thresholds);
     hand.readings.grip.judge_by(thresholds.unwrap_or_default());
-    let phase = hand.sequence.as_ref().map(|run| run.view.phase);
+    let phase = hand.running.sequence().map(|run| run.view.phase);
     if let Some(PlayPhase::Ended(Ok(PlayEnd::NotHolding(grip)))) = phase.filter(|_| ran) {
         ctx.tell(NoticeKind::NotHolding { grip });
     }
-    if !hand.sequence.as_ref().is_some_and(SequenceRun::is_running) {
+    if !hand.running.sequence().is_some_and(SequenceRun::is_running) {
         restore_rested(hand);
     }
     inputs::tick(hand, shared.settings, shared.poses, ctx);
@@ -105,7 +105,8 @@ pub(super) fn start_series(
         return;
     }
     if let Some(at) = lend(hand) {
-        hand.series = SeriesRun::begin(at, plan, trials, ctx);
+        let run = SeriesRun::begin(at, plan, trials, ctx);
+        hand.running.0 = run.map(MotionRun::Trials);
     }
 }
 
@@ -122,7 +123,8 @@ pub(super) fn start_checkup(
     };
     let files = files(&endpoint, settings, ctx.env);
     if let Some(at) = lend(hand) {
-        hand.checkup.run = Some(CheckupRun::begin(at, plan, files, ctx));
+        let run = CheckupRun::begin(at, plan, files, ctx);
+        hand.running.0 = Some(MotionRun::Checkup(run));
     }
 }
 
@@ -148,19 +150,21 @@ fn lend(hand: &mut Hand) -> Option<SeriesHand<'_>> {
 fn start_asked(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     let trials = &mut *shared.trials;
     let is_armed = hand.connection.is_armed();
-    let now = ctx.now;
-    let is_late = |at: Moment| now.since(at) > ARM_TIMEOUT;
-    let is_other = |asked: &AskedSeries| match asked {
-        AskedSeries::Trials(plan) => **plan != trials.planned(plan.kind()),
-        AskedSeries::Checkup(_) => false,
-    };
-    let is_over =
-        |(asked, at): &mut (AskedSeries, Moment)| is_armed || is_late(*at) || is_other(asked);
-    let Some((asked, at)) = hand.series_asked.take_if(is_over) else {
+    let Some(MotionRun::Arming(asked, at)) = &hand.running.0 else {
         return;
     };
     // A window that hung meanwhile moves nothing late.
-    if is_armed && !is_late(at) && !is_other(&asked) {
+    let is_late = ctx.now.since(*at) > ARM_TIMEOUT;
+    let is_other = match asked {
+        AskedSeries::Trials(plan) => **plan != trials.planned(plan.kind()),
+        AskedSeries::Checkup(_) => false,
+    };
+    if !(is_armed || is_late || is_other) {
+        return;
+    }
+    let asked = asked.clone();
+    hand.running.0 = None;
+    if is_armed && !is_late && !is_other {
         match asked {
             AskedSeries::Trials(plan) => start_series(hand, *plan, trials, ctx),
             AskedSeries::Checkup(plan) => start_checkup(hand, plan, shared.settings, ctx),
@@ -173,7 +177,9 @@ fn start_asked(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
 
 /// Takes in what the series did.
 fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
-    let Some(run) = &mut hand.series else { return };
+    let Some(MotionRun::Trials(run)) = &mut hand.running.0 else {
+        return;
+    };
     let news = run.news(trials);
     let epoch = run.epoch;
     hand.overshoot.add(news.measured);
@@ -182,7 +188,7 @@ fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
     }
     if let Some(told) = news.end {
         ctx.tell(told);
-        hand.series = None;
+        hand.running.0 = None;
         // The task disarmed the hand, or stopped it.
         if hand.connection.status.armed == Some(epoch) {
             hand.disarm(ctx.now);
@@ -193,12 +199,19 @@ fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
 /// Takes in what the check-up did, and what was read of kept ones.
 fn tick_checkup(hand: &mut Hand, ctx: &mut Ctx<'_>) {
     hand.checkup.tick();
-    if let Some((epoch, told)) = hand.checkup.news() {
-        told.into_iter().for_each(|told| ctx.tell(told));
-        hand.free_force.read_again();
-        if hand.connection.status.armed == Some(epoch) {
-            hand.disarm(ctx.now);
-        }
+    let Some(MotionRun::Checkup(run)) = &mut hand.running.0 else {
+        return;
+    };
+    let epoch = run.epoch;
+    let Some(end) = run.news() else {
+        return;
+    };
+    hand.running.0 = None;
+    let notices = hand.checkup.over(end).into_iter();
+    notices.for_each(|notice| ctx.tell(notice));
+    hand.free_force.read_again();
+    if hand.connection.status.armed == Some(epoch) {
+        hand.disarm(ctx.now);
     }
 }
 

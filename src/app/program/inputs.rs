@@ -3,6 +3,7 @@
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::hands::Hand;
+use crate::app::hands::running::MotionRun;
 use crate::app::inputs::{FollowRun, InputAction, InputSource};
 use crate::app::notices::NoticeKind;
 use crate::app::poses::PoseState;
@@ -11,8 +12,11 @@ use crate::app::settings::Settings;
 use crate::app::state::State;
 use crate::hand::{Moment, Setpoints};
 use crate::inputs::pad::file;
+use crate::link::Owner;
 use crate::motion::follow::{FollowStart, FollowTerms};
 use crate::record::{ArmRefusal, Disarmed};
+use crate::share::fleet::{self, FleetCard};
+use crate::share::gateway::Gateway;
 use crate::transport::dds::DdsPlace;
 
 /// Does what the user asked for at the shown hand.
@@ -29,7 +33,7 @@ pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
         InputAction::Share(place) => hand.inputs.share(place, connection, settings, env),
         InputAction::Show(place) => hand.inputs.show_viewers(place, connection, side, env),
         InputAction::JoinDds(interface) => {
-            let card = hand.inputs.fleet_card(&hand.label.name, side, settings);
+            let card = fleet_card(hand, settings);
             let domain = 0;
             let place = interface.map(|interface| (DdsPlace { interface, domain }, card));
             // What the user set here is the most that a message may ask for.
@@ -67,9 +71,6 @@ fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now):
     if is_refused || !hand.activity().lets_grant() {
         return;
     }
-    if let Some(run) = &mut hand.sequence {
-        run.leave();
-    }
     let terms = terms(hand, settings);
     let Some(link) = hand.connection.link() else {
         return;
@@ -91,7 +92,7 @@ fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now):
         clock: env.clock,
     };
     let run = FollowRun::begin(offered, link.clone(), start, (terms, env));
-    hand.inputs.follow = Some(run);
+    hand.running.0 = Some(MotionRun::Follow(run));
 }
 
 fn terms(hand: &Hand, settings: &Settings) -> FollowTerms {
@@ -105,21 +106,20 @@ fn terms(hand: &Hand, settings: &Settings) -> FollowTerms {
 /// Takes in what inputs and clients did.
 pub(super) fn tick(hand: &mut Hand, settings: &Settings, poses: &PoseState, ctx: &mut Ctx<'_>) {
     let terms = terms(hand, settings);
+    let (card, follows_dds) = (fleet_card(hand, settings), hand.running.follows(Owner::Dds));
     let inputs = &mut hand.inputs;
     if let Some(pad) = &inputs.pad {
         pad.set_poses(poses.on_pad(&settings.pad_map(), &settings.hidden_poses));
     }
     inputs.look();
     if let Some(joined) = &inputs.dds {
-        joined
-            .shared
-            .say(inputs.fleet_card(&hand.label.name, hand.side, settings));
+        joined.shared.say(card);
     }
-    if inputs.follows_dds() && inputs.other_follows_dds() {
+    if follows_dds && inputs.other_follows_dds() {
         // Each hears of the other, and both stop.
         hand.connection.end_outside(Disarmed::Stop);
     }
-    let Some(run) = &mut inputs.follow else {
+    let Some(MotionRun::Follow(run)) = &mut hand.running.0 else {
         return;
     };
     let (views, end) = run.task.news();
@@ -132,7 +132,7 @@ pub(super) fn tick(hand: &mut Hand, settings: &Settings, poses: &PoseState, ctx:
         hand.controls.show_angles(view.sent);
     }
     if let Some(outcome) = end {
-        inputs.follow = None;
+        hand.running.0 = None;
         if outcome.leader_stopped {
             ctx.tell(NoticeKind::LeaderStopped);
         }
@@ -140,5 +140,17 @@ pub(super) fn tick(hand: &mut Hand, settings: &Settings, poses: &PoseState, ctx:
             ctx.tell(NoticeKind::SourceSilent(owner));
         }
         hand.follow();
+    }
+}
+
+/// Description of this hand for other programs on the network.
+fn fleet_card(hand: &Hand, settings: &Settings) -> FleetCard {
+    FleetCard {
+        host: fleet::host(),
+        name: hand.label.name.to_string(),
+        side: hand.side,
+        at: hand.inputs.gateway.as_ref().map(Gateway::address),
+        first_may_move: settings.first_client_moves,
+        follows: hand.running.follows(Owner::Dds),
     }
 }

@@ -4,7 +4,7 @@ use crate::app::env::Env;
 use crate::app::files::export::{self, Export};
 use crate::app::files::open::open;
 use crate::app::files::pose_file;
-use crate::app::hands::hand::AskedSeries;
+use crate::app::hands::running::AskedSeries;
 use crate::app::notices::NoticeKind;
 use crate::app::params::{ParamAction, ParamsHand};
 use crate::app::program::hand_tick::start_series;

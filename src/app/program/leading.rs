@@ -38,7 +38,7 @@ pub(super) fn stop_mirrored(state: &mut State) {
     });
     let stopping: Vec<SlotId> = stopping.map(|hand| hand.label.slot).collect();
     for hand in state.hands.iter() {
-        let leader = hand.inputs.leader();
+        let leader = hand.leader();
         if leader.is_some_and(|leader| stopping.contains(&leader)) {
             hand.connection.end_outside(Disarmed::Stop);
         }

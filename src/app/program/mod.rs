@@ -149,7 +149,7 @@ impl App {
         if lost > 0 {
             notices.push(now, NoticeKind::StepsLost(lost));
         }
-        let has = |hand: &Hand, id| hand.series.as_ref().is_some_and(|run| run.session == id);
+        let has = |hand: &Hand, id| hand.running.series().is_some_and(|run| run.session == id);
         let told = trials.close_broken_off(|id| hands.iter().any(|hand| has(hand, id)));
         told.into_iter().for_each(|told| notices.push(now, told));
         scan.drain();
@@ -380,7 +380,9 @@ impl App {
             hands, settings, ..
         } = &mut self.state;
         let hand = hands.shown_mut();
+        let is_checked = hand.running.checkup_run().is_some();
         if self.recorded.player.is_none()
+            && !is_checked
             && let Some(endpoint) = &hand.connection.endpoint
         {
             let files = files(endpoint, settings, &self.env);
@@ -442,7 +444,10 @@ impl App {
         let rests = closing.is_at_rest(&state.hands);
         let reported = self.exhibit.flush(state, now);
         let trials = &state.trials;
-        let checks = state.hands.iter().any(|hand| hand.checkup.run.is_some());
+        let checks = state
+            .hands
+            .iter()
+            .any(|hand| hand.running.checkup_run().is_some());
         let tried =
             checks || trials.running.is_some() || !trials.to_keep.is_empty() || self.jobs.keeps();
         let is_kept = reported && !tried && self.recorded.is_written();

@@ -74,14 +74,14 @@ pub(super) fn play(state: &mut State, play: Play, env: &Env) {
     if matches!(play, Play::Start(_) | Play::Step(_)) {
         state.poses.preview = None;
     }
-    let entry = state.hands.shown().sequence.as_ref().map(|run| run.entry);
+    let entry = state.hands.shown().running.sequence().map(|run| run.entry);
     for hand in state
         .hands
         .with_shown(|hand| plays_along(hand, play, entry))
     {
         match next_step(hand, play) {
             PlayStep::Tell(command) => {
-                if let Some(run) = &hand.sequence {
+                if let Some(run) = hand.running.sequence() {
                     run.command(command);
                 }
             }
@@ -113,7 +113,7 @@ fn next_step(hand: &Hand, play: Play) -> PlayStep {
         Play::Step(id) => {
             let entry = EntryId::Sequence(id);
             let waits = |run: &SequenceRun| run.entry == entry && run.is_paused();
-            if hand.sequence.as_ref().is_some_and(waits) {
+            if hand.running.sequence().is_some_and(waits) {
                 PlayStep::Tell(PlayCommand::Resume(PlayMode::OneStep))
             } else {
                 PlayStep::Start(entry, PlayMode::OneStep)
@@ -135,7 +135,7 @@ pub(super) fn takes_poses(hand: &Hand) -> bool {
 fn plays_along(hand: &Hand, play: Play, entry: Option<EntryId>) -> bool {
     match play {
         Play::Start(_) | Play::Step(_) => takes_poses(hand),
-        Play::Resume => hand.sequence.as_ref().map(|run| run.entry) == entry,
+        Play::Resume => hand.running.sequence().map(|run| run.entry) == entry,
         Play::Pause | Play::End => true,
     }
 }

@@ -677,7 +677,7 @@ async fn drives_that_would_grow_too_hot_are_slowed_and_rested_before_they_do() {
 const ALONE: &str = "HANDSCOPE_TEST_ALONE";
 /// What runs in it.
 const THIS: &str =
-    "tasks::tests::exhibit::a_day_of_touches_faults_and_losses_moves_nothing_that_it_should_not";
+    "motion::tests::exhibit::a_day_of_touches_faults_and_losses_moves_nothing_that_it_should_not";
 
 #[test]
 fn a_day_of_touches_faults_and_losses_moves_nothing_that_it_should_not() {

@@ -346,7 +346,9 @@ impl Driver {
             self.act(wish);
             self.run_for(ARM_TIMEOUT);
         }
-        self.until(GRASP_TIMEOUT, |state| state.hand().series.is_none());
+        self.until(GRASP_TIMEOUT, |state| {
+            state.hand().running.series().is_none()
+        });
     }
 
     /// The whole window with this view open, in its current state. Time does not advance, except to wait for a view that reads

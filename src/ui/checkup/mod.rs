@@ -32,7 +32,7 @@ impl CheckupView {
             kit::full_card_ui(ui, look, |ui| {
                 ui.spacing_mut().item_spacing.y = theme::GAP;
                 kit::head_ui(ui, look, look.say(checkup::TITLE), |_| ());
-                match &pane.hand().checkup.run {
+                match pane.hand().running.checkup_run() {
                     Some(run) => {
                         // The user's confirmation does not apply to the next check-up.
                         self.is_empty = false;

@@ -19,7 +19,7 @@ const NAME: f32 = 100.0;
 pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     let mirror = state.hand().inputs.mirror.as_ref();
-    let is_led = state.hand().inputs.leader().is_some();
+    let is_led = state.hand().leader().is_some();
     let first = others(state).into_iter().next();
     let first = first.map(|(leader, _)| (leader, MirrorScale::WHOLE));
     let switch = Switch {

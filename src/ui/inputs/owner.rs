@@ -27,7 +27,7 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 }
             };
             Label::new(&words, color).ui(ui);
-            let run = pane.hand().inputs.follow.as_ref();
+            let run = pane.hand().running.following();
             if let Some(view) = run.and_then(|run| run.view) {
                 let delay = format::millis(view.delay_p99);
                 let words = look.fill(inputs::FOLLOW_NOW, &[&view.lead, &delay]);
@@ -102,7 +102,7 @@ pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
         Some(rate) => format!("{name} · {rate:.0} Hz"),
         None => name,
     };
-    let view = hand.inputs.follow.as_ref().and_then(|run| run.view);
+    let view = hand.running.following().and_then(|run| run.view);
     let words = match view.and_then(|view| view.heat) {
         Some(heat) => {
             let joint = look.say(words::dof(heat.dof));

@@ -142,7 +142,7 @@ pub(crate) fn start_refused(
     if !hand.connection.status.state.is_live() {
         return Some(look.say(main::REFUSED_OFFLINE).into());
     }
-    if hand.series_asked.is_some() {
+    if hand.running.awaits_arming() {
         return Some(look.say(tune::ARMING).into());
     }
     if state.trials.running.is_some() {

@@ -33,7 +33,7 @@ pub(crate) fn step_now(pane: &Pane<'_>, sequence: &Sequence) -> Option<usize> {
     if let Some(preview) = preview.filter(|own| own.sequence == sequence.id) {
         return Some(preview.at(pane.state.now).step);
     }
-    let run = pane.hand().sequence.as_ref();
+    let run = pane.hand().running.sequence();
     let run = run.filter(|run| run.entry == EntryId::Sequence(sequence.id))?;
     run.is_running().then_some(run.view.at)
 }

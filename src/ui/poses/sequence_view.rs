@@ -194,7 +194,7 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
     if let Some(step) = dry {
         return (look.told(poses::SAY_DRY, step), palette.simulated);
     }
-    let run = pane.hand().sequence.as_ref();
+    let run = pane.hand().running.sequence();
     let Some(run) = run.filter(|run| run.entry == EntryId::Sequence(sequence.id)) else {
         return (look.say(poses::SAY_IDLE).into(), palette.muted);
     };
@@ -230,7 +230,7 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
 fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     let look = pane.look;
     let id = sequence.id;
-    let own = pane.hand().sequence.as_ref();
+    let own = pane.hand().running.sequence();
     let own = own.filter(|run| run.entry == EntryId::Sequence(id));
     let running = own.is_some_and(|run| run.is_running());
     let paused = own.is_some_and(|run| run.is_paused());

@@ -219,7 +219,7 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
 }
 
 fn runs(state: &State, entry: EntryId) -> bool {
-    let run = state.hand().sequence.as_ref();
+    let run = state.hand().running.sequence();
     run.is_some_and(|run| run.entry == entry && run.is_running())
 }
 

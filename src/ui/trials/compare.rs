@@ -106,7 +106,7 @@ impl ResultsView {
         let mut comparison = self.comparison(pane, focus.id);
         comparison.judge(self.best.criterion());
         let room = ui.available_size();
-        let run = pane.hand().series.as_ref();
+        let run = pane.hand().running.series();
         let runs = run.is_some_and(|run| run.session == focus.id);
         let is_empty = comparison.rows.is_empty();
         if runs && is_empty {

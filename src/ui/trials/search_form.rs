@@ -19,7 +19,7 @@ use std::ops::RangeInclusive;
 
 pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let hand = pane.hand();
-    let runs = hand.runs_series() || hand.series_asked.is_some();
+    let runs = hand.runs_series() || hand.running.awaits_arming();
     kit::put_scroll_bar_in_margin(ui);
     let area = ScrollArea::vertical().id_salt("search");
     area.auto_shrink(false).show(ui, |ui| {

@@ -112,7 +112,7 @@ impl TuneForm {
         let error = plan.check().err();
         let wrong = error.map(|error| (error.field(), tune::plan_error(look, &error)));
         let hand = pane.hand();
-        let runs = hand.runs_series() || hand.series_asked.is_some();
+        let runs = hand.runs_series() || hand.running.awaits_arming();
         let mut pass = Pass {
             wrong,
             pane,

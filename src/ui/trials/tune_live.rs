@@ -21,7 +21,7 @@ pub(crate) struct LiveChart {
 /// Draws the progress of the series, with its end button; nothing without a series.
 pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, palette) = (pane.look, pane.look.palette);
-    let Some(run) = &pane.hand().series else {
+    let Some(run) = pane.hand().running.series() else {
         return;
     };
     let (number, total) = (run.view.number, run.view.total);
@@ -61,7 +61,7 @@ pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// Draws the live force.
 pub(crate) fn force_ui(ui: &mut Ui, pane: &Pane<'_>, chart: &mut LiveChart) {
     let look = pane.look;
-    let Some(run) = &pane.hand().series else {
+    let Some(run) = pane.hand().running.series() else {
         return;
     };
     if chart.trial != run.view.number {

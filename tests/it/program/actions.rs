@@ -523,7 +523,7 @@ async fn in_a_series_nothing_passes_that_would_come_between_it_and_the_hand() {
         let before = Dof::ALL.map(|dof| bench.hand().controls.joints[dof].speed);
         bench.act(action.clone());
         bench.run(300).await;
-        assert!(bench.hand().series.is_some(), "{action:?}");
+        assert!(bench.hand().running.series().is_some(), "{action:?}");
         let after = Dof::ALL.map(|dof| bench.hand().controls.joints[dof].speed);
         assert_eq!(before, after, "{action:?}");
     }

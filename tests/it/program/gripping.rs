@@ -81,7 +81,7 @@ async fn a_step_goes_on_once_the_hand_holds_and_waits_for_no_place_behind_the_ob
     assert_eq!(places(&bench), [700, 300, 700]);
     let took_ms = sent[2].1 - sent[1].1;
     assert!((500..4000).contains(&took_ms), "{took_ms} ms");
-    let late = bench.hand().sequence.as_ref().unwrap().view.late;
+    let late = bench.hand().running.sequence().unwrap().view.late;
     assert_eq!(late, 0, "a held object is no pose that was not reached");
 }
 

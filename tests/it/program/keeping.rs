@@ -166,7 +166,7 @@ async fn the_plan_of_trials_is_kept_and_moves_nothing_when_it_is_read() {
     let (app, _) = begun(None, settings.clone()).await;
     let state = app.state();
     assert_eq!(state.trials.plan, plan);
-    assert!(!state.hand().connection.is_armed() && state.hand().series.is_none());
+    assert!(!state.hand().connection.is_armed() && state.hand().running.series().is_none());
     assert_eq!(state.hand().connection.stats.writes, 0);
     let newer: toml::Table = "repeats = \"as often as it takes\"".parse().unwrap();
     let newer = Settings {

@@ -57,7 +57,7 @@ fn holds(bench: &Bench, address: u16) -> Vec<i16> {
 }
 
 fn is_over(state: &State) -> bool {
-    let run = state.hand().sequence.as_ref();
+    let run = state.hand().running.sequence();
     run.is_some_and(|run| matches!(run.view.phase, PlayPhase::Ended(_)))
 }
 
@@ -213,7 +213,7 @@ async fn a_link_that_is_lost_in_a_pose_gives_the_own_speed_back_when_the_hand_is
 }
 
 pub(super) fn phase(bench: &Bench) -> Option<PlayPhase> {
-    let run = bench.hand().sequence.as_ref();
+    let run = bench.hand().running.sequence();
     run.map(|run| run.view.phase)
 }
 
@@ -250,7 +250,7 @@ async fn recalling_sends_speed_force_and_angle_of_free_joints_only_and_never_arm
     bench.act(Action::Recall(a));
     bench.run(300).await;
     assert_eq!(bench.addresses(), [0_u16; 0]);
-    assert!(!bench.hand().connection.is_armed() && bench.hand().sequence.is_none());
+    assert!(!bench.hand().connection.is_armed() && bench.hand().running.sequence().is_none());
     bench.arm().await;
     bench.act(Action::Lock(Dof::Ring, true));
     for edit in [
@@ -353,7 +353,7 @@ async fn whatever_ends_a_sequence_nothing_is_sent_afterwards() {
         let (_, own) = library(&mut bench);
         bench.act(Action::Play(Play::Start(EntryId::Sequence(own))));
         bench.run(200).await;
-        assert!(bench.hand().sequence.as_ref().unwrap().is_running());
+        assert!(bench.hand().running.sequence().unwrap().is_running());
         break_off(&mut bench);
         stays_ended(&mut bench, want, |_| ()).await;
     }
@@ -384,7 +384,7 @@ async fn between_poses_whose_straight_way_crosses_the_thumb_goes_out_first_and_b
     bench.forget();
     bench.act(Action::Recall(shipped("Fist")));
     bench.run(400).await;
-    let run = bench.hand().sequence.as_ref().unwrap();
+    let run = bench.hand().running.sequence().unwrap();
     assert!(run.is_running() && run.entry == EntryId::Pose(shipped("Fist")));
     bench.run(8000).await;
     assert_eq!(phase(&bench), Some(PlayPhase::Ended(Ok(PlayEnd::Finished))));
@@ -434,7 +434,7 @@ async fn a_touched_finger_bends_and_goes_back_once_it_is_let_go() {
         .with(|hand, _| hand.press_tip(Finger::Middle, 0.0));
     bench.run(3000).await;
     assert!((bench.angle(Dof::Middle) - 740).abs() <= 20);
-    assert!(bench.hand().sequence.as_ref().unwrap().is_running());
+    assert!(bench.hand().running.sequence().unwrap().is_running());
     bench.act(Action::Stop);
     bench.run(500).await;
     bench.forget();

@@ -25,7 +25,7 @@ async fn running() -> Bench {
     let mut bench = Bench::armed().await;
     start(&mut bench);
     bench.run(300).await;
-    assert!(bench.hand().series.is_some());
+    assert!(bench.hand().running.series().is_some());
     bench
 }
 
@@ -64,7 +64,7 @@ async fn what_starts_in_an_arming_arms_nothing_where_there_is_none() {
         bench.act(Action::Trial(TrialAction::Start(kind)));
         bench.run(1000).await;
         assert!(!bench.hand().connection.is_armed(), "{kind:?}");
-        assert!(bench.hand().series.is_none() && bench.hand().series_asked.is_none());
+        assert!(bench.hand().running.series().is_none() && !bench.hand().running.awaits_arming());
         assert_eq!(bench.addresses(), [0_u16; 0], "{kind:?}");
     }
 }
@@ -79,9 +79,9 @@ async fn one_act_arms_and_starts_once_the_arming_holds() {
     bench.act(Action::Speed(None, Speed::GENTLE));
     bench.act(Action::Force(None, Force::GENTLE));
     arm_and_start(&mut bench);
-    assert!(bench.hand().series.is_none() && bench.hand().series_asked.is_some());
+    assert!(bench.hand().running.series().is_none() && bench.hand().running.awaits_arming());
     bench.run(300).await;
-    assert!(bench.hand().series.is_some() && bench.hand().series_asked.is_none());
+    assert!(bench.hand().running.series().is_some() && !bench.hand().running.awaits_arming());
     let addresses = bench.addresses();
     let limits = addresses.iter().take(2).copied().collect::<Vec<u16>>();
     assert_eq!(
@@ -108,8 +108,8 @@ async fn what_ends_the_wish_to_start_leaves_the_hand_at_rest() {
         arm_and_start(&mut bench);
         end(&mut bench);
         bench.run(3000).await;
-        assert!(bench.hand().series.is_none(), "{why}");
-        assert!(bench.hand().series_asked.is_none(), "{why}");
+        assert!(bench.hand().running.series().is_none(), "{why}");
+        assert!(!bench.hand().running.awaits_arming(), "{why}");
         assert!(bench.state().trials.sessions.is_empty(), "{why}");
         let is_told = bench.told().contains(&NoticeKind::SeriesNotBegun);
         assert_eq!(is_told, why == "other plan", "{why}");
@@ -122,7 +122,7 @@ async fn a_window_that_hung_since_starts_nothing_late() {
     arm_and_start(&mut bench);
     bench.hang(3000).await;
     bench.run(500).await;
-    assert!(bench.hand().series.is_none() && bench.hand().series_asked.is_none());
+    assert!(bench.hand().running.series().is_none() && !bench.hand().running.awaits_arming());
     assert!(bench.told().contains(&NoticeKind::SeriesNotBegun));
 }
 
@@ -142,8 +142,8 @@ async fn a_hand_that_cannot_be_armed_begins_nothing_and_says_why() {
     bench.run(300).await;
     arm_and_start(&mut bench);
     bench.run(8000).await;
-    assert!(bench.hand().series.is_none() && !bench.hand().connection.is_armed());
-    assert!(bench.hand().series_asked.is_none());
+    assert!(bench.hand().running.series().is_none() && !bench.hand().connection.is_armed());
+    assert!(!bench.hand().running.awaits_arming());
     let why = |told: &NoticeKind| matches!(told, NoticeKind::ArmRefused(_));
     let told = bench.told();
     assert!(told.iter().any(why) || told.contains(&NoticeKind::SeriesNotBegun));
@@ -158,7 +158,7 @@ async fn a_plan_that_makes_no_sense_sends_nothing() {
     start(&mut bench);
     arm_and_start(&mut bench);
     bench.run(300).await;
-    assert!(bench.hand().series.is_none() && bench.hand().series_asked.is_none());
+    assert!(bench.hand().running.series().is_none() && !bench.hand().running.awaits_arming());
     assert_eq!(bench.addresses(), [0_u16; 0]);
 }
 
@@ -179,7 +179,7 @@ async fn nothing_else_moves_the_hand_while_a_series_runs() {
         bench.act(action);
     }
     bench.run(1000).await;
-    assert!(bench.hand().series.is_some());
+    assert!(bench.hand().running.series().is_some());
     assert!(bench.told().contains(&NoticeKind::SeriesRuns));
     for (now, before) in others(&bench).iter().zip(before) {
         assert!((now - before).abs() <= 3);
@@ -224,7 +224,7 @@ async fn a_stop_a_disarming_a_lost_link_and_another_hand_end_a_series() {
 
 fn check_ended(bench: &Bench, why: Abort) {
     let trials = &bench.state().trials;
-    assert!(bench.hand().series.is_none() && !bench.hand().connection.is_armed());
+    assert!(bench.hand().running.series().is_none() && !bench.hand().connection.is_armed());
     let [session] = &trials.sessions[..] else {
         panic!("{why:?}");
     };
@@ -256,7 +256,7 @@ async fn what_was_tried_is_saved_by_itself_in_a_folder_of_the_day_with_its_words
     let mut places = Vec::new();
     let mut bench = running().await;
     for _ in 0..2 {
-        while bench.hand().series.is_some() {
+        while bench.hand().running.series().is_some() {
             bench.run(200).await;
         }
         let folder = saved(&mut bench).await;
@@ -286,7 +286,10 @@ async fn what_was_tried_is_saved_by_itself_in_a_folder_of_the_day_with_its_words
 async fn a_window_that_closes_ends_the_series_and_saves_what_was_tried() {
     let mut bench = running().await;
     bench.run(12_000).await;
-    assert!(bench.hand().series.is_some() && bench.state().trials.sessions[0].trials.is_empty());
+    assert!(
+        bench.hand().running.series().is_some()
+            && bench.state().trials.sessions[0].trials.is_empty()
+    );
     while !bench.app.close(bench.clock.now()) {
         bench.run(20).await;
     }
@@ -302,7 +305,7 @@ async fn a_window_that_closes_ends_the_series_and_saves_what_was_tried() {
 async fn where_nothing_can_be_written_it_is_said_and_the_session_stays() {
     let mut bench = running().await;
     bench.block_documents();
-    while bench.hand().series.is_some() {
+    while bench.hand().running.series().is_some() {
         bench.run(200).await;
     }
     for _ in 0..500 {

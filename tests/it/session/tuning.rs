@@ -164,9 +164,9 @@ fn tried(person: &mut Person) -> bool {
     person.press("Arm the hand");
     person.until("the arming", |state| state.hand().connection.is_armed());
     person.press("Start trials");
-    assert!(person.state().hand().series.is_some());
+    assert!(person.state().hand().running.series().is_some());
     person.until("the end of the series", |state| {
-        state.hand().series.is_none()
+        state.hand().running.series().is_none()
     });
     person.until("disarming", |state| !state.hand().connection.is_armed());
     let last = person.state().trials.sessions.last().unwrap();

@@ -50,7 +50,7 @@ impl Hidden {
         self.act(Action::Arm);
         self.draw(Duration::from_millis(400)).await;
         self.act(Action::Trial(TrialAction::Start(SeriesKind::Grid)));
-        assert!(self.app.state().hand().series.is_some());
+        assert!(self.app.state().hand().running.series().is_some());
     }
 }
 
@@ -80,7 +80,7 @@ async fn a_series_runs_to_its_end_though_no_frame_comes() {
     sleep(Duration::from_secs(40)).await;
     hidden.look();
     let state = hidden.app.state();
-    assert!(state.hand().series.is_none());
+    assert!(state.hand().running.series().is_none());
     let session = &state.trials.sessions[0];
     assert_eq!((session.trials.len(), &session.head.aborted), (2, &None));
     assert!(!state.hand().connection.is_armed());
@@ -93,7 +93,7 @@ async fn the_first_reading_above_the_ceiling_ends_it_though_no_frame_comes() {
     sleep(Duration::from_secs(20)).await;
     hidden.look();
     let state = hidden.app.state();
-    assert!(state.hand().series.is_none());
+    assert!(state.hand().running.series().is_none());
     let session = &state.trials.sessions[0];
     let Some(EarlyEnd::Here(Abort::Ceiling { grams, .. })) = session.head.aborted else {
         panic!("{:?}", session.head.aborted);

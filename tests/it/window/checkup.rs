@@ -37,7 +37,7 @@ fn said(bench: &Bench, part: &str) {
 }
 
 fn runs(bench: &Bench) -> bool {
-    bench.state().hand().checkup.run.is_some()
+    bench.state().hand().running.checkup_run().is_some()
 }
 
 fn hold(bench: &mut Bench) {
@@ -93,7 +93,7 @@ fn a_check_up_is_told_joint_by_joint_and_its_figures_report_and_recording_stay()
     bench.wait(12_000);
     said(&bench, "of 29: Little");
     said(&bench, "Any key ends it with a stop.");
-    let run = bench.state().hand().checkup.run.as_ref().unwrap();
+    let run = bench.state().hand().running.checkup_run().unwrap();
     let left = run.left(bench.now()).as_secs();
     assert!((40..80).contains(&left), "{left}");
     let shown = finish(&mut bench, 120_000);
@@ -169,7 +169,7 @@ fn each_fingertip_is_asked_for_and_a_dead_channel_is_named() {
     begin(&mut bench);
     let mut asked = Vec::new();
     for _ in 0..2000 {
-        let Some(run) = &bench.state().hand().checkup.run else {
+        let Some(run) = bench.state().hand().running.checkup_run() else {
             break;
         };
         let press = run.view.press;

@@ -103,8 +103,8 @@ fn grip_ten_times(bench: &mut Bench, poses: &[LibraryPose]) {
             bench
                 .state()
                 .hand()
-                .sequence
-                .as_ref()
+                .running
+                .sequence()
                 .map(|run| run.view.phase)
         };
         let is_over = |bench: &Bench| matches!(phase(bench), Some(PlayPhase::Ended(_)));

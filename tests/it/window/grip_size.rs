@@ -153,7 +153,7 @@ fn a_pose_is_made_one_by_size_and_closes_along_the_path() {
     bench.run(100);
     bench.act(recall);
     bench.run(1000);
-    let run = bench.state().hand().sequence.as_ref().unwrap();
+    let run = bench.state().hand().running.sequence().unwrap();
     let ended = PlayPhase::Ended(Ok(PlayEnd::Locked));
     assert_eq!(run.view.phase, ended, "not without the index");
     bench.act(Action::Lock(Dof::Index, false));

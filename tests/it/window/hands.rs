@@ -409,7 +409,7 @@ fn a_pose_or_demo_goes_to_all_armed_hands_only_where_that_is_wanted() {
     )));
     bench.run(400);
     let runs = |bench: &Bench| -> Vec<bool> {
-        let runs = |hand: &&Hand| hand.sequence.as_ref().is_some_and(|run| run.is_running());
+        let runs = |hand: &&Hand| hand.running.sequence().is_some_and(|run| run.is_running());
         hands(bench).iter().map(runs).collect()
     };
     assert_eq!(runs(&bench), [true, true, false]);
@@ -536,7 +536,7 @@ fn a_series_at_one_hand_goes_on_beside_another_and_any_key_ends_it() {
     show(&mut bench, 1);
     bench.run(600);
     assert!(
-        hands(&bench)[0].series.is_some(),
+        hands(&bench)[0].running.series().is_some(),
         "another hand ends it not"
     );
     assert!(bench.state().trials.running.is_some());
@@ -544,11 +544,11 @@ fn a_series_at_one_hand_goes_on_beside_another_and_any_key_ends_it() {
     bench.act(Action::Trial(TrialAction::Start(SeriesKind::Grid)));
     bench.run(100);
     assert!(
-        bench.state().hand().series.is_none(),
+        bench.state().hand().running.series().is_none(),
         "one series at a time"
     );
     bench.key(Key::F7);
     bench.run(600);
-    let busy = |hand: &&Hand| hand.series.is_some() || hand.connection.is_armed();
+    let busy = |hand: &&Hand| hand.running.series().is_some() || hand.connection.is_armed();
     assert_eq!(hands(&bench).iter().filter(|hand| busy(hand)).count(), 0);
 }

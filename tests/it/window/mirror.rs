@@ -90,7 +90,7 @@ fn index(bench: &Bench, at: usize) -> i16 {
 
 /// Where the index was sent last.
 fn sent(bench: &Bench, at: usize) -> Option<i16> {
-    let view = hand(bench, at).inputs.follow.as_ref()?.view?;
+    let view = hand(bench, at).running.following()?.view?;
     Some(view.sent[Dof::Index]?.get())
 }
 
@@ -202,7 +202,7 @@ fn a_lost_leader_holds_the_hand_that_it_led() {
     bench.run(400);
     bench.unplug_at(SECOND);
     bench.run(300);
-    let run = hand(&bench, 0).inputs.follow.as_ref().unwrap();
+    let run = hand(&bench, 0).running.following().unwrap();
     assert_eq!(run.view.unwrap().phase, FollowPhase::Silent);
     let held = bench.angle(Dof::Index);
     assert!((100..900).contains(&held), "on its way: {held}");

@@ -56,7 +56,7 @@ fn sequence_on(mut bench: Bench) -> Bench {
 }
 
 fn phase(bench: &Bench) -> PlayPhase {
-    bench.state().hand().sequence.as_ref().unwrap().view.phase
+    bench.state().hand().running.sequence().unwrap().view.phase
 }
 
 #[test]

@@ -40,7 +40,7 @@ fn hold(bench: &mut Bench) {
 
 fn begin(bench: &mut Bench) {
     hold(bench);
-    assert!(bench.state().hand().series.is_some(), "it runs");
+    assert!(bench.state().hand().running.series().is_some(), "it runs");
 }
 
 fn library(bench: &Bench) -> &PoseLibrary {
@@ -137,7 +137,7 @@ fn a_wish_that_cannot_be_tried_is_said_and_not_begun() {
     enter(&mut bench, "hold at least, g", "450");
     said(&bench, "At most 400 g under this limit.");
     hold(&mut bench);
-    assert!(bench.state().hand().series.is_none());
+    assert!(bench.state().hand().running.series().is_none());
     assert!(!bench.state().hand().connection.is_armed());
     enter(&mut bench, "hold at least, g", "200");
     enter(&mut bench, LIMIT, "900");

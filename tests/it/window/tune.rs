@@ -71,7 +71,7 @@ fn running() -> Bench {
 }
 
 fn runs(bench: &Bench) -> bool {
-    bench.state().hand().series.is_some()
+    bench.state().hand().running.series().is_some()
 }
 
 fn plan(bench: &Bench) -> &TrialPlan {
@@ -622,7 +622,7 @@ fn nothing_moves_by_opening_the_view_or_by_arming() {
     let mut bench = on_block();
     arm(&mut bench);
     bench.wait(500);
-    assert!(bench.state().hand().series.is_none());
+    assert!(bench.state().hand().running.series().is_none());
     assert_eq!(bench.angle(Dof::Index), 1000);
 }
 
