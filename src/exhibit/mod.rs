@@ -6,7 +6,7 @@ pub mod heat;
 pub mod pin;
 pub mod plan;
 pub mod report;
-pub mod run;
+pub mod stage;
 
 #[cfg(test)]
 mod file_tests;

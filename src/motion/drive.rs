@@ -1,7 +1,7 @@
 //! The loop that moves an armed hand by a program, with the rules that hold for all of them: whose control it is, link loss, faults,
 //! arming, another controller, stalls, and the stop that follows an early end.
 
-use crate::hand::{ArmEpoch, HandSample, Moment, Setpoints};
+use crate::hand::{ArmEpoch, HandCommand, HandSample, Moment, Setpoints};
 use crate::link::{Clock, Lease, LeaseRefusal, LinkHandle, LinkStatus, PollRates, Records, Stop};
 use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
 use crate::record::{Abort, Disarmed, LinkState, Record, SetpointConflict, WriteCause};
@@ -11,10 +11,12 @@ use std::pin::pin;
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// How often the time is checked while nothing is read.
+/// How often the time is checked while nothing is read, with an armed hand, …
 const TICK: Duration = Duration::from_millis(5);
-/// A longer turn of the loop is a stall: it runs at least once in a [`TICK`].
-const STALL: Duration = Duration::from_millis(50);
+/// … and with a hand that must not move.
+const IDLE_TICK: Duration = Duration::from_millis(50);
+/// A turn of the loop that takes this much longer than its tick is a stall.
+const STALL_MARGIN: Duration = Duration::from_millis(45);
 
 /// An arming that the user gave, and what was read until then.
 #[derive(Debug, Clone, Copy)]
@@ -34,8 +36,8 @@ pub struct Armed {
 pub struct DriveStart {
     /// Who arms the hand.
     pub armed_by: ArmedBy,
-    /// The right to move the hand.
-    pub lease: Lease,
+    /// The right to move the hand; `None` for a program that waits until the user grants it.
+    pub lease: Option<Lease>,
     /// What was read until now.
     pub seen: HandSample,
     /// The program's clock.
@@ -57,7 +59,7 @@ impl From<Armed> for DriveStart {
     fn from(armed: Armed) -> Self {
         Self {
             armed_by: ArmedBy::User(armed.epoch),
-            lease: armed.lease,
+            lease: Some(armed.lease),
             seen: armed.seen,
             clock: armed.clock,
         }
@@ -120,13 +122,15 @@ pub async fn drive<P: Program>(
     let mut inputs = pin!(inputs);
     let mut stop = None;
     while program.ended().is_none() {
+        let is_armed = hand.status().armed.is_some();
+        let tick = if is_armed { TICK } else { IDLE_TICK };
         let (mut input, record) = tokio::select! {
             biased;
             // Whoever sends without a pause keeps no reading waiting.
             input = inputs.next() => (Some(input), at.records.try_next()),
-            record = timeout(TICK, at.records.next()) => (None, record.ok().flatten()),
+            record = timeout(tick, at.records.next()) => (None, record.ok().flatten()),
         };
-        if let Some(stall) = at.turns.turn(clock.now()) {
+        if let Some(stall) = at.turns.turn(clock.now(), tick) {
             program.stalled(stall);
         }
         at.read(&mut program, record, clock.now());
@@ -154,6 +158,8 @@ pub async fn drive<P: Program>(
         let mut sent = order.and_then(|order| at.obey(order, &status));
         if program.ended().is_none() && is_broken {
             program.abort(at.cause(&status, clock.now()), clock.now());
+            // A program that continues has no control until it is granted again.
+            at.lease = None;
         } else if program.ended().is_none() && sent.is_none() {
             order = program.tick(&seen);
             sent = order.and_then(|order| at.obey(order, &status));
@@ -167,7 +173,8 @@ pub async fn drive<P: Program>(
                 stop = Some(hand.stop().await);
             }
             (Some(Err(Abort::LinkLost)), AfterAbort::StopAfterLinkLoss) => drop(hand.stop()),
-            _ if order == Some(Order::Stop) => stop = Some(hand.stop().await),
+            (Some(_), _) if order == Some(Order::Stop) => stop = Some(hand.stop().await),
+            (None, _) if order == Some(Order::Stop) => drop(hand.stop()),
             _ => {}
         }
     }
@@ -184,7 +191,7 @@ struct Driving<'a> {
     records: Records,
     sample: HandSample,
     armed_by: ArmedBy,
-    lease: Lease,
+    lease: Option<Lease>,
     /// What another controller was seen to write until the program disarmed.
     foreign: Option<SetpointConflict>,
     turns: Turns,
@@ -210,29 +217,44 @@ impl Driving<'_> {
     fn obey(&mut self, order: Order, status: &LinkStatus) -> Option<Setpoints> {
         let (hand, lease) = (self.hand, self.lease);
         // Under a lease that ended nothing is done, and the next step ends the program.
-        let _done = match order {
-            Order::Set(setpoints) if setpoints.is_empty() => Ok(()),
+        let under = |act: &dyn Fn(Lease) -> Result<(), LeaseRefusal>| {
+            lease.is_some_and(|lease| act(lease).is_ok())
+        };
+        let _is_done = match order {
             Order::Set(setpoints) => {
-                let set = hand.set(lease, &setpoints);
-                return set.is_ok().then_some(setpoints);
+                let is_sent = !setpoints.is_empty() && under(&|lease| hand.set(lease, &setpoints));
+                return is_sent.then_some(setpoints);
             }
+            Order::Arm(request) => under(&|lease| hand.arm(lease, request).map(drop)),
+            Order::Rest => under(&|lease| hand.rest(lease)),
+            Order::Halt => under(&|lease| hand.halt(lease)),
+            Order::RunUntil(until) => under(&|lease| hand.run_until(lease, until)),
+            Order::GiveBack(why) => under(&|lease| hand.give_back(lease, why)),
+            Order::Grant(owner) => self.lease.replace(hand.grant(owner)).is_none(),
             Order::Disarm => {
                 hand.disarm();
                 (self.armed_by, self.foreign) = (ArmedBy::Nobody, status.foreign_setpoint);
-                Ok(())
+                true
             }
-            Order::Stop => Ok(()),
-            Order::Arm(request) => hand.arm(lease, request).map(drop),
-            Order::Halt => hand.halt(lease),
-            Order::RunUntil(until) => hand.run_until(lease, until),
-            Order::GiveBack(why) => hand.give_back(lease, why),
+            Order::Clear => {
+                let hand = hand.clone();
+                tokio::spawn(async move { hand.write(HandCommand::ClearErrors).await });
+                true
+            }
+            // The loop does it after the report.
+            Order::Stop => true,
         };
         None
     }
 
+    /// Why control has ended, if it has.
+    fn refusal(&self) -> Option<LeaseRefusal> {
+        self.lease.and_then(|lease| self.hand.check(lease).err())
+    }
+
     /// Whether the program must not go on.
     fn broken(&self, status: &LinkStatus) -> bool {
-        let is_refused = || self.hand.check(self.lease).is_err();
+        let is_refused = || self.refusal().is_some();
         match self.armed_by {
             ArmedBy::User(epoch) => {
                 let is_armed = status.armed == Some(epoch) && status.state != LinkState::Fault;
@@ -258,7 +280,7 @@ impl Driving<'_> {
                 None => Abort::OtherController { wrote },
             };
         }
-        let refused = self.hand.check(self.lease).err();
+        let refused = self.refusal();
         if let Some(LeaseRefusal::Taken(_)) = refused {
             return Abort::TakenOver;
         }
@@ -304,11 +326,11 @@ impl Turns {
         }
     }
 
-    /// One more turn; the stall before it, if there was one.
-    fn turn(&mut self, now: Moment) -> Option<Stall> {
+    /// One more turn, which was due after `tick`; the stall before it, if there was one.
+    fn turn(&mut self, now: Moment, tick: Duration) -> Option<Stall> {
         let lasted = now.since(self.last);
         self.last = now;
-        let stall = (lasted > STALL).then_some(Stall { lasted, ended: now });
+        let stall = (lasted > tick + STALL_MARGIN).then_some(Stall { lasted, ended: now });
         self.stall = stall.or(self.stall);
         stall
     }
@@ -340,14 +362,14 @@ mod tests {
         let at = |ms: u64| Moment::from_micros(1000 * ms);
         let mut turns = Turns::from(at(1000));
         for ms in (1005..1100).step_by(5) {
-            assert_eq!(turns.turn(at(ms)), None);
+            assert_eq!(turns.turn(at(ms), TICK), None);
         }
         let stall = Stall {
             lasted: Duration::from_millis(405),
             ended: at(1500),
         };
-        assert_eq!(turns.turn(at(1500)), Some(stall));
-        assert_eq!(turns.turn(at(1505)), None);
+        assert_eq!(turns.turn(at(1500), TICK), Some(stall));
+        assert_eq!(turns.turn(at(1505), TICK), None);
         assert_eq!(turns.stall, Some(stall), "it is known until the next");
     }
 }

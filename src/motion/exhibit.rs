@@ -1,49 +1,65 @@
-//! An exhibition at a hand: the only one that moves it while it lasts. What happens when is decided in `exhibit`; here it is done.
+//! An exhibition: the only program that moves the hand while it lasts. It plays the pieces of visitors and of the attract loop.
 
-use crate::exhibit::plan::ExhibitPlan;
-use crate::exhibit::run::{
-    ExhibitEvent, ExhibitInput, ExhibitOrder, ExhibitRun, ExhibitView, ExhibitWish,
+use crate::exhibit::heat::{HeatGovernor, HeatLevel};
+use crate::exhibit::plan::{ExhibitPiece, ExhibitPlan};
+use crate::exhibit::stage::{
+    DRAWN_TIMEOUT, ExhibitEvent, ExhibitStage, ExhibitView, ExhibitWish, HOLD_DURATION, HaltReason,
 };
 use crate::hand::grip::GripEstimator;
-use crate::hand::{HandCommand, HandSample, Moment, PerDof, Setpoints};
-use crate::link::{Clock, Lease, LeaseRefusal, LinkHandle, Owner};
-use crate::motion::drive::Armed;
-use crate::motion::play::{PlayCommand, PlayStart, PlayStep, play};
+use crate::hand::{ArmEpoch, Fault, Groups, HandSample, Moment, PerDof, Setpoints};
+use crate::link::{Clock, LinkHandle, LinkTrouble, Owner};
+use crate::motion::drive::{ArmedBy, DriveStart, drive};
+use crate::motion::play::{PlayCommand, PlayStart, Playing};
+use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
 use crate::poses::player::{PlayMode, PlayPlan};
-use crate::record::{Disarmed, Record};
+use crate::record::{Abort, Disarmed, LinkState};
+use futures::stream::poll_fn;
+use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
-use tokio::sync::{mpsc, watch};
-use tokio::task::JoinHandle;
-use tokio::time::timeout;
+use tokio::sync::mpsc;
 
-/// How often time is looked at where nothing is read.
-const TICK: Duration = Duration::from_millis(50);
+/// Number of faults that the exhibition clears by itself …
+const CLEARED_MAX: usize = 3;
+/// … within this time.
+const CLEAR_WINDOW: Duration = Duration::from_secs(600);
+/// A fault that is still reported this long after clearing was not cleared.
+const CLEAR_TIMEOUT: Duration = Duration::from_secs(3);
+/// Arming takes a few readings.
+const ARM_TIMEOUT: Duration = Duration::from_secs(3);
+/// A visitor who presses nothing for this long has left.
+const GONE_TIMEOUT: Duration = Duration::from_secs(25);
+/// Pause between two visitors.
+const NEXT_VISITOR_DELAY: Duration = Duration::from_secs(5);
+/// Pause between two pieces of the attract loop.
+const PAUSE: Duration = Duration::from_millis(1200);
+/// Minimum rest of a hand that became warm.
+const COOLING_DURATION: Duration = Duration::from_secs(120);
 
-/// What an exhibition begins with.
+/// Settings and readings with which an exhibition starts.
 #[derive(Debug, Clone)]
 pub struct ExhibitStart {
     /// Motions that visitors may start, and their limits.
     pub plan: Arc<ExhibitPlan>,
-    /// Joints that are left alone.
+    /// Joints that do not move.
     pub locked: PerDof<bool>,
-    /// What was read until now.
+    /// Newest readings.
     pub seen: HandSample,
-    /// What is gripped, from that.
+    /// Grip estimate from these readings.
     pub grip: GripEstimator,
     /// The program's clock.
     pub clock: Clock,
-    /// When visitors and staff saw the page last.
+    /// Time at which the page was drawn last.
     pub drawn: Arc<PageDrawn>,
 }
 
-/// When the page of an exhibition was drawn last: the sign of life of its window.
+/// Time at which the page of an exhibition was drawn last: the sign of life of its window.
 #[derive(Debug, Default)]
 pub struct PageDrawn(AtomicU64);
 
 impl PageDrawn {
-    /// Notes that the page was drawn; the hand is stopped if this stays out.
+    /// Notes that the page was drawn. The hand is stopped if this does not happen for [`DRAWN_TIMEOUT`].
     pub fn mark(&self, now: Moment) {
         self.0.store(now.micros(), Ordering::Relaxed);
     }
@@ -53,193 +69,632 @@ impl PageDrawn {
     }
 }
 
-/// What is told on the way.
+/// Progress of an exhibition.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ExhibitStep {
-    /// Something else goes on now.
+    /// The page changed.
     View(ExhibitView),
-    /// The hand was told this.
+    /// These setpoints were sent.
     Sent(Setpoints),
     /// Event for the report of the day.
     Event(ExhibitEvent),
 }
 
-/// Runs until nobody wishes anything any more; then what plays is held and the hand disarmed. Writes nothing before the user arms.
+/// Runs until the sender of `wishes` is dropped; then the hand is stopped. Writes nothing before the user arms for the exhibition.
 pub async fn exhibit(
     hand: &LinkHandle,
     start: ExhibitStart,
     mut wishes: mpsc::Receiver<ExhibitWish>,
-    mut tell: impl FnMut(ExhibitStep),
+    mut report: impl FnMut(ExhibitStep),
 ) {
     let clock = start.clock;
-    let mut records = hand.records();
-    let (told, mut sent) = watch::channel(None);
-    let mut at = ExhibitTask {
-        hand,
-        run: ExhibitRun::new(start.plan, clock.now()),
-        locked: start.locked,
-        sample: start.seen,
-        grip: start.grip,
-        playing: None,
+    let begin = DriveStart {
+        armed_by: ArmedBy::Program,
         lease: None,
-        told,
+        seen: start.seen,
         clock,
-        drawn: start.drawn,
     };
+    let program = ExhibitRun::new(start, clock.now());
+    let wishes = poll_fn(move |context| wishes.poll_recv(context));
     let mut shown = None;
-    loop {
-        at.obey_all();
-        at.run
-            .take_events()
-            .into_iter()
-            .for_each(|event| tell(ExhibitStep::Event(event)));
-        let view = at.run.view(clock.now());
+    let driven = drive(hand, begin, program, wishes, |run, sent| {
+        if let Some(setpoints) = sent {
+            report(ExhibitStep::Sent(*setpoints));
+        }
+        for event in std::mem::take(&mut run.events) {
+            report(ExhibitStep::Event(event));
+        }
+        let view = run.view(clock.now());
         if shown.replace(view) != Some(view) {
-            tell(ExhibitStep::View(view));
+            report(ExhibitStep::View(view));
         }
-        tokio::select! {
-            biased;
-            wish = wishes.recv() => match wish {
-                Some(wish) => at.run.wish(wish, clock.now()),
-                None => break,
-            },
-            Ok(()) = sent.changed() => {
-                let mut untold = None;
-                at.told.send_if_modified(|waiting| {
-                    untold = waiting.take();
-                    false
-                });
-                untold.into_iter().for_each(|setpoints| tell(ExhibitStep::Sent(setpoints)));
-            }
-            () = ended(&mut at.playing) => at.run.ended(clock.now()),
-            record = timeout(TICK, records.next()) => match record {
-                Ok(Some(Record::Reading { sample, fresh })) => {
-                    at.sample = *sample;
-                    at.grip.take(&sample, fresh, sample.newest(fresh).unwrap_or_default());
-                }
-                // A link may be back before anybody looks at its state.
-                Ok(Some(Record::State { state, .. })) if !state.is_live() => at.run.link_lost(),
-                _ => {}
-            }
-        }
-    }
-    if at.playing.is_some() || hand.status().armed.is_some() {
-        hand.stop();
-    }
+        true
+    });
+    // It ends with the wishes, and has stopped the hand.
+    let _driven = driven.await;
 }
 
-/// A piece that plays.
-struct PlayingPiece {
-    commands: mpsc::Sender<PlayCommand>,
-    task: JoinHandle<()>,
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    Halted(HaltReason),
+    Idle,
+    Attract { until: Moment },
+    Visit { until: Moment, tile: Option<usize> },
+    Cooling { until: Moment },
+    Clearing { since: Moment },
 }
 
-/// Waits for the end of a piece, for ever if there is none.
-async fn ended(playing: &mut Option<PlayingPiece>) {
-    match playing {
-        Some(piece) => {
-            // However it ended: why is seen at the link.
-            let _end = (&mut piece.task).await;
-            *playing = None;
-        }
-        None => std::future::pending().await,
-    }
+/// State of the current motion.
+#[derive(Debug, Clone, PartialEq)]
+enum Playback {
+    None,
+    /// Starts once the hand is armed.
+    Waits(PlayPlan),
+    Plays,
+    /// Ended at this time.
+    Done {
+        at: Moment,
+    },
 }
 
-struct ExhibitTask<'a> {
-    hand: &'a LinkHandle,
-    run: ExhibitRun,
+/// A running exhibition.
+#[derive(Debug)]
+pub(crate) struct ExhibitRun {
+    plan: Arc<ExhibitPlan>,
     locked: PerDof<bool>,
-    sample: HandSample,
     grip: GripEstimator,
-    playing: Option<PlayingPiece>,
-    /// What the user granted; it may have ended.
-    lease: Option<Lease>,
-    /// What the hand was told since that was told last, each joint's newest.
-    told: watch::Sender<Option<Setpoints>>,
-    clock: Clock,
     drawn: Arc<PageDrawn>,
+    /// The user armed for the exhibition, and nothing has ended that since.
+    permitted: bool,
+    phase: Phase,
+    motion: Playback,
+    /// The piece that moves the hand.
+    playing: Option<Playing>,
+    /// The piece is to be held.
+    holds: bool,
+    /// Time of an arming request that has no effect yet.
+    asked: Option<Moment>,
+    /// The arming that was requested here.
+    epoch: Option<ArmEpoch>,
+    /// The user permitted motion in this step.
+    grants: bool,
+    /// The hand is to be stopped.
+    stops: bool,
+    /// Faults are to be cleared.
+    clears: bool,
+    heat: HeatGovernor,
+    level: HeatLevel,
+    /// Time of the last touch or end of a piece.
+    quiet_since: Moment,
+    /// Earliest time of the next attract loop.
+    attract_from: Moment,
+    /// Earliest time of the next visit.
+    next_from: Moment,
+    held: Option<(usize, Moment)>,
+    cleared: VecDeque<Moment>,
+    /// The hand answers.
+    is_live: bool,
+    /// The hand has answered before.
+    was_live: bool,
+    slept: bool,
+    is_faulty: bool,
+    /// Index of the next piece of the attract loop.
+    next_piece: usize,
+    /// Heat of the hand at the start of the current piece.
+    played_at: HeatLevel,
+    events: Vec<ExhibitEvent>,
+    is_over: bool,
 }
 
-impl ExhibitTask<'_> {
-    fn obey_all(&mut self) {
-        loop {
-            let status = self.hand.status();
-            let refused = self.lease.and_then(|lease| self.hand.check(lease).err());
-            let seen = ExhibitInput {
-                status: &status,
-                sample: &self.sample,
-                ended: refused.map(|refused| match refused {
-                    LeaseRefusal::Ended(why) => why,
-                    LeaseRefusal::Taken(_) => Disarmed::Person,
-                }),
-                drawn: self.drawn.last(),
-            };
-            match self.run.tick(seen, self.clock.now()) {
-                Some(order) => self.obey(order),
-                None => return,
+impl ExhibitRun {
+    /// Starts without permission to move.
+    pub(crate) fn new(start: ExhibitStart, now: Moment) -> Self {
+        Self {
+            plan: start.plan,
+            locked: start.locked,
+            grip: start.grip,
+            drawn: start.drawn,
+            permitted: false,
+            phase: Phase::Halted(HaltReason::NotArmed),
+            motion: Playback::None,
+            playing: None,
+            holds: false,
+            asked: None,
+            epoch: None,
+            grants: false,
+            stops: false,
+            clears: false,
+            heat: HeatGovernor::default(),
+            level: HeatLevel::Unknown,
+            quiet_since: now,
+            attract_from: now,
+            next_from: now,
+            held: None,
+            cleared: VecDeque::with_capacity(CLEARED_MAX),
+            is_live: false,
+            was_live: false,
+            slept: false,
+            is_faulty: false,
+            next_piece: 0,
+            played_at: HeatLevel::Cool,
+            events: Vec::new(),
+            is_over: false,
+        }
+    }
+
+    /// State that the page shows.
+    fn view(&self, now: Moment) -> ExhibitView {
+        let (stage, tile) = match self.phase {
+            Phase::Halted(why) => (ExhibitStage::Halted(why), None),
+            Phase::Cooling { until } => (ExhibitStage::Cooling { until }, None),
+            Phase::Clearing { .. } => (ExhibitStage::Clearing, None),
+            Phase::Visit { until, tile } => (ExhibitStage::Visit { until }, tile),
+            _ if self.level == HeatLevel::Unknown => (ExhibitStage::HeatUnknown, None),
+            Phase::Attract { .. } => (ExhibitStage::Attract, None),
+            Phase::Idle if now < self.next_from => {
+                let at = self.next_from;
+                (ExhibitStage::NextVisitor { at }, None)
+            }
+            Phase::Idle => (ExhibitStage::Idle, None),
+        };
+        ExhibitView {
+            stage,
+            tile,
+            held: self.held,
+            is_slow: self.permitted && self.level == HeatLevel::Warm,
+        }
+    }
+
+    /// Applies user input.
+    fn wish(&mut self, wish: ExhibitWish, now: Moment) {
+        match wish {
+            ExhibitWish::Stop => {
+                self.events.push(ExhibitEvent::Stop);
+                self.halt(HaltReason::Stopped);
+            }
+            ExhibitWish::Disarm => self.halt(HaltReason::NotArmed),
+            ExhibitWish::Arm => {
+                // Only staff, who can inspect the failure, reset the count.
+                self.cleared.clear();
+                self.permit(now);
+            }
+            ExhibitWish::Touch => self.touch(now),
+            ExhibitWish::Release => self.held = None,
+            ExhibitWish::Press(tile) => {
+                self.touch(now);
+                if tile < self.plan.tiles.len() {
+                    self.held = Some((tile, now));
+                    self.press(tile, now);
+                }
             }
         }
     }
 
-    fn obey(&mut self, order: ExhibitOrder) {
-        match order {
-            ExhibitOrder::Grant => self.lease = Some(self.hand.grant(Owner::Exhibition)),
-            // A lease that ended is seen in the next step.
-            ExhibitOrder::Arm(request) => {
-                let _asked = self.lease.map(|lease| self.hand.arm(lease, request));
-            }
-            ExhibitOrder::Rest => {
-                let _rests = self.lease.map(|lease| self.hand.rest(lease));
-            }
-            ExhibitOrder::Stop => {
-                self.playing = None;
-                self.hand.stop();
-            }
-            ExhibitOrder::Hold => match &self.playing {
-                // It holds where the hand is, and ends; one that has ended already says so anyway.
-                Some(piece) => drop(piece.commands.try_send(PlayCommand::End)),
-                None => self.run.ended(self.clock.now()),
-            },
-            ExhibitOrder::Play(plan) => self.play(plan),
-            ExhibitOrder::Clear => {
-                self.playing = None;
-                let hand = self.hand.clone();
-                // Whether it helped is seen at the link.
-                tokio::spawn(async move { hand.write(HandCommand::ClearErrors).await });
-            }
+    /// The user arms for the exhibition; the hand opens.
+    fn permit(&mut self, now: Moment) {
+        if self.is_live {
+            self.permitted = true;
+            self.grants = true;
+            self.phase = Phase::Idle;
+            self.rest(now);
         }
     }
 
-    fn play(&mut self, plan: PlayPlan) {
-        let Some((epoch, lease)) = self.hand.status().armed.zip(self.lease) else {
+    /// Ends the permission: nothing moves before the user arms again.
+    fn halt(&mut self, why: HaltReason) {
+        if self.permitted || !matches!(self.phase, Phase::Halted(_)) {
+            self.phase = Phase::Halted(why);
+        }
+        self.permitted = false;
+        self.grants = false;
+        // A tile that was held before does not count as held from now on.
+        self.held = None;
+        self.holds = false;
+        let may_move = self.epoch.take().is_some() | self.asked.take().is_some();
+        self.stops |= may_move || self.motion != Playback::None;
+        self.motion = Playback::None;
+    }
+
+    fn touch(&mut self, now: Moment) {
+        self.quiet_since = now;
+        if matches!(self.phase, Phase::Attract { .. }) {
+            self.begin_visit(now);
+            self.holds = self.motion == Playback::Plays;
+            self.motion = Playback::Done { at: now };
+        }
+    }
+
+    fn begin_visit(&mut self, now: Moment) {
+        self.events.push(ExhibitEvent::Visit);
+        self.phase = Phase::Visit {
+            until: now.plus(self.plan.visit),
+            tile: None,
+        };
+    }
+
+    fn press(&mut self, tile: usize, now: Moment) {
+        if !self.permitted || self.level >= HeatLevel::Hot || now < self.next_from {
+            return;
+        }
+        if self.phase == Phase::Idle {
+            self.begin_visit(now);
+        }
+        let (Phase::Visit { until, .. }, Some(piece)) = (self.phase, self.plan.tiles.get(tile))
+        else {
             return;
         };
-        let start = PlayStart {
-            plan,
-            pace: PlayMode::Through,
-            locked: self.locked,
-            grip: self.grip.clone(),
+        let name = piece.name.en.clone();
+        self.events.push(ExhibitEvent::Piece(name));
+        let tile = Some(tile);
+        self.phase = Phase::Visit { until, tile };
+        self.play_tile(tile);
+    }
+
+    fn play_tile(&mut self, tile: Option<usize>) {
+        let plan = Arc::clone(&self.plan);
+        if let Some(piece) = tile.and_then(|tile| plan.tiles.get(tile)) {
+            self.play(piece);
+        }
+    }
+
+    fn play(&mut self, piece: &ExhibitPiece) {
+        let plan = match self.level {
+            HeatLevel::Cool => piece.plan.clone(),
+            _ => self.plan.limits.slower().limited(&piece.plan),
         };
-        let armed = Armed {
-            epoch,
-            lease,
-            seen: self.sample,
-            clock: self.clock,
+        self.played_at = self.level;
+        self.motion = Playback::Waits(plan);
+    }
+
+    /// Opens the hand, which is then disarmed.
+    fn rest(&mut self, now: Moment) {
+        self.quiet_since = now;
+        let plan = self.plan.open.clone();
+        self.motion = Playback::Waits(plan);
+    }
+
+    /// The current piece is over.
+    fn piece_ended(&mut self, now: Moment) {
+        self.playing = None;
+        if self.motion == Playback::Plays {
+            self.motion = Playback::Done { at: now };
+            self.quiet_since = now;
+        }
+    }
+
+    /// The hand did not answer, even for a moment.
+    fn link_lost(&mut self) {
+        if std::mem::replace(&mut self.is_live, false) {
+            self.events.push(ExhibitEvent::LinkLost);
+        }
+        self.halt(HaltReason::NoHand);
+        self.phase = Phase::Halted(HaltReason::NoHand);
+    }
+
+    /// A lost link or another controller ends the permission to move.
+    fn watch_link(&mut self, seen: &Seen<'_>) {
+        let status = seen.status;
+        if !status.state.is_live() {
+            self.slept |= matches!(status.trouble, Some(LinkTrouble::Suspended { .. }));
+            self.link_lost();
+            return;
+        }
+        if !std::mem::replace(&mut self.is_live, true) {
+            let slept =
+                std::mem::take(&mut self.slept) || status.disarmed == Some(Disarmed::Resume);
+            let was_live = std::mem::replace(&mut self.was_live, true);
+            self.phase = Phase::Halted(if !was_live {
+                HaltReason::NotArmed
+            } else if slept {
+                HaltReason::Slept
+            } else {
+                HaltReason::LinkLost
+            });
+            self.held = None;
+        }
+        if status.other_controller && self.permitted && !self.grants {
+            self.halt(HaltReason::OtherController);
+        }
+    }
+
+    /// Clears faults that allow it; the others need staff.
+    fn watch_faults(&mut self, seen: &Seen<'_>) {
+        let now = seen.now;
+        if seen.status.state != LinkState::Fault {
+            // A stop in a fault does not end it.
+            self.is_faulty &= seen.status.state == LinkState::Holding;
+            if matches!(self.phase, Phase::Clearing { .. }) {
+                self.phase = Phase::Idle;
+                self.rest(now);
+            }
+            return;
+        }
+        let all = seen.sample.faults.map(|faults| faults.value);
+        let all = all.iter().flat_map(|faults| faults.iter());
+        let faults: Vec<Fault> = all.flat_map(|(_, faults)| faults.iter()).collect();
+        if !faults.is_empty() && !std::mem::replace(&mut self.is_faulty, true) {
+            let events = faults.iter().copied().map(ExhibitEvent::Fault);
+            self.events.extend(events);
+        }
+        if !self.permitted {
+            if matches!(self.phase, Phase::Halted(_)) {
+                self.phase = Phase::Halted(HaltReason::Fault);
+            }
+            return;
+        }
+        if faults.iter().any(|fault| fault.clearable() != Some(true)) {
+            self.halt(HaltReason::Fault);
+            return;
+        }
+        // The link may report a fault a moment before it is read here; no setpoint passes meanwhile.
+        let is_waiting = match self.phase {
+            Phase::Clearing { since } => now.since(since) < CLEAR_TIMEOUT,
+            _ => faults.is_empty(),
         };
-        let (commands, wanted) = mpsc::channel(1);
-        let (hand, told) = (self.hand.clone(), self.told.clone());
-        let task = tokio::spawn(async move {
-            let tell = |step| {
-                if let PlayStep::Sent(setpoints) = step {
-                    told.send_modify(|untold| match untold {
-                        Some(untold) => untold.merge(&setpoints),
-                        None => *untold = Some(setpoints),
-                    });
-                }
-            };
-            let _end = play(&hand, armed, start, wanted, tell).await;
-        });
-        self.playing = Some(PlayingPiece { commands, task });
+        if is_waiting {
+            return;
+        }
+        self.cleared.retain(|at| now.since(*at) < CLEAR_WINDOW);
+        if self.cleared.len() >= CLEARED_MAX {
+            self.halt(HaltReason::Fault);
+            return;
+        }
+        self.cleared.push_back(now);
+        self.phase = Phase::Clearing { since: now };
+        self.clears = true;
+        // The link disarmed the hand, which ended the piece.
+        self.holds = false;
+        self.motion = Playback::None;
+        self.asked = None;
+        self.epoch = None;
+    }
+
+    /// Arms again while a tile is held, where visitors may do that.
+    fn watch_held(&mut self, seen: &Seen<'_>) {
+        let (status, now) = (seen.status, seen.now);
+        let is_halted =
+            matches!(self.phase, Phase::Halted(_)) && status.state == LinkState::Monitoring;
+        if let Some((tile, since)) = self.held
+            && self.plan.visitor_restart
+            && is_halted
+            && now.since(since) >= HOLD_DURATION
+        {
+            self.permit(now);
+            self.press(tile, now);
+        }
+    }
+
+    /// Advances the phase by time and heat.
+    fn advance(&mut self, now: Moment) {
+        match self.phase {
+            Phase::Halted(_) | Phase::Clearing { .. } => {}
+            Phase::Cooling { until } if now < until => {}
+            Phase::Cooling { .. } if self.heat.is_rested(now) => {
+                self.phase = Phase::Idle;
+                self.quiet_since = now;
+            }
+            Phase::Cooling { .. } => {
+                let until = now.plus(COOLING_DURATION / 2);
+                self.phase = Phase::Cooling { until };
+            }
+            _ if self.level == HeatLevel::Hot => {
+                self.events.push(ExhibitEvent::Rest);
+                let until = now.plus(COOLING_DURATION);
+                self.phase = Phase::Cooling { until };
+                self.rest(now);
+            }
+            Phase::Visit { .. } | Phase::Attract { .. } if self.level == HeatLevel::Unknown => {
+                self.go_idle(now);
+            }
+            Phase::Visit { until, .. } if now >= until => {
+                self.next_from = now.plus(NEXT_VISITOR_DELAY);
+                self.go_idle(now);
+            }
+            Phase::Visit { tile, .. } => self.advance_visit(tile, now),
+            Phase::Attract { until } => self.advance_attract(until, now),
+            Phase::Idle => self.attract(now),
+        }
+    }
+
+    fn go_idle(&mut self, now: Moment) {
+        self.phase = Phase::Idle;
+        self.rest(now);
+    }
+
+    fn advance_visit(&mut self, tile: Option<usize>, now: Moment) {
+        let piece = tile.and_then(|tile| self.plan.tiles.get(tile));
+        let again = piece.is_some_and(|piece| piece.again);
+        let reacts = piece.is_some_and(|piece| piece.plan.reaction.is_some());
+        match self.motion {
+            Playback::Done { .. } if again => self.play_tile(tile),
+            Playback::Done { .. } if now.since(self.quiet_since) >= GONE_TIMEOUT => {
+                self.go_idle(now)
+            }
+            // It has no end of its own at which it would be played more slowly.
+            Playback::Plays if reacts && self.level > self.played_at => self.play_tile(tile),
+            // The hand was not armed in time.
+            Playback::None => self.go_idle(now),
+            _ => {}
+        }
+    }
+
+    fn advance_attract(&mut self, until: Moment, now: Moment) {
+        if now >= until || self.motion == Playback::None {
+            let rest = self.plan.attract.as_ref().map(|attract| attract.rest);
+            self.attract_from = now.plus(rest.unwrap_or_default());
+            self.go_idle(now);
+            return;
+        }
+        if let Playback::Done { at } = self.motion
+            && now.since(at) >= PAUSE
+        {
+            self.play_next();
+        }
+    }
+
+    fn attract(&mut self, now: Moment) {
+        let Some(attract) = &self.plan.attract else {
+            return;
+        };
+        let is_quiet = now.since(self.quiet_since) >= attract.after && now >= self.attract_from;
+        if is_quiet && self.motion == Playback::None && self.level < HeatLevel::Hot {
+            let until = now.plus(attract.play);
+            self.phase = Phase::Attract { until };
+            self.play_next();
+        }
+    }
+
+    fn play_next(&mut self) {
+        let plan = Arc::clone(&self.plan);
+        let pieces = plan.attract.iter().flat_map(|attract| &attract.pieces);
+        let count = pieces.clone().count().max(1);
+        let piece = pieces.clone().nth(self.next_piece % count);
+        self.next_piece = (self.next_piece + 1) % count;
+        if let Some(piece) = piece {
+            self.play(piece);
+        }
+    }
+
+    /// Starts the waiting motion, and arms or disarms the hand for it.
+    fn start_motion(&mut self, seen: &Seen<'_>) -> Option<Order> {
+        let (status, now) = (seen.status, seen.now);
+        if self.asked.is_some() && status.state == LinkState::Armed {
+            self.asked = None;
+            self.epoch = status.armed;
+        }
+        let is_late = |at| now.since(at) >= ARM_TIMEOUT;
+        if self.asked.take_if(|at| is_late(*at)).is_some() {
+            self.motion = Playback::None;
+            // It must not be armed later either.
+            return Some(Order::Rest);
+        }
+        let is_resting = matches!(self.phase, Phase::Idle | Phase::Cooling { .. });
+        let is_disarmed = status.state == LinkState::Monitoring && status.armed.is_none();
+        let own = self.epoch.filter(|epoch| status.armed == Some(*epoch));
+        match (&self.motion, own) {
+            (Playback::Done { .. }, _) if is_resting => {
+                self.motion = Playback::None;
+                self.epoch = None;
+                Some(Order::Rest)
+            }
+            (Playback::Waits(plan), Some(epoch)) => {
+                let start = PlayStart {
+                    plan: plan.clone(),
+                    pace: PlayMode::Through,
+                    locked: self.locked,
+                    grip: self.grip.clone(),
+                };
+                self.motion = Playback::Plays;
+                self.playing = Some(Playing::new(epoch, start, now));
+                None
+            }
+            (Playback::Waits(_), None) if self.asked.is_none() && is_disarmed => {
+                self.asked = Some(now);
+                Some(Order::Arm(self.plan.limits.arm_request()))
+            }
+            _ => None,
+        }
+    }
+
+    /// Advances the current piece.
+    fn play_on(&mut self, seen: &Seen<'_>) -> Option<Order> {
+        let piece = self.playing.as_mut()?;
+        let is_armed = seen.status.armed == Some(piece.epoch());
+        if !is_armed || seen.status.state == LinkState::Fault {
+            self.piece_ended(seen.now);
+            return None;
+        }
+        let order = piece.tick(seen);
+        if piece.ended().is_some() {
+            self.piece_ended(seen.now);
+        }
+        order
+    }
+}
+
+impl Program for ExhibitRun {
+    type Input = ExhibitWish;
+    type Outcome = ();
+    const AFTER_ABORT: AfterAbort = AfterAbort::Nothing;
+
+    fn input(&mut self, wish: ExhibitWish, seen: &Seen<'_>) -> Option<Order> {
+        self.wish(wish, seen.now);
+        None
+    }
+
+    fn input_ended(&mut self, seen: &Seen<'_>) -> Option<Order> {
+        self.is_over = true;
+        let may_move = self.playing.is_some() || seen.status.armed.is_some();
+        may_move.then_some(Order::Stop)
+    }
+
+    fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
+        let read = sample.newest(fresh).unwrap_or_default();
+        self.grip.take(sample, fresh, read);
+        if let Some(piece) = &mut self.playing {
+            piece.read(sample, fresh, now);
+        }
+    }
+
+    fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
+        let now = seen.now;
+        self.heat.take(seen.sample);
+        self.level = self.heat.level(now);
+        self.watch_link(seen);
+        if self.permitted && now.since(self.drawn.last()) >= DRAWN_TIMEOUT {
+            self.halt(HaltReason::NotShown);
+        }
+        self.watch_faults(seen);
+        self.watch_held(seen);
+        if std::mem::take(&mut self.stops) && self.is_live {
+            self.holds = false;
+            self.playing = None;
+            return Some(Order::Stop);
+        }
+        if std::mem::take(&mut self.grants) {
+            return Some(Order::Grant(Owner::Exhibition));
+        }
+        if std::mem::take(&mut self.holds)
+            && let Some(mut piece) = self.playing.take()
+        {
+            return piece.input(PlayCommand::End, seen);
+        }
+        if std::mem::take(&mut self.clears) {
+            self.playing = None;
+            return Some(Order::Clear);
+        }
+        if self.permitted {
+            self.advance(now);
+        }
+        self.start_motion(seen).or_else(|| self.play_on(seen))
+    }
+
+    /// Control ended; staff may grant it again.
+    fn abort(&mut self, why: Abort, _now: Moment) {
+        let why = match why {
+            Abort::LinkLost => return self.link_lost(),
+            Abort::Disarmed {
+                why: Some(Disarmed::Resume),
+            } => {
+                self.slept = true;
+                return self.link_lost();
+            }
+            Abort::Fault { .. } => HaltReason::Fault,
+            Abort::OtherController { .. } => HaltReason::OtherController,
+            Abort::Disarmed {
+                why: Some(Disarmed::Stop),
+            } => HaltReason::Stopped,
+            Abort::Disarmed {
+                why: Some(Disarmed::Stale | Disarmed::FrozenFeedback),
+            } => HaltReason::NoFeedback,
+            _ => HaltReason::NotArmed,
+        };
+        if self.permitted && !self.grants {
+            self.halt(why);
+        }
+    }
+
+    fn ended(&self) -> Option<Ended<()>> {
+        self.is_over.then_some(Ok(()))
     }
 }

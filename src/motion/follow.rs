@@ -83,7 +83,7 @@ pub async fn follow(
     let clock = start.clock;
     let begin = DriveStart {
         armed_by: ArmedBy::Program,
-        lease: start.lease,
+        lease: Some(start.lease),
         seen: start.seen,
         clock,
     };

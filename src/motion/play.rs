@@ -59,7 +59,7 @@ pub async fn play(
     mut commands: mpsc::Receiver<PlayCommand>,
     mut tell: impl FnMut(PlayStep),
 ) -> Ended<PlayEnd> {
-    let program = Playing::new(armed, start);
+    let program = Playing::new(armed.epoch, start, armed.clock.now());
     let commands = poll_fn(move |context| commands.poll_recv(context));
     let mut shown = None;
     let driven = drive(hand, armed, program, commands, |run, sent| {
@@ -75,14 +75,17 @@ pub async fn play(
     driven.await.end
 }
 
-/// Fingers that answer a touch.
+/// Fingers that react to a touch.
+#[derive(Debug)]
 struct Reacting {
     watch: TouchWatch,
     cue: ReactionCue,
     rest: Targets,
 }
 
-struct Playing {
+/// A sequence that moves the hand.
+#[derive(Debug)]
+pub(crate) struct Playing {
     player: Player,
     reaction: Option<Reacting>,
     epoch: ArmEpoch,
@@ -91,7 +94,7 @@ struct Playing {
 }
 
 impl Playing {
-    fn new(armed: Armed, start: PlayStart) -> Self {
+    pub(crate) fn new(epoch: ArmEpoch, start: PlayStart, now: Moment) -> Self {
         let plan = start.plan;
         let rest = plan.cues.first().map(|cue| cue.targets);
         Self {
@@ -100,11 +103,16 @@ impl Playing {
                 cue,
                 rest,
             }),
-            player: Player::start(plan.cues, plan.looped, start.pace, armed.clock.now()),
-            epoch: armed.epoch,
+            player: Player::start(plan.cues, plan.looped, start.pace, now),
+            epoch,
             locked: start.locked,
             grip: start.grip,
         }
+    }
+
+    /// The arming in which it moves the hand.
+    pub(crate) const fn epoch(&self) -> ArmEpoch {
+        self.epoch
     }
 }
 

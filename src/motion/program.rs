@@ -2,7 +2,7 @@
 //! the safety rules.
 
 use crate::hand::{AngleReading, Groups, HandSample, Moment, PerDof, Setpoints, Timed};
-use crate::link::{ArmRequest, LinkStatus, PollRates};
+use crate::link::{ArmRequest, LinkStatus, Owner, PollRates};
 use crate::record::{Abort, Disarmed};
 use crate::trials::limits::Stall;
 
@@ -18,8 +18,14 @@ pub enum Order {
     Stop,
     /// Let no setpoint pass any longer. The program may continue with a hand that must not move.
     Disarm,
+    /// Grant control to this owner: the user asked for it.
+    Grant(Owner),
     /// Arm the hand within these limits. For programs that were granted control and arm by themselves.
     Arm(ArmRequest),
+    /// Disarm a hand that has nothing to do. Control remains granted, and the program may arm again.
+    Rest,
+    /// Clear the faults of the drives. Whether that succeeded shows in feedback.
+    Clear,
     /// Stop and disarm. Control remains granted, and the program may arm again.
     Halt,
     /// Halt at this moment by itself, unless that is put off before.
@@ -88,7 +94,7 @@ pub trait Program {
     fn stalled(&mut self, _stall: Stall) {}
     /// Advances the time.
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order>;
-    /// Ends it early. The loop stops the hand.
+    /// Ends it early, or ends its control of the hand if it continues: then it moves nothing before [`Order::Grant`].
     fn abort(&mut self, why: Abort, now: Moment);
     /// How it ended, once it has. After `Err` the loop stops the hand.
     fn ended(&self) -> Option<Ended<Self::Outcome>>;

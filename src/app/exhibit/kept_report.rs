@@ -6,7 +6,7 @@ use crate::app::files::open::put_aside;
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::exhibit::report::{DayReport, file, page};
-use crate::exhibit::run::ExhibitEvent;
+use crate::exhibit::stage::ExhibitEvent;
 use crate::hand::Moment;
 use crate::store::calendar;
 use crate::store::saver::NotSaved;

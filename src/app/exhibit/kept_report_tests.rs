@@ -4,7 +4,7 @@ use crate::app::exhibit::KeptReport;
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::exhibit::report::{DayReport, file};
-use crate::exhibit::run::ExhibitEvent;
+use crate::exhibit::stage::ExhibitEvent;
 use crate::hand::{Dof, HandSample, Moment, PerDof, TemperatureReading, Timed};
 use crate::record::LinkState;
 use std::path::{Path, PathBuf};

@@ -8,7 +8,7 @@ use crate::app::exhibit::wrong_pins_file;
 use crate::app::hands::Hand;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
-use crate::exhibit::run::{ExhibitStage, ExhibitView, ExhibitWish};
+use crate::exhibit::stage::{ExhibitStage, ExhibitView, ExhibitWish};
 use crate::hand::Moment;
 use crate::motion::exhibit::{self, ExhibitStep};
 use crate::store::{Saver, calendar};

@@ -5,7 +5,7 @@ use crate::app::exhibit::kept_report::KeptReport;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate, WrongPins};
 use crate::exhibit::plan::ExhibitPlan;
-use crate::exhibit::run::{ExhibitView, ExhibitWish};
+use crate::exhibit::stage::{ExhibitView, ExhibitWish};
 use crate::hand::Moment;
 use crate::motion::exhibit::{ExhibitStep, PageDrawn};
 use crate::store::Saver;

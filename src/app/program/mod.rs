@@ -39,7 +39,7 @@ use crate::app::recordings::recording::HandRecording;
 use crate::app::replay::work::ReplayWork;
 use crate::app::settings::Settings;
 use crate::app::state::State;
-use crate::exhibit::run::ExhibitWish;
+use crate::exhibit::stage::ExhibitWish;
 use crate::hand::{HandCommand, Moment};
 use crate::poses::Play;
 use crate::record::EventKind;

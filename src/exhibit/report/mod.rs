@@ -6,7 +6,7 @@ pub mod page;
 #[cfg(test)]
 mod tests;
 
-use crate::exhibit::run::ExhibitEvent;
+use crate::exhibit::stage::ExhibitEvent;
 use crate::hand::{HandSample, Moment, PerDof};
 
 use std::collections::{BTreeMap, BTreeSet};

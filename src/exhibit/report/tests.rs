@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may")]
 use crate::exhibit::report::{DayReport, file, page};
-use crate::exhibit::run::ExhibitEvent;
+use crate::exhibit::stage::ExhibitEvent;
 use crate::hand::{Dof, Fault, HandSample, Moment, PerDof, TemperatureReading, Timed};
 
 fn at(second: u64) -> Moment {

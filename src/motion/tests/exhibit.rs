@@ -2,18 +2,15 @@
 
 use crate::exhibit::file;
 use crate::exhibit::plan::ExhibitPlan;
-use crate::exhibit::run::{
-    ExhibitEvent, ExhibitInput, ExhibitOrder, ExhibitRun, ExhibitStage, ExhibitView, ExhibitWish,
-    HaltReason,
-};
+use crate::exhibit::stage::{ExhibitEvent, ExhibitStage, ExhibitView, ExhibitWish, HaltReason};
 use crate::hand::grip::GripEstimator;
 use crate::hand::{
-    Angle, ArmEpoch, Dof, Fault, Faults, HandSample, Moment, PerDof, Target, TemperatureReading,
-    Timed,
+    Angle, AngleReading, ArmEpoch, Dof, Fault, Faults, HandSample, Moment, PerDof, Target,
+    TemperatureReading, Timed,
 };
-use crate::link::Clock;
-use crate::link::LinkStatus;
-use crate::motion::exhibit::{ExhibitStart, ExhibitStep, PageDrawn, exhibit};
+use crate::link::{Clock, LinkStatus, Owner};
+use crate::motion::exhibit::{ExhibitRun, ExhibitStart, ExhibitStep, PageDrawn, exhibit};
+use crate::motion::program::{Order, Program as _, Seen};
 use crate::motion::tests::booth::BoothHand;
 use crate::record::{Disarmed, LinkState};
 use crate::soak;
@@ -498,12 +495,13 @@ fn at(second: u64) -> Moment {
     Moment::from_micros(second * 1_000_000)
 }
 
-/// What an exhibition orders at a cool hand whose link is in this state, under the arming of this number if any.
-fn order(
+/// One step of an exhibition at a cool hand in this state, under the arming of this number if any, after a wish.
+fn order_of(
     run: &mut ExhibitRun,
     (state, armed): (LinkState, Option<u64>),
     second: u64,
-) -> Option<ExhibitOrder> {
+    wish: Option<ExhibitWish>,
+) -> Option<Order> {
     fn timed<T: Copy>(value: T, second: u64) -> Option<Timed<PerDof<T>>> {
         Some(Timed {
             value: PerDof::splat(value),
@@ -513,6 +511,7 @@ fn order(
     }
     let bits = u8::from(state == LinkState::Fault) << Fault::Stall.bit();
     let sample = HandSample {
+        angle: timed(AngleReading::new(500), second),
         faults: timed(Faults::from_raw(bits), second),
         temperature: timed(TemperatureReading::new(30), second),
         ..HandSample::default()
@@ -522,42 +521,54 @@ fn order(
         armed: armed.map(ArmEpoch),
         ..LinkStatus::default()
     };
-    let seen = ExhibitInput {
+    let seen = Seen {
         status: &status,
         sample: &sample,
-        ended: None,
-        drawn: at(second),
+        stall: None,
+        now: at(second),
     };
-    run.tick(seen, at(second))
+    if let Some(wish) = wish {
+        assert_eq!(run.input(wish, &seen), None);
+    }
+    run.tick(&seen)
 }
 
 #[test]
 fn a_touch_in_the_moment_of_a_fault_does_not_hang_the_exhibition() {
     let free = (LinkState::Monitoring, None);
-    let mut run = ExhibitRun::new(Arc::new(plan()), at(0));
-    assert_eq!(order(&mut run, free, 1), None);
-    run.wish(ExhibitWish::Arm, at(1));
-    assert_eq!(order(&mut run, free, 1), Some(ExhibitOrder::Grant));
+    let drawn = Arc::new(PageDrawn::default());
+    let start = ExhibitStart {
+        plan: Arc::new(plan()),
+        locked: PerDof::splat(false),
+        seen: HandSample::default(),
+        grip: GripEstimator::default(),
+        clock: Clock::start(),
+        drawn: Arc::clone(&drawn),
+    };
+    let mut run = ExhibitRun::new(start, at(0));
+    let mut order = |state, second, wish| {
+        drawn.mark(at(second));
+        order_of(&mut run, state, second, wish)
+    };
+    assert_eq!(order(free, 1, None), None);
+    let granted = order(free, 1, Some(ExhibitWish::Arm));
+    assert_eq!(granted, Some(Order::Grant(Owner::Exhibition)));
     for (second, epoch) in [(1, 1), (70, 2)] {
-        let asked = order(&mut run, free, second);
-        assert!(matches!(asked, Some(ExhibitOrder::Arm(_))), "{asked:?}");
-        let armed = (LinkState::Armed, Some(epoch));
-        let plays = order(&mut run, armed, second);
-        assert!(matches!(plays, Some(ExhibitOrder::Play(_))), "{plays:?}");
+        let asked = order(free, second, None);
+        assert!(matches!(asked, Some(Order::Arm(_))), "{asked:?}");
+        let plays = order((LinkState::Armed, Some(epoch)), second, None);
+        assert!(matches!(plays, Some(Order::Set(_))), "{plays:?}");
         if epoch == 1 {
-            run.ended(at(5));
-            assert_eq!(order(&mut run, armed, 5), Some(ExhibitOrder::Rest));
+            assert_eq!(order(free, 5, None), None, "the piece ends with its arming");
+            assert_eq!(order(free, 5, None), Some(Order::Rest));
         }
     }
-    // What plays is to be held for a visitor, and ends with the fault before it can be.
-    run.wish(ExhibitWish::Touch, at(71));
+    // The piece is to be held for a visitor, and ends with the fault before it can be.
     let faulty = (LinkState::Fault, None);
-    assert_eq!(order(&mut run, faulty, 71), Some(ExhibitOrder::Clear));
-    let asked = order(&mut run, free, 72);
-    assert!(
-        matches!(asked, Some(ExhibitOrder::Arm(_))),
-        "to open: {asked:?}"
-    );
+    let cleared = order(faulty, 71, Some(ExhibitWish::Touch));
+    assert_eq!(cleared, Some(Order::Clear));
+    let asked = order(free, 72, None);
+    assert!(matches!(asked, Some(Order::Arm(_))), "to open: {asked:?}");
 }
 
 #[tokio::test(start_paused = true)]

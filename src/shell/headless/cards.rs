@@ -5,7 +5,7 @@ use crate::app::exhibit::ExhibitAction;
 use crate::app::params::state::ParamAction;
 use crate::app::procedures::{Procedure, ProcedureAction, ProcedureStage};
 use crate::app::state::State;
-use crate::exhibit::run::ExhibitWish;
+use crate::exhibit::stage::ExhibitWish;
 use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
 use crate::shell::headless::driver::{ANSWER_TIMEOUT, Driver};

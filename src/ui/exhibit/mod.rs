@@ -13,7 +13,7 @@ use crate::app::action::Action;
 use crate::app::exhibit::{ExhibitAction, ExhibitState, Logo, StaffPanel};
 use crate::app::settings::{Language, Zoom};
 use crate::app::state::State;
-use crate::exhibit::run::{ExhibitStage, ExhibitWish};
+use crate::exhibit::stage::{ExhibitStage, ExhibitWish};
 use crate::ui::exhibit::hand_card::HandCard;
 use crate::ui::exhibit::large::{LargeButton, LargeText, Page};
 use crate::ui::exhibit::places::PagePlaces;

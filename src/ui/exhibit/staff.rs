@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::exhibit::{ExhibitAction, ExhibitState, StaffPanel};
 use crate::exhibit::pin::PinAnswer;
-use crate::exhibit::run::{ExhibitStage, ExhibitWish};
+use crate::exhibit::stage::{ExhibitStage, ExhibitWish};
 use crate::ui::exhibit::keypad::Keypad;
 use crate::ui::exhibit::large::{LargeButton, LargeText, Page};
 use crate::ui::exhibit::places::above;

@@ -3,7 +3,7 @@
 use crate::app::exhibit::ExhibitState;
 use crate::app::notices::NoticeKind;
 use crate::app::state::State;
-use crate::exhibit::run::{ExhibitStage, HaltReason};
+use crate::exhibit::stage::{ExhibitStage, HaltReason};
 use crate::record::{Hold, LinkState};
 use crate::ui::exhibit::large::{LargeText, Page};
 use crate::ui::kit::{Look, Pane};

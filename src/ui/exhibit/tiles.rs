@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::settings::Language;
 use crate::exhibit::plan::{BothWords, ExhibitPiece};
-use crate::exhibit::run::{ExhibitWish, HOLD_DURATION};
+use crate::exhibit::stage::{ExhibitWish, HOLD_DURATION};
 use crate::hand::Angle;
 use crate::ui::exhibit::large::{LargeText, Page};
 use crate::ui::exhibit::places::NAME;

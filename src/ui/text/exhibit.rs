@@ -1,6 +1,6 @@
 //! Sentences of an exhibition: for visitors, readable from two metres, and for staff.
 
-use crate::exhibit::run::HaltReason;
+use crate::exhibit::stage::HaltReason;
 use crate::ui::style::phrase::texts;
 
 texts! {

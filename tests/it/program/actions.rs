@@ -20,7 +20,7 @@ use handscope::app::scan::ScanTarget;
 use handscope::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use handscope::app::trials::{SeriesKind, SessionId, TrialAction};
 use handscope::checkup::CheckupPlan;
-use handscope::exhibit::run::ExhibitWish;
+use handscope::exhibit::stage::ExhibitWish;
 use handscope::hand::gap::Gap;
 use handscope::hand::kinematics::Side;
 use handscope::hand::register::{Persistence, by_address};

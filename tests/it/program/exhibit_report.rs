@@ -5,7 +5,7 @@ use handscope::app::action::Action;
 use handscope::app::exhibit::{ExhibitAction, StaffPanel};
 use handscope::app::notices::NoticeKind;
 use handscope::exhibit::report::{DayReport, file};
-use handscope::exhibit::run::{ExhibitStage, ExhibitWish};
+use handscope::exhibit::stage::{ExhibitStage, ExhibitWish};
 use handscope::store::calendar;
 use std::path::PathBuf;
 

@@ -21,7 +21,7 @@ use handscope::checkup::CheckupPlan;
 use handscope::exhibit::file;
 use handscope::exhibit::pin::Pin;
 use handscope::exhibit::plan::{ExhibitPlan, MotionLimits};
-use handscope::exhibit::run::ExhibitWish;
+use handscope::exhibit::stage::ExhibitWish;
 use handscope::hand::{Angle, Dof, Force, PerDof, Setpoints, Speed, Target};
 use handscope::inputs::mirror::MirrorScale;
 use handscope::inputs::pad::device::{OpenPads, PadReader};

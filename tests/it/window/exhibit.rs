@@ -10,7 +10,7 @@ use handscope::app::settings::{Language, Settings, Zoom};
 use handscope::exhibit::file;
 use handscope::exhibit::pin::Pin;
 use handscope::exhibit::plan::ExhibitPlan;
-use handscope::exhibit::run::{ExhibitStage, ExhibitWish, HaltReason};
+use handscope::exhibit::stage::{ExhibitStage, ExhibitWish, HaltReason};
 use handscope::hand::{Dof, Gesture};
 use handscope::sim::{Scenario, SimConfig};
 use handscope::transport::Endpoint;
