@@ -1,8 +1,8 @@
 //! A figure with its judgement and its history.
 
-use crate::checkup::kept::Kept;
+use crate::checkup::kept::StoredCheckup;
 use crate::checkup::measure::Measured;
-use crate::checkup::subject::{Light, Subject};
+use crate::checkup::subject::{Grade, Subject};
 use crate::checkup::trend::{Drift, Trend, TrendPoint};
 use crate::hand::Dof;
 
@@ -13,16 +13,16 @@ pub struct Check {
     /// The value at the first check-up of this hand, and at the last one before this.
     pub first: Option<f64>,
     pub last: Option<f64>,
-    pub light: Light,
+    pub light: Grade,
     /// Over the most recent check-ups; this one is the last point.
     pub trend: Trend,
 }
 
 impl Check {
     /// Judges a new figure against the earlier check-ups of this hand, oldest first.
-    pub fn of(measured: Measured, at: &str, earlier: &[Kept]) -> Self {
+    pub fn of(measured: Measured, at: &str, earlier: &[StoredCheckup]) -> Self {
         let same = |own: &&Measured| (own.what, own.of) == (measured.what, measured.of);
-        let find = |kept: &Kept| kept.figures.iter().find(same).and_then(|own| own.value);
+        let find = |kept: &StoredCheckup| kept.figures.iter().find(same).and_then(|own| own.value);
         let first = earlier.first().and_then(find);
         let point = |at: &str, value: Option<f64>| {
             let at = at.to_owned();
@@ -47,7 +47,7 @@ impl Check {
 }
 
 /// Judges all figures of a new check-up.
-pub fn checks(measured: Vec<Measured>, at: &str, earlier: &[Kept]) -> Vec<Check> {
+pub fn checks(measured: Vec<Measured>, at: &str, earlier: &[StoredCheckup]) -> Vec<Check> {
     let measured = measured.into_iter();
     measured.map(|own| Check::of(own, at, earlier)).collect()
 }
@@ -56,6 +56,6 @@ pub fn checks(measured: Vec<Measured>, at: &str, earlier: &[Kept]) -> Vec<Check>
 pub fn stopped_early(checks: &[Check]) -> Option<Dof> {
     let is_end = |what: Subject| matches!(what, Subject::OpenEnd | Subject::BentEnd);
     let ends = checks.iter().filter(|own| is_end(own.measured.what));
-    let mut early = ends.filter(|own| matches!(own.light, Light::Act | Light::Unknown));
+    let mut early = ends.filter(|own| matches!(own.light, Grade::Act | Grade::Unknown));
     early.find_map(|own| own.measured.of.joint())
 }

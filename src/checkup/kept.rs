@@ -14,7 +14,7 @@ const FILE_MAX: u64 = 16 << 20;
 
 /// One completed check-up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Kept {
+pub struct StoredCheckup {
     /// Time of the check-up, UTC.
     pub at: String,
     /// The hand, as an endpoint.
@@ -34,10 +34,10 @@ pub fn file_of(folder: &Path, hand: &Endpoint) -> PathBuf {
 ///
 /// # Errors
 /// An I/O error, or a line that does not parse.
-pub fn read(file: &Path) -> io::Result<Vec<Kept>> {
+pub fn read(file: &Path) -> io::Result<Vec<StoredCheckup>> {
     let text = read_text(file, FILE_MAX)?.unwrap_or_default();
     let lines = text.lines().filter(|line| !line.trim().is_empty());
-    let kept: Result<Vec<Kept>, _> = lines.map(serde_json::from_str).collect();
+    let kept: Result<Vec<StoredCheckup>, _> = lines.map(serde_json::from_str).collect();
     kept.map_err(io::Error::from)
 }
 
@@ -45,7 +45,7 @@ pub fn read(file: &Path) -> io::Result<Vec<Kept>> {
 ///
 /// # Errors
 /// As [`read`], or a write error.
-pub fn add(file: &Path, kept: Kept) -> io::Result<()> {
+pub fn add(file: &Path, kept: StoredCheckup) -> io::Result<()> {
     let mut all = read(file)?;
     all.push(kept);
     let old = 1..all.len().saturating_sub(KEPT_MAX - 1).max(1);
@@ -58,17 +58,17 @@ pub fn add(file: &Path, kept: Kept) -> io::Result<()> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
-    use crate::checkup::subject::{Part, Subject};
+    use crate::checkup::subject::{HandPart, Subject};
     use crate::hand::{Dof, Finger};
 
-    fn kept(nth: usize) -> Kept {
+    fn kept(nth: usize) -> StoredCheckup {
         let of = [
-            Part::Joint(Dof::ThumbBend),
-            Part::Fingertip(Finger::Ring),
-            Part::Hand,
+            HandPart::Joint(Dof::ThumbBend),
+            HandPart::Fingertip(Finger::Ring),
+            HandPart::Hand,
         ];
         let measured = of.map(|of| Measured::new(Subject::Backlash, of, (nth > 0).then_some(1.5)));
-        Kept {
+        StoredCheckup {
             at: format!("{nth}"),
             hand: "rtu:/dev/x?id=1".into(),
             figures: measured.into(),

@@ -1,7 +1,7 @@
 //! Figures with units, computed from the readings of a check-up. Judges nothing.
 
-use crate::checkup::steps::{SPEEDS, Step, Way};
-use crate::checkup::subject::{Part, Subject};
+use crate::checkup::steps::{CheckupStep, SPEEDS, Way};
+use crate::checkup::subject::{HandPart, Subject};
 use crate::checkup::tips::{ChannelSet, TipReading, TipsAtRest, Unpressed};
 use crate::hand::grip::FreeClose;
 use crate::hand::statistics::{count, mean, median, spread};
@@ -28,7 +28,7 @@ const NEARLY_BENT: f64 = 100.0;
 pub struct Measured {
     pub what: Subject,
     /// The joint, the fingertip or the hand.
-    pub of: Part,
+    pub of: HandPart,
     /// In the unit of its subject.
     pub value: Option<f64>,
     /// The channels counted by a figure of a fingertip.
@@ -38,7 +38,7 @@ pub struct Measured {
 
 impl Measured {
     /// A figure without channels.
-    pub fn new(what: Subject, of: Part, value: Option<f64>) -> Self {
+    pub fn new(what: Subject, of: HandPart, value: Option<f64>) -> Self {
         let channels = ChannelSet::default();
         Self {
             what,
@@ -54,7 +54,7 @@ impl Measured {
             channels: channels.unwrap_or_default(),
             ..Self::new(
                 what,
-                Part::Fingertip(finger),
+                HandPart::Fingertip(finger),
                 channels.map(ChannelSet::count),
             )
         }
@@ -63,7 +63,7 @@ impl Measured {
 
 /// Joint values read at one time; `None` for a group that this reading lacks.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Reading {
+pub(crate) struct JointReadings {
     at_s: f64,
     position: Option<PerDof<f64>>,
     angle: Option<PerDof<f64>>,
@@ -76,7 +76,7 @@ fn at_s<T>(read: &Timed<T>) -> f64 {
     f64::midpoint(read.asked.secs(), read.received.secs())
 }
 
-impl Reading {
+impl JointReadings {
     /// The fresh groups of a sample; `None` if no joint group is fresh.
     pub(crate) fn of(sample: &HandSample, fresh: Groups) -> Option<Self> {
         fn raw<T: Copy>(read: Timed<PerDof<T>>, raw: fn(T) -> i16) -> (f64, PerDof<f64>) {
@@ -105,20 +105,20 @@ impl Reading {
 /// Readings of one step.
 #[derive(Debug, Clone)]
 pub(crate) struct StepRecord {
-    pub(crate) step: Step,
+    pub(crate) step: CheckupStep,
     /// Time at which its targets were sent.
-    pub(crate) told: Moment,
-    pub(crate) readings: Vec<Reading>,
+    pub(crate) sent: Moment,
+    pub(crate) readings: Vec<JointReadings>,
     pub(crate) tips: Vec<TipReading>,
     /// Drive temperatures at the end of a rest, °C; `None` for other steps.
     pub(crate) warmth: Option<PerDof<Option<u8>>>,
 }
 
 impl StepRecord {
-    pub(crate) const fn new(step: Step, told: Moment) -> Self {
+    pub(crate) const fn new(step: CheckupStep, sent: Moment) -> Self {
         Self {
             step,
-            told,
+            sent,
             readings: Vec::new(),
             tips: Vec::new(),
             warmth: None,
@@ -126,9 +126,9 @@ impl StepRecord {
     }
 
     /// One quantity of a joint from the command on; times by the program's clock.
-    fn curve(&self, dof: Dof, of: fn(&Reading) -> Option<PerDof<f64>>) -> TimeSeries {
-        let told = self.told.secs();
-        let later = self.readings.iter().filter(|own| own.at_s >= told);
+    fn curve(&self, dof: Dof, of: fn(&JointReadings) -> Option<PerDof<f64>>) -> TimeSeries {
+        let sent = self.sent.secs();
+        let later = self.readings.iter().filter(|own| own.at_s >= sent);
         later
             .filter_map(|own| Some((own.at_s, of(own)?[dof])))
             .collect()
@@ -181,7 +181,7 @@ impl StepRecord {
             |at: &CurvePoint| ends.map(|(first, last)| (at.v - first.v) / (last.v - first.v));
         let is_middle = |at: &CurvePoint| part(at).is_some_and(|part| MIDDLE.contains(&part));
         let middle: Vec<CurvePoint> = angle.points().iter().copied().filter(is_middle).collect();
-        let fit = Fit::of(&middle);
+        let fit = LineFit::of(&middle);
         let begins_s = fit
             .zip(ends)
             .map(|(fit, (first, _))| fit.at_s + (first.v - fit.value) / fit.slope);
@@ -194,7 +194,7 @@ impl StepRecord {
         Stroke {
             end: ends.map(|(_, last)| last.v),
             speed: fit.map(|fit| COUNTS * fit.slope.abs()),
-            dead_ms: begins_s.map(|begins| 1000.0 * (begins - self.told.secs())),
+            dead_ms: begins_s.map(|begins| 1000.0 * (begins - self.sent.secs())),
             current: current.as_deref().and_then(mean),
             half_way: crossing(&angle, HALF_WAY).and_then(|at| position.at(at)),
         }
@@ -233,13 +233,13 @@ fn values(curve: &TimeSeries) -> Vec<f64> {
 
 /// A straight line fitted to points by least squares.
 #[derive(Debug, Clone, Copy)]
-struct Fit {
+struct LineFit {
     at_s: f64,
     value: f64,
     slope: f64,
 }
 
-impl Fit {
+impl LineFit {
     fn of(points: &[CurvePoint]) -> Option<Self> {
         if points.len() < 3 {
             return None;
@@ -265,26 +265,26 @@ fn crossing(curve: &TimeSeries, level: f64) -> Option<f64> {
 
 /// Results of the finished steps.
 #[derive(Debug, Clone)]
-pub(crate) struct Figures {
+pub(crate) struct StepResults {
     /// Strokes of each joint: at both speeds, closing and opening.
     strokes: PerDof<Vec<(i16, Way, Stroke)>>,
     others: PerDof<Option<f64>>,
     together: PerDof<Option<f64>>,
     /// One at the beginning and one at the end.
-    rests: Vec<Rest>,
+    rests: Vec<RestValues>,
     /// For each fingertip that had to be pressed, its readings meanwhile.
     presses: Vec<(Finger, Vec<TipReading>)>,
 }
 
 #[derive(Debug, Clone)]
-struct Rest {
+struct RestValues {
     zero_g: PerDof<Option<f64>>,
     noise_g: PerDof<Option<f64>>,
     tips: TipsAtRest,
     warmth: PerDof<Option<f64>>,
 }
 
-impl Default for Figures {
+impl Default for StepResults {
     fn default() -> Self {
         Self {
             strokes: PerDof::from_fn(|_| Vec::new()),
@@ -296,21 +296,21 @@ impl Default for Figures {
     }
 }
 
-impl Figures {
+impl StepResults {
     pub(crate) fn add(&mut self, record: &StepRecord) {
         match record.step {
-            Step::Open => {}
-            Step::Rest => self.rests.push(Rest::of(record)),
-            Step::Stroke(dof, speed, way) => {
+            CheckupStep::Open => {}
+            CheckupStep::Rest => self.rests.push(RestValues::of(record)),
+            CheckupStep::Stroke(dof, speed, way) => {
                 self.strokes[dof].push((speed.get(), way, record.stroke(dof)));
                 let others = record.others(dof);
                 self.others[dof] = self.others[dof].into_iter().chain(others).reduce(f64::max);
             }
-            Step::Together(Way::Closing) => {
+            CheckupStep::Together(Way::Closing) => {
                 self.together = PerDof::from_fn(|dof| record.stroke(dof).speed);
             }
-            Step::Together(Way::Opening) => {}
-            Step::Press(finger) => self.presses.push((finger, record.tips.clone())),
+            CheckupStep::Together(Way::Opening) => {}
+            CheckupStep::Press(finger) => self.presses.push((finger, record.tips.clone())),
         }
     }
 
@@ -346,7 +346,7 @@ struct BothWays {
     opening: Option<f64>,
 }
 
-impl Rest {
+impl RestValues {
     fn of(record: &StepRecord) -> Self {
         let noise = |dof| {
             let forces = values(&record.curve(dof, |own| own.force));
@@ -356,28 +356,28 @@ impl Rest {
         Self {
             zero_g: record.zeros(),
             noise_g: PerDof::from_fn(noise),
-            tips: TipsAtRest::of(&record.tips, record.told.secs()),
+            tips: TipsAtRest::of(&record.tips, record.sent.secs()),
             warmth: PerDof::from_fn(|dof| record.warmth?[dof].map(f64::from)),
         }
     }
 }
 
 /// All figures; with `presses`, also the channels that do not answer a press.
-pub(crate) fn measured(figures: &Figures, presses: bool) -> Vec<Measured> {
+pub(crate) fn measured(figures: &StepResults, presses: bool) -> Vec<Measured> {
     let joints = Dof::ALL.into_iter().flat_map(|dof| {
         let all = joint(figures, dof).into_iter().chain(heat(figures, dof));
-        all.map(move |(what, value)| Measured::new(what, Part::Joint(dof), value))
+        all.map(move |(what, value)| Measured::new(what, HandPart::Joint(dof), value))
     });
     let tips = Finger::ALL.into_iter().flat_map(|finger| {
         let pressed = presses.then(|| pressed(figures, finger));
         fingertip(figures, finger).into_iter().chain(pressed)
     });
     let together = slower_together(figures);
-    let hand = Measured::new(Subject::SlowerTogether, Part::Hand, together);
+    let hand = Measured::new(Subject::SlowerTogether, HandPart::Hand, together);
     joints.chain(tips).chain([hand]).collect()
 }
 
-fn heat(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 2] {
+fn heat(figures: &StepResults, dof: Dof) -> [(Subject, Option<f64>); 2] {
     let at = |nth: usize| figures.rests.get(nth).map(|rest| &rest.warmth);
     let own = at(0).and_then(|all| all[dof]);
     let all: Option<Vec<f64>> = at(0).map(|all| all.iter().filter_map(|(_, own)| *own).collect());
@@ -395,7 +395,7 @@ fn heat(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 2] {
     ]
 }
 
-fn joint(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 14] {
+fn joint(figures: &StepResults, dof: Dof) -> [(Subject, Option<f64>); 14] {
     let [ends, _] = figures.of(dof, |own| own.end);
     let [half_way, _] = figures.of(dof, |own| own.half_way);
     let backlash = half_way.closing.zip(half_way.opening);
@@ -449,7 +449,7 @@ fn joint(figures: &Figures, dof: Dof) -> [(Subject, Option<f64>); 14] {
     ]
 }
 
-fn fingertip(figures: &Figures, finger: Finger) -> [Measured; 3] {
+fn fingertip(figures: &StepResults, finger: Finger) -> [Measured; 3] {
     let first = figures.rests.first().map(|rest| &rest.tips);
     let dead = first.and_then(|tips| tips.dead(finger));
     let noisy = first.and_then(|tips| tips.noisy(finger));
@@ -459,11 +459,11 @@ fn fingertip(figures: &Figures, finger: Finger) -> [Measured; 3] {
     [
         Measured::counted(Subject::DeadChannels, finger, dead),
         Measured::counted(Subject::NoisyChannels, finger, noisy),
-        Measured::new(Subject::ChannelDrift, Part::Fingertip(finger), drift),
+        Measured::new(Subject::ChannelDrift, HandPart::Fingertip(finger), drift),
     ]
 }
 
-fn pressed(figures: &Figures, finger: Finger) -> Measured {
+fn pressed(figures: &StepResults, finger: Finger) -> Measured {
     let mut presses = figures.presses.iter();
     let own = presses.find(|(pressed, _)| *pressed == finger);
     let silent = own
@@ -473,7 +473,7 @@ fn pressed(figures: &Figures, finger: Finger) -> Measured {
 }
 
 /// Median loss of speed when all joints move together, percent.
-fn slower_together(figures: &Figures) -> Option<f64> {
+fn slower_together(figures: &StepResults) -> Option<f64> {
     let ratios = Dof::ALL.into_iter().filter_map(|dof| {
         let [alone, _] = figures.of(dof, |own| own.speed);
         Some(figures.together[dof]? / alone.closing?)

@@ -17,5 +17,5 @@ pub use crate::checkup::check::Check;
 pub use crate::checkup::measure::Measured;
 pub use crate::checkup::run::Checkup;
 pub use crate::checkup::steps::{CheckupPlan, expected};
-pub use crate::checkup::subject::{Light, Part, Subject};
+pub use crate::checkup::subject::{Grade, HandPart, Subject};
 pub use crate::checkup::tips::ChannelSet;

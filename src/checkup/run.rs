@@ -1,7 +1,7 @@
 //! A running check-up: which step is next, when one is over, what ends it early. Sends nothing and reads no clock.
 
-use crate::checkup::measure::{Figures, Measured, Reading, StepRecord, measured};
-use crate::checkup::steps::{CheckupPlan, PRESS_TIMEOUT, REST, Step, Way, slow, steps};
+use crate::checkup::measure::{JointReadings, Measured, StepRecord, StepResults, measured};
+use crate::checkup::steps::{CheckupPlan, CheckupStep, PRESS_TIMEOUT, REST, Way, slow, steps};
 use crate::checkup::tips::TipReading;
 use crate::hand::grip::FreeForce;
 use crate::hand::{
@@ -10,7 +10,7 @@ use crate::hand::{
 };
 use crate::record::Abort;
 use crate::trials::Limits;
-use crate::trials::limits::{Feedback, Stall, reason, warmest};
+use crate::trials::limits::{Feedback, TaskStall, reason, warmest};
 use std::collections::VecDeque;
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -64,7 +64,7 @@ pub struct CheckupView {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Stage {
+enum StepPhase {
     /// Speed and threshold were sent at this time, and are to be read back.
     Confirming {
         since: Moment,
@@ -80,7 +80,7 @@ enum Stage {
 
 #[derive(Debug, Clone)]
 struct RunningStep {
-    stage: Stage,
+    stage: StepPhase,
     record: StepRecord,
     /// Where the joints go that move in it.
     targets: PerDof<Option<Angle>>,
@@ -107,13 +107,13 @@ impl RunningStep {
 #[derive(Debug, Clone)]
 pub struct Checkup {
     epoch: ArmEpoch,
-    left: VecDeque<Step>,
+    left: VecDeque<CheckupStep>,
     total: usize,
     running: Option<RunningStep>,
     zero_g: PerDof<Option<f64>>,
     /// Joints that stopped with nothing in their way: their drives count what their sensors read at rest as force.
     counts_zero: PerDof<bool>,
-    figures: Figures,
+    figures: StepResults,
     free: FreeForce,
     plan: CheckupPlan,
     is_over: bool,
@@ -132,7 +132,7 @@ impl Checkup {
             running: None,
             zero_g: PerDof::splat(None),
             counts_zero: PerDof::splat(false),
-            figures: Figures::default(),
+            figures: StepResults::default(),
             free: FreeForce::default(),
             is_over: false,
             aborted: None,
@@ -143,9 +143,11 @@ impl Checkup {
     pub fn view(&self) -> CheckupView {
         let running = self.running.as_ref().map(|running| running.record.step);
         let (joint, press) = match running {
-            Some(Step::Stroke(dof, _, _)) => (Some(dof), None),
-            Some(Step::Press(finger)) => (None, Some(finger)),
-            Some(Step::Open | Step::Rest | Step::Together(_)) | None => (None, None),
+            Some(CheckupStep::Stroke(dof, _, _)) => (Some(dof), None),
+            Some(CheckupStep::Press(finger)) => (None, Some(finger)),
+            Some(CheckupStep::Open | CheckupStep::Rest | CheckupStep::Together(_)) | None => {
+                (None, None)
+            }
         };
         CheckupView {
             done: self.total - self.left.len() - usize::from(running.is_some()),
@@ -188,7 +190,7 @@ impl Checkup {
             self.is_over = true;
             return None;
         };
-        let may_move = |dof: Dof| step == Step::Open || self.may_move(dof);
+        let may_move = |dof: Dof| step == CheckupStep::Open || self.may_move(dof);
         let wanted = step.targets();
         let targets = PerDof::from_fn(|dof| wanted[dof].filter(|_| may_move(dof)));
         let force = |dof: Dof| match step.closes() && !self.counts_zero[dof] {
@@ -198,13 +200,17 @@ impl Checkup {
         let forces = PerDof::from_fn(|dof| targets[dof].map(|_| force(dof)));
         let stands_still = targets.iter().all(|(_, target)| target.is_none());
         let stage = match step {
-            Step::Rest => Stage::Resting,
-            Step::Press(_) => Stage::Pressing { last: None },
+            CheckupStep::Rest => StepPhase::Resting,
+            CheckupStep::Press(_) => StepPhase::Pressing { last: None },
             // A joint that is left alone.
-            Step::Open | Step::Stroke(..) | Step::Together(_) if stands_still => {
+            CheckupStep::Open | CheckupStep::Stroke(..) | CheckupStep::Together(_)
+                if stands_still =>
+            {
                 return self.next(now);
             }
-            Step::Open | Step::Stroke(..) | Step::Together(_) => Stage::Confirming { since: now },
+            CheckupStep::Open | CheckupStep::Stroke(..) | CheckupStep::Together(_) => {
+                StepPhase::Confirming { since: now }
+            }
         };
         self.running = Some(RunningStep {
             stage,
@@ -214,12 +220,12 @@ impl Checkup {
             pose: None,
         });
         match stage {
-            Stage::Confirming { .. } => Some(Setpoints {
+            StepPhase::Confirming { .. } => Some(Setpoints {
                 force: forces,
                 speed: targets.map(|target| target.map(|_| step.speed())),
                 ..Setpoints::none(self.epoch)
             }),
-            Stage::Pressing { .. } | Stage::Moving | Stage::Resting => None,
+            StepPhase::Pressing { .. } | StepPhase::Moving | StepPhase::Resting => None,
         }
     }
 
@@ -263,7 +269,7 @@ impl Checkup {
         let is_open = |dof: Dof| pose[dof] >= Angle::MAX.get() - STUCK_TOLERANCE;
         let moved = |dof: &Dof| running.targets[*dof].is_some();
         if !Dof::ALL.into_iter().filter(moved).all(is_open) {
-            self.left.push_front(Step::Open);
+            self.left.push_front(CheckupStep::Open);
         }
         self.running = None;
         self.next(now)
@@ -287,8 +293,8 @@ impl Checkup {
             return None;
         }
         let running = self.running.as_mut()?;
-        running.stage = Stage::Moving;
-        running.record.told = now;
+        running.stage = StepPhase::Moving;
+        running.record.sent = now;
         Some(Setpoints {
             angle: targets.map(|target| target.map(Target::Go)),
             ..Setpoints::none(self.epoch)
@@ -299,7 +305,7 @@ impl Checkup {
         let Some(mut running) = self.running.take() else {
             return;
         };
-        if running.record.step == Step::Rest {
+        if running.record.step == CheckupStep::Rest {
             let temperature = sample.temperature.map(|read| read.value);
             let known = |six: PerDof<TemperatureReading>| six.map(TemperatureReading::documented);
             running.record.warmth = temperature.map(known);
@@ -307,7 +313,7 @@ impl Checkup {
                 self.zero_g[dof] = zero.or(self.zero_g[dof]);
             }
         }
-        if let Step::Stroke(dof, speed, Way::Closing) = running.record.step
+        if let CheckupStep::Stroke(dof, speed, Way::Closing) = running.record.step
             && speed == slow()
             && let Some(zero_g) = self.zero_g[dof]
         {
@@ -335,17 +341,17 @@ impl Checkup {
     pub fn is_pressing(&self) -> bool {
         matches!(
             self.running.as_ref().map(|own| own.stage),
-            Some(Stage::Pressing { .. })
+            Some(StepPhase::Pressing { .. })
         )
     }
 
     fn tick_press(&mut self, now: Moment) -> Option<Setpoints> {
         let running = self.running.as_ref()?;
-        let Stage::Pressing { last } = running.stage else {
+        let StepPhase::Pressing { last } = running.stage else {
             return None;
         };
         let is_let_go = last.is_some_and(|last| now.since(last) >= LET_GO);
-        if !is_let_go && now.since(running.record.told) < PRESS_TIMEOUT {
+        if !is_let_go && now.since(running.record.sent) < PRESS_TIMEOUT {
             return None;
         }
         if let Some(running) = self.running.take() {
@@ -355,7 +361,7 @@ impl Checkup {
     }
 
     /// Takes a reading of the fingertip that is to be pressed.
-    fn take_press(&mut self, finger: Finger, sample: &HandSample, fresh: Groups) {
+    fn apply_press(&mut self, finger: Finger, sample: &HandSample, fresh: Groups) {
         let fresh = fresh.contains(Group::Tactile(finger));
         let Some(tip) = TipReading::of(sample, finger).filter(|_| fresh) else {
             return;
@@ -368,7 +374,7 @@ impl Checkup {
         };
         running.record.tips.push(tip);
         if is_pressed {
-            running.stage = Stage::Pressing { last: asked };
+            running.stage = StepPhase::Pressing { last: asked };
         }
     }
 }
@@ -407,14 +413,17 @@ impl Checkup {
                 self.zero_g[dof].get_or_insert_with(|| f64::from(reading.raw()));
             }
         }
-        if let Some(Step::Press(finger)) = self.running.as_ref().map(|own| own.record.step) {
-            return self.take_press(finger, sample, fresh);
+        if let Some(CheckupStep::Press(finger)) = self.running.as_ref().map(|own| own.record.step) {
+            return self.apply_press(finger, sample, fresh);
         }
         let Some(running) = &mut self.running else {
             return;
         };
-        running.record.readings.extend(Reading::of(sample, fresh));
-        if running.record.step == Step::Rest {
+        running
+            .record
+            .readings
+            .extend(JointReadings::of(sample, fresh));
+        if running.record.step == CheckupStep::Rest {
             let tips = Finger::ALL.into_iter();
             let fresh_tips = tips.filter(|finger| fresh.contains(Group::Tactile(*finger)));
             let tips = fresh_tips.filter_map(|finger| TipReading::of(sample, finger));
@@ -438,13 +447,13 @@ impl Checkup {
     pub fn tick(
         &mut self,
         sample: &HandSample,
-        stall: Option<Stall>,
+        stall: Option<TaskStall>,
         now: Moment,
     ) -> Option<Setpoints> {
         if self.is_over {
             return None;
         }
-        if let Some(Step::Press(_)) = self.running.as_ref().map(|own| own.record.step) {
+        if let Some(CheckupStep::Press(_)) = self.running.as_ref().map(|own| own.record.step) {
             return self.tick_press(now);
         }
         let seen = Feedback {
@@ -473,12 +482,12 @@ impl Checkup {
             }
             return self.next(now);
         };
-        let told = running.record.told;
+        let sent = running.record.sent;
         let is_over = match running.stage {
-            Stage::Confirming { since } => return self.confirm(sample, since, now),
-            Stage::Resting => now.since(told) >= REST,
-            Stage::Pressing { .. } => false,
-            Stage::Moving => {
+            StepPhase::Confirming { since } => return self.confirm(sample, since, now),
+            StepPhase::Resting => now.since(sent) >= REST,
+            StepPhase::Pressing { .. } => false,
+            StepPhase::Moving => {
                 let targets = running.targets;
                 let still = running
                     .pose
@@ -488,7 +497,7 @@ impl Checkup {
                     target.is_none_or(|target| (target - pose[dof]).abs() <= ARRIVED)
                 };
                 let arrived = |pose: &PerDof<i16>| Dof::ALL.iter().all(|dof| near(pose, *dof));
-                let waited = now.since(told);
+                let waited = now.since(sent);
                 still.is_some_and(|(_, pose)| arrived(&pose) || waited >= START_DELAY)
                     || waited >= STROKE_MAX
             }

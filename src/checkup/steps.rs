@@ -34,7 +34,7 @@ pub(crate) enum Way {
 
 /// One part of a check-up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Step {
+pub(crate) enum CheckupStep {
     /// All joints open, from wherever they are.
     Open,
     /// Nothing moves.
@@ -47,7 +47,7 @@ pub(crate) enum Step {
     Press(Finger),
 }
 
-impl Step {
+impl CheckupStep {
     /// Targets of the joints that move.
     pub(crate) fn targets(self) -> PerDof<Option<Angle>> {
         let end = |way| match way {
@@ -100,24 +100,24 @@ pub(crate) fn slow() -> Speed {
 }
 
 /// All steps of a check-up.
-pub(crate) fn steps(plan: CheckupPlan) -> VecDeque<Step> {
+pub(crate) fn steps(plan: CheckupPlan) -> VecDeque<CheckupStep> {
     let ways = [Way::Closing, Way::Opening];
     let strokes = Dof::ALL.into_iter().flat_map(|dof| {
         let speeds = SPEEDS.map(Speed::nearest).into_iter();
-        speeds.flat_map(move |speed| ways.map(|way| Step::Stroke(dof, speed, way)))
+        speeds.flat_map(move |speed| ways.map(|way| CheckupStep::Stroke(dof, speed, way)))
     });
-    let together = ways.map(Step::Together);
+    let together = ways.map(CheckupStep::Together);
     let pressed = Finger::ALL.into_iter().rev().filter(|_| plan.press);
-    [Step::Open, Step::Rest]
+    [CheckupStep::Open, CheckupStep::Rest]
         .into_iter()
         .chain(strokes)
         .chain(together)
-        .chain([Step::Rest])
-        .chain(pressed.map(Step::Press))
+        .chain([CheckupStep::Rest])
+        .chain(pressed.map(CheckupStep::Press))
         .collect()
 }
 
 /// Expected duration of a check-up.
 pub fn expected(plan: CheckupPlan) -> Duration {
-    steps(plan).into_iter().map(Step::expected).sum()
+    steps(plan).into_iter().map(CheckupStep::expected).sum()
 }

@@ -35,7 +35,7 @@ pub enum Subject {
 /// The part of the hand that a figure describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Part {
+pub enum HandPart {
     Joint(Dof),
     Fingertip(Finger),
     Hand,
@@ -44,7 +44,7 @@ pub enum Part {
 /// Grade of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Light {
+pub enum Grade {
     /// Within the good range.
     Fine,
     /// Not measured.
@@ -72,18 +72,18 @@ pub struct SubjectRow {
 
 impl Subject {
     /// Grades a value by the ranges, and by its change since the first check-up of this hand.
-    pub fn light(self, value: Option<f64>, first: Option<f64>) -> Light {
+    pub fn light(self, value: Option<f64>, first: Option<f64>) -> Grade {
         let row = self.row();
         let Some(value) = value else {
-            return Light::Unknown;
+            return Grade::Unknown;
         };
         let within = |[least, most]: [f64; 2]| (least..=most).contains(&value);
         if !within(row.bearable) {
-            Light::Act
+            Grade::Act
         } else if !within(row.good) || first.is_some_and(|was| (value - was).abs() > row.change) {
-            Light::Watch
+            Grade::Watch
         } else {
-            Light::Fine
+            Grade::Fine
         }
     }
 
@@ -252,7 +252,7 @@ impl SubjectRow {
     }
 }
 
-impl Part {
+impl HandPart {
     /// The joint; `None` for a fingertip and the hand.
     pub const fn joint(self) -> Option<Dof> {
         match self {
@@ -270,7 +270,7 @@ impl Part {
     }
 }
 
-impl Light {
+impl Grade {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Fine => "fine",

@@ -98,8 +98,8 @@ struct ChannelRest {
 }
 
 impl TipsAtRest {
-    /// `told_s`: start of the rest.
-    pub(crate) fn of(readings: &[TipReading], told_s: f64) -> Self {
+    /// `begun_s`: start of the rest.
+    pub(crate) fn of(readings: &[TipReading], begun_s: f64) -> Self {
         let times: Vec<f64> = readings.iter().map(|tip| tip.at_s).collect();
         let channel = |finger: Finger, nth: usize| {
             let own = readings.iter().filter(|tip| tip.finger == finger);
@@ -117,7 +117,7 @@ impl TipsAtRest {
             })
         };
         Self {
-            at_s: mean(&times).unwrap_or(told_s),
+            at_s: mean(&times).unwrap_or(begun_s),
             tips: PerFinger::from_fn(|finger| std::array::from_fn(|nth| channel(finger, nth))),
         }
     }

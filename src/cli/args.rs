@@ -40,12 +40,12 @@ pub(crate) struct Cli {
     pub(crate) window: WindowArgs,
 
     #[command(subcommand)]
-    pub(crate) command: Option<Command>,
+    pub(crate) command: Option<CliCommand>,
 }
 
 /// What to do instead of opening the window.
 #[derive(Debug, Subcommand)]
-pub(crate) enum Command {
+pub(crate) enum CliCommand {
     /// Draw the window to PNG files, without display, GPU or driver
     #[command(
         after_help = "Examples:\n  handscope snapshot --scenario grasp --at 3 --view all --out pictures\n  handscope snapshot --view live --size 1024x640 --theme light --lang zh --out pictures\n  handscope snapshot --scenario grasp --view all --theme all --lang all --out pictures\n\nBeside each PNG lies a JSON file that lists what is visible: role, name, value, rectangle. Themes differ only in colours and share one list."

@@ -75,7 +75,7 @@ pub(crate) async fn run(out: &mut Out, args: &GripArgs) -> anyhow::Result<()> {
     out.result(args.json, &object, done.as_ref().ok())?;
     out.flush()?;
     match done {
-        Ok(_told) => Ok(()),
+        Ok(_words) => Ok(()),
         Err(why) => bail!("{why}{}", stop_words(report.stop)),
     }
 }
@@ -94,7 +94,7 @@ async fn drive(args: &GripArgs) -> anyhow::Result<GripReport> {
     };
     let ends = by_user(&mut hand.interrupt);
     let report = grip::grip(&hand.link, hand.armed, start, ends).await;
-    hand.let_go(report.stop).await;
+    hand.release(report.stop).await;
     Ok(report)
 }
 

@@ -1,7 +1,7 @@
 //! `hold`: the process that holds a hand if the program that moved it dies. It is started by that program and tied to it by its
 //! standard input; users do not start it themselves.
 
-use crate::cli::out::{AlreadyReported, say};
+use crate::cli::out::{AlreadyReported, notify};
 use crate::cli::session;
 use crate::link::guard::holder::MOVES;
 use crate::link::{self, Clock, LinkConfig, LinkHandle, PollRates};
@@ -100,14 +100,14 @@ pub(crate) async fn run(args: &HoldArgs) -> anyhow::Result<()> {
             Err(_late) => session::NOT_CONFIRMED,
             Ok(()) => {
                 let ms = died.elapsed().as_millis();
-                say(&format!(
+                notify(&format!(
                     "the program that moved {hand} ended without a word; the hand was stopped, and rests since {ms} ms after"
                 ));
                 return Ok(());
             }
         },
     };
-    say(&format!(
+    notify(&format!(
         "the program that moved {hand} ended without a word, and the hand: {how}"
     ));
     Err(AlreadyReported.into())
@@ -170,14 +170,14 @@ mod tests {
 
     #[test]
     fn only_a_pipe_that_breaks_while_the_hand_may_move_is_a_death() {
-        for (told, died) in [
+        for (bytes, died) in [
             (vec![], false),
             (vec![MOVES], true),
             (vec![MOVES, RESTS], false),
             (vec![MOVES, RESTS, MOVES], true),
             ([MOVES, RESTS].repeat(100), false),
         ] {
-            assert_eq!(died_moving(told.as_slice()), died, "{told:?}");
+            assert_eq!(died_moving(bytes.as_slice()), died, "{bytes:?}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Listening addresses of a command: parsing, and messages to the user.
 
-use crate::cli::out::say;
+use crate::cli::out::notify;
 use anyhow::anyhow;
 use std::io;
 use std::net::SocketAddr;
@@ -20,7 +20,7 @@ pub(crate) fn refused(at: SocketAddr, error: &io::Error) -> anyhow::Error {
 /// Warns about an address that other computers can reach; `can` describes what they could do.
 pub(crate) fn warn_if_reachable(at: SocketAddr, can: &str) {
     if !at.ip().is_loopback() {
-        say(&format!(
+        notify(&format!(
             "warning: anyone in the network can reach {at} and {can}; 127.0.0.1 keeps it to this computer"
         ));
     }

@@ -27,7 +27,7 @@ mod wires;
 
 use crate::link::guard::{self, holder};
 use anyhow::Context as _;
-use args::{Cli, Command};
+use args::{Cli, CliCommand};
 use clap::{CommandFactory as _, Parser as _};
 use out::{AlreadyReported, Out, ReaderGone, WrongUsage};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -42,11 +42,11 @@ const WRONG_USAGE: u8 = 2;
 /// The exit status is 0 when done, 1 on failure, 2 on wrong usage.
 pub fn run() -> ExitCode {
     let Cli { command, window } = Cli::parse();
-    holder::use_this_program(out::say);
-    tell_panics();
+    holder::use_this_program(out::notify);
+    report_panics();
     let done = catch_unwind(AssertUnwindSafe(|| match command {
         None => has_room_for_files().and_then(|()| window::run(window)),
-        Some(command) => obey(command),
+        Some(command) => execute(command),
     }));
     let status = match done {
         Ok(done) => status(done),
@@ -64,11 +64,11 @@ fn status(done: anyhow::Result<()>) -> ExitCode {
         Err(error) if error.is::<ReaderGone>() => ExitCode::SUCCESS,
         Err(error) if error.is::<AlreadyReported>() => ExitCode::FAILURE,
         Err(error) if error.is::<WrongUsage>() => {
-            out::say(&error.to_string());
+            out::notify(&error.to_string());
             ExitCode::from(WRONG_USAGE)
         }
         Err(error) => {
-            out::say(&format!("{error:#}"));
+            out::notify(&format!("{error:#}"));
             ExitCode::FAILURE
         }
     }
@@ -76,7 +76,7 @@ fn status(done: anyhow::Result<()>) -> ExitCode {
 
 /// Installs the panic hook: a panic on any thread stops each hand that may move, and is reported in one sentence, with a backtrace
 /// if requested.
-fn tell_panics() {
+fn report_panics() {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         guard::hold_all();
@@ -86,14 +86,14 @@ fn tell_panics() {
         let place = panic.location().map(ToString::to_string);
         let (place, words) = (place.unwrap_or_default(), panic.payload_as_str());
         let words = words.unwrap_or("no words").replace('\n', " ");
-        out::say(&format!(
+        out::notify(&format!(
             "a fault of this program, please report it ({place}: {words}); each hand that it moved is told to stop"
         ));
     }));
 }
 
-fn obey(command: Command) -> anyhow::Result<()> {
-    if let Command::Hold(args) = command {
+fn execute(command: CliCommand) -> anyhow::Result<()> {
+    if let CliCommand::Hold(args) = command {
         // Before any thread is started: the threads of this process must inherit its signal mask.
         return if hold::is_needed() {
             wait_for(hold::run(&args))
@@ -102,42 +102,42 @@ fn obey(command: Command) -> anyhow::Result<()> {
         };
     }
     let mut out = Out::stdout()?;
-    if matches!(command, Command::Snapshot(_) | Command::Exhibit(_)) {
+    if matches!(command, CliCommand::Snapshot(_) | CliCommand::Exhibit(_)) {
         has_room_for_files()?;
     }
     let done = match command {
-        Command::Snapshot(args) => window::snapshot::run(&mut out, &args),
-        Command::Watch(args) => wait_for(watch::run(&mut out, &args)),
-        Command::Read(args) => wait_for(read::run(&mut out, &args)),
-        Command::Scan(args) => wait_for(scan::run(&mut out, &args)),
-        Command::Doctor(args) => wait_for(doctor::run(&mut out, &args)),
-        Command::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
-        Command::Params(args) => wait_for(params::run(&mut out, &args)),
-        Command::Inputs(args) => wait_for(inputs::show::run(&mut out, &args)),
-        Command::Exhibit(args) => window::exhibit::run(&mut out, args),
-        Command::Trial(args) => wait_for(trial::run(&mut out, &args)),
-        Command::Check(args) => wait_for(check::run(&mut out, &args)),
-        Command::Tune(args) => wait_for(tune::run(&mut out, &args)),
-        Command::Overshoot(args) => trial::overshoot::run(&mut out, &args),
-        Command::Model(args) => about::model::run(&mut out, &args),
-        Command::Completions(args) => {
+        CliCommand::Snapshot(args) => window::snapshot::run(&mut out, &args),
+        CliCommand::Watch(args) => wait_for(watch::run(&mut out, &args)),
+        CliCommand::Read(args) => wait_for(read::run(&mut out, &args)),
+        CliCommand::Scan(args) => wait_for(scan::run(&mut out, &args)),
+        CliCommand::Doctor(args) => wait_for(doctor::run(&mut out, &args)),
+        CliCommand::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
+        CliCommand::Params(args) => wait_for(params::run(&mut out, &args)),
+        CliCommand::Inputs(args) => wait_for(inputs::show::run(&mut out, &args)),
+        CliCommand::Exhibit(args) => window::exhibit::run(&mut out, args),
+        CliCommand::Trial(args) => wait_for(trial::run(&mut out, &args)),
+        CliCommand::Check(args) => wait_for(check::run(&mut out, &args)),
+        CliCommand::Tune(args) => wait_for(tune::run(&mut out, &args)),
+        CliCommand::Overshoot(args) => trial::overshoot::run(&mut out, &args),
+        CliCommand::Model(args) => about::model::run(&mut out, &args),
+        CliCommand::Completions(args) => {
             about::packaging::completions(&mut out, &args, Cli::command())
         }
-        Command::Man(args) => about::packaging::man(&mut out, &args, Cli::command()),
-        Command::Grip(args) => wait_for(grip::run(&mut out, &args)),
-        Command::Follow(args) => wait_for(inputs::follow::run(&mut out, &args)),
-        Command::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
-        Command::Info(args) => recordings::info::run(&mut out, &args),
-        Command::Export(args) => recordings::export::run(&mut out, &args),
-        Command::Recover(args) => recordings::export::recover(&mut out, &args),
-        Command::Import(args) => recordings::import::run(&mut out, &args),
-        Command::Replay(args) => wait_for(recordings::replay::run(&mut out, &args)),
-        Command::Fleet(args) => wait_for(share::fleet::run(&mut out, &args)),
-        Command::Share(args) => wait_for(share::run(&mut out, &args)),
-        Command::Sim(args) => wait_for(sim::run(&mut out, &args)),
-        Command::Registers(args) => about::registers::run(&mut out, args.json),
-        Command::Hold(_) => Ok(()),
-        Command::Help(args) => about::help::run(&mut out, &args, Cli::command()),
+        CliCommand::Man(args) => about::packaging::man(&mut out, &args, Cli::command()),
+        CliCommand::Grip(args) => wait_for(grip::run(&mut out, &args)),
+        CliCommand::Follow(args) => wait_for(inputs::follow::run(&mut out, &args)),
+        CliCommand::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
+        CliCommand::Info(args) => recordings::info::run(&mut out, &args),
+        CliCommand::Export(args) => recordings::export::run(&mut out, &args),
+        CliCommand::Recover(args) => recordings::export::recover(&mut out, &args),
+        CliCommand::Import(args) => recordings::import::run(&mut out, &args),
+        CliCommand::Replay(args) => wait_for(recordings::replay::run(&mut out, &args)),
+        CliCommand::Fleet(args) => wait_for(share::fleet::run(&mut out, &args)),
+        CliCommand::Share(args) => wait_for(share::run(&mut out, &args)),
+        CliCommand::Sim(args) => wait_for(sim::run(&mut out, &args)),
+        CliCommand::Registers(args) => about::registers::run(&mut out, args.json),
+        CliCommand::Hold(_) => Ok(()),
+        CliCommand::Help(args) => about::help::run(&mut out, &args, Cli::command()),
     };
     // Output written before a failure is shown as well.
     let shown = out.finish();

@@ -1,6 +1,6 @@
 //! `read`: registers by the manual's names, read one by one and decoded. Writes nothing to the hand.
 
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, notify};
 use crate::cli::parse;
 use crate::cli::session::{self, ANSWER_TIMEOUT, ONLY_WHAT_IS_ASKED};
 use crate::cli::value::{value_json, value_text};
@@ -33,8 +33,8 @@ pub(crate) async fn run(out: &mut Out, args: &ReadArgs) -> anyhow::Result<()> {
     let mut values = Map::new();
     let mut failed = 0;
     for row in &args.names {
-        let bytes = ask(&link, row).await.unwrap_or_else(|error| {
-            say(&format!("cannot read {}: {error}", row.name));
+        let bytes = read_register(&link, row).await.unwrap_or_else(|error| {
+            notify(&format!("cannot read {}: {error}", row.name));
             failed += 1;
             Vec::new()
         });
@@ -55,7 +55,7 @@ pub(crate) async fn run(out: &mut Out, args: &ReadArgs) -> anyhow::Result<()> {
 }
 
 /// Reads a register, in pieces if it is longer than a frame.
-async fn ask(link: &LinkHandle, row: &Register) -> Result<Vec<u8>, RequestError> {
+async fn read_register(link: &LinkHandle, row: &Register) -> Result<Vec<u8>, RequestError> {
     let mut bytes = Vec::new();
     let end = row.address + row.len;
     for address in (row.address..end).step_by(PIECE.into()) {

@@ -2,7 +2,7 @@
 //! Writes nothing to any hand.
 
 use crate::app::connect::SimDial;
-use crate::cli::out::{AlreadyReported, Out, WrongUsage, say};
+use crate::cli::out::{AlreadyReported, Out, WrongUsage, notify};
 use crate::cli::parse::{HandIds, hand_ids};
 use crate::hand::HandId;
 use crate::link::Clock;
@@ -149,37 +149,44 @@ impl ScanPrinter<'_> {
                 () = interrupt.wished() => break None,
                 event = self.handle.event() => event,
                 _ = tick.tick() => {
-                    say(&progress_text(self.handle.progress(), self.found));
+                    notify(&progress_text(self.handle.progress(), self.found));
                     continue;
                 }
             };
             match event {
                 Some(ScanEvent::Done(summary)) => break Some(summary),
-                Some(event) => self.take(event)?,
+                Some(event) => self.handle_event(event)?,
                 None => break None,
             }
         };
         self.end(summary)
     }
 
-    fn take(&mut self, event: ScanEvent) -> anyhow::Result<()> {
+    fn handle_event(&mut self, event: ScanEvent) -> anyhow::Result<()> {
         match event {
             ScanEvent::Found(found) => {
                 self.found += 1;
                 let (object, line) = (found_json(&found), found_text(&found));
                 self.out.result(self.args.json, &object, [line])?;
             }
-            ScanEvent::Trouble { place, error } => self.told("trouble", &place, &error)?,
-            ScanEvent::Hint(hint) => self.told("hint", &hint.place(), &hint)?,
+            ScanEvent::Trouble { place, error } => {
+                self.report_problem("trouble", &place, &error)?
+            }
+            ScanEvent::Hint(hint) => self.report_problem("hint", &hint.place(), &hint)?,
             ScanEvent::Begun { .. } | ScanEvent::Held { .. } | ScanEvent::Done(_) => {}
         }
         self.out.flush()
     }
 
     /// Reports a problem at a place.
-    fn told(&mut self, what: &str, place: &str, words: &impl Display) -> anyhow::Result<()> {
+    fn report_problem(
+        &mut self,
+        what: &str,
+        place: &str,
+        words: &impl Display,
+    ) -> anyhow::Result<()> {
         let words = words.to_string();
-        say(&words);
+        notify(&words);
         if !self.args.json {
             return Ok(());
         }
@@ -208,7 +215,7 @@ impl ScanPrinter<'_> {
                 } else {
                     "; --all-ids asks all ids"
                 };
-                say(&format!(
+                notify(&format!(
                     "no hand answered ({asked} questions, {took_s:.1} s): check power and cable{more}"
                 ));
                 Ok(())

@@ -3,7 +3,7 @@
 use crate::app::connect::SimDial;
 use crate::app::files::settings_file;
 use crate::checkup::free_file;
-use crate::cli::out::say;
+use crate::cli::out::notify;
 use crate::hand::grip::GripEstimator;
 use crate::hand::heat::HOT;
 use crate::link::{
@@ -78,17 +78,17 @@ pub(crate) fn open_with_records(
 /// Warns of a warm drive while the hand may move, and reports a stop because of heat: once per arming each.
 async fn warn_of_heat(observer: LinkObserver) {
     let mut status = observer.status;
-    let mut reported = HeatLevel::Unarmed;
+    let mut reported = HeatStatus::Unarmed;
     while status.changed().await.is_ok() {
         let seen = status.borrow_and_update().clone();
-        let level = HeatLevel::of(&seen);
+        let level = HeatStatus::of(&seen);
         if let Some(words) = level.words(&seen).filter(|_| level > reported) {
-            say(&words);
+            notify(&words);
         }
         reported = match level {
-            HeatLevel::Unarmed => level,
+            HeatStatus::Unarmed => level,
             // The hand has been armed again since.
-            level if reported == HeatLevel::Stopped => level,
+            level if reported == HeatStatus::Stopped => level,
             level => level.max(reported),
         };
     }
@@ -96,14 +96,14 @@ async fn warn_of_heat(observer: LinkObserver) {
 
 /// Reportable heat of the drives, in order of severity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum HeatLevel {
+enum HeatStatus {
     Unarmed,
     Cool,
     Warm,
     Stopped,
 }
 
-impl HeatLevel {
+impl HeatStatus {
     fn of(status: &LinkStatus) -> Self {
         let is_ended = matches!(status.disarmed, Some(Disarmed::Hot | Disarmed::HeatUnknown));
         match status.armed {

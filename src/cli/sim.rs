@@ -70,13 +70,13 @@ pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
         biased;
         () = interrupt.wished() => Ok(()),
         error = failed(wires) => Err(error),
-        error = obey_signals(out, power, freeze, &hands) => Err(error),
+        error = handle_signals(out, power, freeze, &hands) => Err(error),
         () = live(&hands) => Ok(()),
     }
 }
 
 /// Power-cycles all hands at one signal, freezes or unfreezes their feedback at the other, and reports the action.
-async fn obey_signals(
+async fn handle_signals(
     out: &mut Out,
     mut power: Interrupt,
     mut freeze: Interrupt,

@@ -49,7 +49,7 @@ pub struct HeatGovernor {
 
 impl HeatGovernor {
     /// Applies a sample. Readings that are not newer are ignored.
-    pub fn take(&mut self, sample: &HandSample) {
+    pub fn apply(&mut self, sample: &HandSample) {
         if let Some(current) = sample.current
             && self.current_at.is_none_or(|at| current.received > at)
         {

@@ -4,7 +4,7 @@
 use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof, Moment, PerDof};
 use crate::inputs::offer::Offer;
-use crate::inputs::pinch::{self, PinchAim, PinchStep, Reach};
+use crate::inputs::pinch::{self, PinchAim, PinchStep, StepLimits};
 use crate::record::LinkState;
 use std::time::Duration;
 
@@ -250,7 +250,7 @@ impl Follow {
         let elapsed = now
             .since(std::mem::replace(&mut self.stepped, now))
             .min(STEP_LONGEST);
-        let reach = Reach {
+        let reach = StepLimits {
             step: f32::from(self.limits.rate) * elapsed.as_secs_f32(),
             lead: f32::from(self.limits.lead),
         };
@@ -278,7 +278,7 @@ impl Follow {
         &mut self,
         aims: &PerDof<Option<Angle>>,
         pose: &PerDof<Option<Angle>>,
-        reach: Reach,
+        reach: StepLimits,
     ) {
         for dof in Dof::ALL {
             let Some((aim, at)) = aims[dof].zip(pose[dof]) else {
@@ -299,7 +299,7 @@ impl Follow {
 
     /// Thumb and index together along the path on which their pads meet, once they are open for it. Where one of them is not known
     /// or may not move, nothing goes on.
-    fn step_to_gap(&mut self, aim: PinchAim, pose: &PerDof<Option<Angle>>, reach: Reach) {
+    fn step_to_gap(&mut self, aim: PinchAim, pose: &PerDof<Option<Angle>>, reach: StepLimits) {
         let PinchAim { gap, moves } = aim;
         if !Gap::JOINTS.into_iter().all(|dof| moves[dof]) {
             return;

@@ -3,7 +3,7 @@
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::follow::END_TIMEOUT;
-use crate::inputs::line::{LineFault, LineField, LineRefusal, StreamLine};
+use crate::inputs::line::{LineField, LineRefusal, StreamLine, StreamLineFault};
 use crate::link::rate::EventRate;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
@@ -18,7 +18,7 @@ pub struct IntakeView {
     /// Accepted lines.
     pub taken: u64,
     /// Refused lines, by reason.
-    pub refused: BTreeMap<LineFault, u64>,
+    pub refused: BTreeMap<StreamLineFault, u64>,
     /// Last refusal, with the field.
     pub last_refused: Option<LineRefusal>,
     /// Lines that stopped the hand or released the dead-man although something else in them was wrong.
@@ -51,20 +51,20 @@ impl Intake {
     ///
     /// # Errors
     /// [`LineRefusal`], the reason; it is counted.
-    pub fn take(
+    pub fn accept(
         &mut self,
         line: &[u8],
         from: SocketAddr,
         now: Moment,
     ) -> Result<StreamLine, LineRefusal> {
-        self.take_parsed(StreamLine::parse(line, self.side), from, now)
+        self.accept_parsed(StreamLine::parse(line, self.side), from, now)
     }
 
-    /// Like [`Self::take`], for a line that is already parsed.
+    /// Like [`Self::accept`], for a line that is already parsed.
     ///
     /// # Errors
     /// [`LineRefusal`], the reason; it is counted.
-    pub fn take_parsed(
+    pub fn accept_parsed(
         &mut self,
         line: Result<StreamLine, LineRefusal>,
         from: SocketAddr,
@@ -101,10 +101,10 @@ impl Intake {
             && now.since(last) < END_TIMEOUT
         {
             if sender != from {
-                return Err(LineFault::OtherSender.into());
+                return Err(StreamLineFault::OtherSender.into());
             }
             if self.seq.is_some() && line.seq.is_some() && line.seq <= self.seq {
-                return Err(LineFault::Late.of(LineField::Seq));
+                return Err(StreamLineFault::Late.of(LineField::Seq));
             }
         }
         self.seq = line.seq;
@@ -140,19 +140,22 @@ mod tests {
     #[test]
     fn one_sender_is_listened_to_until_it_is_silent() {
         let mut intake = Intake::new(Side::Right);
-        assert!(intake.take(LINE, peer(1), at(0)).is_ok());
+        assert!(intake.accept(LINE, peer(1), at(0)).is_ok());
         assert_eq!(
-            intake.take(LINE, peer(2), at(999)),
-            Err(LineFault::OtherSender.into())
+            intake.accept(LINE, peer(2), at(999)),
+            Err(StreamLineFault::OtherSender.into())
         );
-        let stop = intake.take(br#"{"stop":true}"#, peer(2), at(999));
+        let stop = intake.accept(br#"{"stop":true}"#, peer(2), at(999));
         assert!(stop.is_ok_and(|line| line.stop), "a stop passes");
-        assert!(intake.take(LINE, peer(2), at(1000)).is_ok());
+        assert!(intake.accept(LINE, peer(2), at(1000)).is_ok());
         assert_eq!(
-            intake.take(LINE, peer(1), at(1001)),
-            Err(LineFault::OtherSender.into())
+            intake.accept(LINE, peer(1), at(1001)),
+            Err(StreamLineFault::OtherSender.into())
         );
-        assert_eq!(intake.view(at(1001)).refused[&LineFault::OtherSender], 2);
+        assert_eq!(
+            intake.view(at(1001)).refused[&StreamLineFault::OtherSender],
+            2
+        );
     }
 
     #[test]
@@ -166,22 +169,22 @@ mod tests {
             (6, 40, false),
             (1, 1030, true),
         ] {
-            let result = intake.take(&numbered(seq), peer(1), at(ms));
+            let result = intake.accept(&numbered(seq), peer(1), at(ms));
             assert_eq!(result.is_ok(), taken, "{seq} at {ms}");
         }
-        assert_eq!(intake.view(at(1030)).refused[&LineFault::Late], 3);
+        assert_eq!(intake.view(at(1030)).refused[&StreamLineFault::Late], 3);
     }
 
     #[test]
     fn an_odd_stop_is_obeyed_and_told_with_its_sender() {
         let mut intake = Intake::new(Side::Right);
-        intake.take(LINE, peer(1), at(0)).unwrap();
+        intake.accept(LINE, peer(1), at(0)).unwrap();
         let odd = br#"{"stop":true,"right":[NaN,1,1,1,1,1]}"#;
-        assert!(intake.take(odd, peer(2), at(5)).unwrap().stop);
+        assert!(intake.accept(odd, peer(2), at(5)).unwrap().stop);
         let view = intake.view(at(5));
         assert_eq!((view.taken, view.odd_stops), (2, 1));
         let (from, why) = view.last_odd.unwrap();
-        assert_eq!((from, why.fault), (peer(2), LineFault::NotFinite));
+        assert_eq!((from, why.fault), (peer(2), StreamLineFault::NotFinite));
         assert!(view.refused.is_empty());
     }
 
@@ -189,7 +192,7 @@ mod tests {
     fn the_rate_is_that_of_the_last_second() {
         let mut intake = Intake::new(Side::Right);
         for n in 0..300 {
-            intake.take(LINE, peer(1), at(n * 5)).unwrap();
+            intake.accept(LINE, peer(1), at(n * 5)).unwrap();
         }
         let rate = intake.view(at(1500)).rate_hz;
         assert!((rate - 200.0).abs() < 1.0, "{rate}");

@@ -81,7 +81,7 @@ impl LineField {
 /// Reason for refusing a line, with its field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub struct LineRefusal {
-    pub fault: LineFault,
+    pub fault: StreamLineFault,
     /// `None` if it concerns no particular field.
     pub field: Option<LineField>,
 }
@@ -99,15 +99,15 @@ impl fmt::Display for LineRefusal {
     }
 }
 
-impl From<LineFault> for LineRefusal {
-    fn from(fault: LineFault) -> Self {
+impl From<StreamLineFault> for LineRefusal {
+    fn from(fault: StreamLineFault) -> Self {
         Self { fault, field: None }
     }
 }
 
 /// Reason for refusing a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
-pub enum LineFault {
+pub enum StreamLineFault {
     #[error("longer than {LINE_MAX} bytes")]
     TooLong,
     /// A number is NaN or infinite.
@@ -148,7 +148,7 @@ pub enum LineFault {
     OtherSender,
 }
 
-impl LineFault {
+impl StreamLineFault {
     /// True if the text is no message at all: its sender uses another protocol, such as a web page that sends a form.
     pub const fn is_no_message(self) -> bool {
         matches!(self, Self::TooLong | Self::Malformed)
@@ -201,20 +201,22 @@ impl StreamLine {
             stop: stops,
             mark: 0,
             // Neither needs values.
-            odd: read.err().filter(|odd| odd.fault != LineFault::OtherSide),
+            odd: read
+                .err()
+                .filter(|odd| odd.fault != StreamLineFault::OtherSide),
         })
     }
 
     fn read(line: &[u8], side: Side) -> Result<Self, LineRefusal> {
         if line.len() > LINE_MAX {
-            return Err(LineFault::TooLong.into());
+            return Err(StreamLineFault::TooLong.into());
         }
         let fields = Fields::parse(scan::unmarked(line));
         let mut fields = fields.map_err(|_unread| unreadable(line))?;
         if let Some(version) = whole(&mut fields, LineField::Version)?
             && version != LINE_VERSION
         {
-            return Err(LineFault::Version.of(LineField::Version));
+            return Err(StreamLineFault::Version.of(LineField::Version));
         }
         flag(&mut fields, LineField::Stop)?;
         let held = flag(&mut fields, LineField::Held)?;
@@ -223,7 +225,7 @@ impl StreamLine {
         let left = values(&mut fields, Side::Left)?;
         let right = values(&mut fields, Side::Right)?;
         if mm.is_some() && (left.is_some() || right.is_some()) {
-            return Err(LineFault::Both.of(LineField::Gap));
+            return Err(StreamLineFault::Both.of(LineField::Gap));
         }
         let mut hasher = DefaultHasher::new();
         mm.map(f64::to_bits).hash(&mut hasher);
@@ -234,7 +236,7 @@ impl StreamLine {
         };
         let aims = match (gap, values) {
             (Some(gap), _) => gap.angles().map(Some),
-            (None, None) => return Err(LineFault::OtherSide.into()),
+            (None, None) => return Err(StreamLineFault::OtherSide.into()),
             (None, Some(values)) => {
                 for (_, value) in values.iter() {
                     value.map(f64::to_bits).hash(&mut hasher);
@@ -267,8 +269,8 @@ fn take<T>(
     read: impl Fn(&Value) -> Result<T, FieldFault>,
 ) -> Result<Option<T>, LineRefusal> {
     let wrong = |fault: FieldFault| match fault {
-        FieldFault::Twice => LineFault::Twice.of(field),
-        FieldFault::Type => LineFault::Type.of(field),
+        FieldFault::Twice => StreamLineFault::Twice.of(field),
+        FieldFault::Type => StreamLineFault::Type.of(field),
     };
     let value = fields.take(field.name()).map_err(wrong)?;
     value.as_ref().map(read).transpose().map_err(wrong)
@@ -294,12 +296,12 @@ fn values(fields: &mut Fields, side: Side) -> Result<Option<PerDof<Option<f64>>>
         return Ok(None);
     };
     if list.len() != Dof::ALL.len() {
-        return Err(LineFault::Length.of(whole));
+        return Err(StreamLineFault::Length.of(whole));
     }
     let mut values = PerDof::splat(None);
     for (dof, value) in Dof::ALL.into_iter().zip(&list) {
         if !value.is_null() {
-            let wrong = |_type| LineFault::Type.of(LineField::Values(side, Some(dof)));
+            let wrong = |_type| StreamLineFault::Type.of(LineField::Values(side, Some(dof)));
             values[dof] = Some(fields::number(value).map_err(wrong)?);
         }
     }
@@ -316,7 +318,7 @@ fn aims(values: &PerDof<Option<f64>>, side: Side) -> Result<PerDof<Option<Angle>
 }
 
 fn gap(mm: f64) -> Result<Gap, LineRefusal> {
-    let wrong = || LineFault::Gap.of(LineField::Gap);
+    let wrong = || StreamLineFault::Gap.of(LineField::Gap);
     let (least, most) = (f64::from(Gap::MIN.mm()), f64::from(Gap::MAX.mm()));
     let mm = fields::within(mm, (least, most)).ok_or_else(wrong)?;
     #[expect(clippy::cast_possible_truncation, reason = "a number of some digits")]
@@ -332,17 +334,17 @@ pub(crate) fn angle_of(share: f64) -> Option<Angle> {
 }
 
 fn angle(share: f64, field: LineField) -> Result<Angle, LineRefusal> {
-    angle_of(share).ok_or_else(|| LineFault::Range.of(field))
+    angle_of(share).ok_or_else(|| StreamLineFault::Range.of(field))
 }
 
 /// JSON has no notation for numbers that are not finite; many senders write one anyway, or a number too large for a float.
 fn unreadable(line: &[u8]) -> LineRefusal {
     match scan::not_finite_at(line).filter(|_| begins_message(line)) {
         Some(name) => LineRefusal {
-            fault: LineFault::NotFinite,
+            fault: StreamLineFault::NotFinite,
             field: name.and_then(|name| LineField::named(&name)),
         },
-        None => LineFault::Malformed.into(),
+        None => StreamLineFault::Malformed.into(),
     }
 }
 
@@ -354,7 +356,7 @@ mod tests {
         StreamLine::parse(line.as_bytes(), Side::Right)
     }
 
-    fn fault(line: &str) -> Option<LineFault> {
+    fn fault(line: &str) -> Option<StreamLineFault> {
         parse(line).err().map(|refusal| refusal.fault)
     }
 
@@ -420,8 +422,8 @@ mod tests {
             assert_eq!(read.aims, PerDof::splat(None), "{line}");
             assert_eq!(read.odd.is_some(), is_odd, "{line}");
         }
-        assert_eq!(fault(r#"{"held":true}"#), Some(LineFault::OtherSide));
-        assert_eq!(fault(r#"{"held":"yes"}"#), Some(LineFault::Type));
+        assert_eq!(fault(r#"{"held":true}"#), Some(StreamLineFault::OtherSide));
+        assert_eq!(fault(r#"{"held":"yes"}"#), Some(StreamLineFault::Type));
     }
 
     #[test]
@@ -492,27 +494,36 @@ mod tests {
     #[test]
     fn what_is_wrong_is_refused_whole() {
         for (line, wanted) in [
-            (r#"{"right":[0,0,0,0,0,NaN]}"#, LineFault::NotFinite),
-            (r#"{"right":[0,0,0,0,0,-Infinity]}"#, LineFault::NotFinite),
-            (r#"{"right":[0,0,0,0,0,1e999]}"#, LineFault::NotFinite),
-            (r#"{"right":[0,0,0,0,0,1.001]}"#, LineFault::Range),
-            (r#"{"right":[0,0,0,0,0,-0.001]}"#, LineFault::Range),
-            (r#"{"right":[0,0,0,0,0]}"#, LineFault::Length),
-            (r#"{"right":[0,0,0,0,0,0,0]}"#, LineFault::Length),
-            (r#"{"left":[0,0,0,0,0,0]}"#, LineFault::OtherSide),
-            (r#"{"v":2,"right":[0,0,0,0,0,0]}"#, LineFault::Version),
-            (r#"{"right":"fist"}"#, LineFault::Type),
-            (r#"{"grip_mm":2.9}"#, LineFault::Gap),
-            (r#"{"grip_mm":120.1}"#, LineFault::Gap),
-            (r#"{"grip_mm":-30}"#, LineFault::Gap),
-            (r#"{"grip_mm":NaN}"#, LineFault::NotFinite),
-            (r#"{"grip_mm":"30"}"#, LineFault::Type),
-            (r#"{"grip_mm":30,"right":[0,0,0,0,0,0]}"#, LineFault::Both),
-            (r#"{"grip_mm":30,"left":[0,0,0,0,0,0]}"#, LineFault::Both),
-            (r#"{"grip_mm":null}"#, LineFault::OtherSide),
-            ("[0,0,0,0,0,0]", LineFault::Malformed),
-            ("POST /NaN HTTP/1.1", LineFault::Malformed),
-            ("", LineFault::Malformed),
+            (r#"{"right":[0,0,0,0,0,NaN]}"#, StreamLineFault::NotFinite),
+            (
+                r#"{"right":[0,0,0,0,0,-Infinity]}"#,
+                StreamLineFault::NotFinite,
+            ),
+            (r#"{"right":[0,0,0,0,0,1e999]}"#, StreamLineFault::NotFinite),
+            (r#"{"right":[0,0,0,0,0,1.001]}"#, StreamLineFault::Range),
+            (r#"{"right":[0,0,0,0,0,-0.001]}"#, StreamLineFault::Range),
+            (r#"{"right":[0,0,0,0,0]}"#, StreamLineFault::Length),
+            (r#"{"right":[0,0,0,0,0,0,0]}"#, StreamLineFault::Length),
+            (r#"{"left":[0,0,0,0,0,0]}"#, StreamLineFault::OtherSide),
+            (r#"{"v":2,"right":[0,0,0,0,0,0]}"#, StreamLineFault::Version),
+            (r#"{"right":"fist"}"#, StreamLineFault::Type),
+            (r#"{"grip_mm":2.9}"#, StreamLineFault::Gap),
+            (r#"{"grip_mm":120.1}"#, StreamLineFault::Gap),
+            (r#"{"grip_mm":-30}"#, StreamLineFault::Gap),
+            (r#"{"grip_mm":NaN}"#, StreamLineFault::NotFinite),
+            (r#"{"grip_mm":"30"}"#, StreamLineFault::Type),
+            (
+                r#"{"grip_mm":30,"right":[0,0,0,0,0,0]}"#,
+                StreamLineFault::Both,
+            ),
+            (
+                r#"{"grip_mm":30,"left":[0,0,0,0,0,0]}"#,
+                StreamLineFault::Both,
+            ),
+            (r#"{"grip_mm":null}"#, StreamLineFault::OtherSide),
+            ("[0,0,0,0,0,0]", StreamLineFault::Malformed),
+            ("POST /NaN HTTP/1.1", StreamLineFault::Malformed),
+            ("", StreamLineFault::Malformed),
         ] {
             assert_eq!(fault(line), Some(wanted), "{line}");
         }
@@ -520,7 +531,7 @@ mod tests {
             r#"{{"right":[0,0,0,0,0,0],"x":"{}"}}"#,
             "y".repeat(LINE_MAX)
         );
-        assert_eq!(fault(&long), Some(LineFault::TooLong));
+        assert_eq!(fault(&long), Some(StreamLineFault::TooLong));
     }
 
     #[test]

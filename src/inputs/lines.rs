@@ -14,7 +14,7 @@ const KEPT: usize = 256;
 
 /// Output of the cutter.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Cut {
+pub enum LineEvent {
     /// A line without its line feed, or the beginning of one that exceeds the limit. An object whose first line is `{` alone
     /// is one line, no matter on how many it is written.
     Line {
@@ -51,14 +51,15 @@ impl LineCutter {
     }
 
     /// Adds bytes and returns the cuts that they complete, in order.
-    pub fn push(&mut self, bytes: &[u8]) -> Vec<Cut> {
+    pub fn push(&mut self, bytes: &[u8]) -> Vec<LineEvent> {
         let mut cuts = Vec::new();
         for piece in bytes.split_inclusive(|byte| *byte == b'\n') {
             let is_whole = piece.ends_with(b"\n");
             if self.rest.ends_with(b"\n") && piece.starts_with(b"{") {
                 let cut = self.cut();
                 // A brace alone cannot be wrong.
-                let is_brace = matches!(&cut, Cut::Line { text, .. } if unmarked(text) == b"{");
+                let is_brace =
+                    matches!(&cut, LineEvent::Line { text, .. } if unmarked(text) == b"{");
                 cuts.extend((!is_brace).then_some(cut));
             }
             self.rest.extend_from_slice(piece);
@@ -94,24 +95,24 @@ impl LineCutter {
     }
 
     /// Ends the stream: a stop counts without the end of its line.
-    pub fn end(mut self) -> Option<Cut> {
+    pub fn end(mut self) -> Option<LineEvent> {
         is_stop(self.unfinished(), TextEnd::Whole).then(|| self.cut())
     }
 
-    fn find_stop(&mut self, end: TextEnd, cuts: &mut Vec<Cut>) {
+    fn find_stop(&mut self, end: TextEnd, cuts: &mut Vec<LineEvent>) {
         if !self.has_stopped && is_stop(&self.rest, end) {
             self.has_stopped = true;
-            cuts.push(Cut::Stop);
+            cuts.push(LineEvent::Stop);
         }
     }
 
-    fn cut(&mut self) -> Cut {
+    fn cut(&mut self) -> LineEvent {
         let mut text = std::mem::take(&mut self.rest);
         self.looked = 0;
         if text.ends_with(b"\n") {
             text.pop();
         }
-        Cut::Line {
+        LineEvent::Line {
             text,
             has_stopped: std::mem::take(&mut self.has_stopped),
         }
@@ -137,21 +138,21 @@ mod tests {
     use super::*;
     use crate::inputs::stop::tests::odd_stops;
 
-    fn line(text: &str) -> Cut {
-        Cut::Line {
+    fn line(text: &str) -> LineEvent {
+        LineEvent::Line {
             text: text.into(),
             has_stopped: false,
         }
     }
 
-    fn stopped(text: &str) -> Cut {
-        Cut::Line {
+    fn stopped(text: &str) -> LineEvent {
+        LineEvent::Line {
             text: text.into(),
             has_stopped: true,
         }
     }
 
-    fn cuts(text: &str) -> Vec<Cut> {
+    fn cuts(text: &str) -> Vec<LineEvent> {
         let mut cutter = LineCutter::new(100);
         let mut cuts = cutter.push(text.as_bytes());
         cuts.extend(cutter.end());
@@ -183,9 +184,9 @@ mod tests {
         let pretty = "{\n  \"v\": 1,\n  \"stop\": true\n";
         let whole = format!("{pretty}}}");
         let mut cutter = LineCutter::new(100);
-        assert_eq!(cutter.push(pretty.as_bytes()), [Cut::Stop]);
+        assert_eq!(cutter.push(pretty.as_bytes()), [LineEvent::Stop]);
         assert_eq!(cutter.push(b"}\n"), [stopped(&whole)]);
-        assert_eq!(cutter.push(b"{\"stop\":true"), [Cut::Stop]);
+        assert_eq!(cutter.push(b"{\"stop\":true"), [LineEvent::Stop]);
         assert_eq!(cutter.push(b",\"seq\":1"), []);
         assert_eq!(
             cutter.push(b"}\n{\"seq\":2}\n"),
@@ -216,7 +217,7 @@ mod tests {
         for piece in behind.as_bytes().chunks(7) {
             all.extend(cutter.push(piece));
         }
-        assert_eq!(all, [Cut::Stop, line("{\"seq\":1}")]);
+        assert_eq!(all, [LineEvent::Stop, line("{\"seq\":1}")]);
     }
 
     #[test]
@@ -231,7 +232,7 @@ mod tests {
         }
         assert!(looks <= SHORT + LONGEST / KEPT, "{looks}");
         assert_eq!(cutter.push(b"\",\"stop\":true"), []);
-        assert_eq!(cutter.push(&[b' '; KEPT]), [Cut::Stop]);
+        assert_eq!(cutter.push(&[b' '; KEPT]), [LineEvent::Stop]);
         // An object on several lines is not waited for without end.
         let mut cutter = LineCutter::new(LONGEST);
         let cuts = cutter.push(format!("{{{}", "\n".repeat(SHORT + 1)).as_bytes());
@@ -244,9 +245,9 @@ mod tests {
             let mut cutter = LineCutter::new(64 * 1024);
             let mut told = cutter.push(&text);
             told.extend(cutter.end());
-            let is_told = |cut: &Cut| match cut {
-                Cut::Stop => true,
-                Cut::Line { text, .. } => is_stop(text, TextEnd::Whole),
+            let is_told = |cut: &LineEvent| match cut {
+                LineEvent::Stop => true,
+                LineEvent::Line { text, .. } => is_stop(text, TextEnd::Whole),
             };
             let shown = String::from_utf8_lossy(&text).into_owned();
             assert!(told.iter().any(is_told), "{shown}: {told:?}");

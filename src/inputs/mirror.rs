@@ -74,9 +74,9 @@ pub struct MirrorSource {
 impl MirrorSource {
     /// Observes from now on. The links of both hands must use the same clock. Must be called within a tokio runtime.
     pub fn open(leader: Records, scale: MirrorScale) -> Self {
-        let (told, view) = watch::channel(MirrorView::default());
+        let (views, view) = watch::channel(MirrorView::default());
         let outlet = OfferOutlet::default();
-        let watching = watch(leader, scale, told, outlet.clone());
+        let watching = watch(leader, scale, views, outlet.clone());
         Self {
             view,
             outlet,
@@ -103,7 +103,7 @@ impl MirrorSource {
 async fn watch(
     mut records: Records,
     scale: MirrorScale,
-    told: watch::Sender<MirrorView>,
+    views: watch::Sender<MirrorView>,
     outlet: OfferOutlet,
 ) {
     let mut rate = EventRate::default();
@@ -114,7 +114,7 @@ async fn watch(
         let is_news = fresh.contains(Group::Angle);
         if let Some(offer) = is_news.then(|| offer(&sample, scale)).flatten() {
             rate.hit(offer.at);
-            told.send_replace(MirrorView {
+            views.send_replace(MirrorView {
                 heard: Some(offer.at),
                 rate_hz: rate.hz(offer.at),
             });

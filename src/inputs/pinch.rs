@@ -26,7 +26,7 @@ pub(super) enum PinchStep {
 
 /// Limits of one step of a target.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Reach {
+pub(super) struct StepLimits {
     /// Counts in this step.
     pub(super) step: f32,
     /// Counts ahead of the joint's actual position.
@@ -57,7 +57,12 @@ pub(super) fn along(sent: &PerDof<f32>, to: Gap) -> PinchStep {
 }
 
 /// Share of the straight line to `to` that thumb and index may move in one step, 0 to 1.
-pub(super) fn share(sent: &PerDof<f32>, to: &PerDof<Angle>, at: &PerDof<f32>, reach: Reach) -> f32 {
+pub(super) fn share(
+    sent: &PerDof<f32>,
+    to: &PerDof<Angle>,
+    at: &PerDof<f32>,
+    reach: StepLimits,
+) -> f32 {
     let share = |dof: Dof| {
         let way = f32::from(to[dof].get()) - sent[dof];
         let ahead = (sent[dof] - at[dof]) * way.signum();

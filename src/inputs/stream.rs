@@ -5,7 +5,7 @@ use crate::hand::kinematics::Side;
 use crate::inputs::follow::is_fresh;
 use crate::inputs::intake::{Intake, IntakeView};
 use crate::inputs::line::{LINE_MAX, LineRefusal, StreamLine, begins_message};
-use crate::inputs::lines::{Cut, LONGEST, LineCutter};
+use crate::inputs::lines::{LONGEST, LineCutter, LineEvent};
 use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
 use crate::inputs::scan;
 use crate::inputs::stop::{self, TextEnd};
@@ -95,14 +95,14 @@ impl StreamSource {
     /// The system's error if the address cannot be bound.
     pub fn open(config: StreamConfig, runtime: &tokio::runtime::Handle) -> std::io::Result<Self> {
         let _entered = runtime.enter();
-        let (told, view) = watch::channel(StreamView::default());
+        let (views, view) = watch::channel(StreamView::default());
         let outlet = OfferOutlet::default();
-        let listening = Listening {
+        let listening = StreamListener {
             intake: Intake::new(config.side),
             view: StreamView::default(),
             config: config.clone(),
             outlet: outlet.clone(),
-            told,
+            views,
             is_news: false,
         };
         let (local, task) = match config.place {
@@ -164,16 +164,16 @@ impl LineDoor {
     }
 }
 
-struct Listening {
+struct StreamListener {
     intake: Intake,
     view: StreamView,
     config: StreamConfig,
     outlet: OfferOutlet,
-    told: watch::Sender<StreamView>,
+    views: watch::Sender<StreamView>,
     is_news: bool,
 }
 
-impl Listening {
+impl StreamListener {
     fn door(&self) -> LineDoor {
         LineDoor {
             side: self.config.side,
@@ -184,33 +184,33 @@ impl Listening {
     async fn datagrams(mut self, socket: UdpSocket) {
         let mut datagram = vec![0; DATAGRAM_MAX];
         let door = self.door();
-        let mut tell = interval(REPORT_INTERVAL);
+        let mut tick = interval(REPORT_INTERVAL);
         loop {
             tokio::select! {
                 received = socket.recv_from(&mut datagram) => {
                     // An error belongs to an earlier reply; nothing is sent here.
                     let Ok((len, from)) = received else { continue };
                     let line = datagram.get(..len).unwrap_or_default();
-                    self.take(door.read(line), from);
+                    self.receive(door.read(line), from);
                 }
-                _ = tell.tick() => self.tell(),
+                _ = tick.tick() => self.publish(),
             }
         }
     }
 
     async fn connections(mut self, listener: TcpListener) {
-        let (lines, mut heard) = mpsc::channel(LINES_MAX);
+        let (lines, mut received) = mpsc::channel(LINES_MAX);
         let mut readers = JoinSet::new();
-        let mut tell = interval(REPORT_INTERVAL);
+        let mut tick = interval(REPORT_INTERVAL);
         loop {
             tokio::select! {
                 accepted = listener.accept() => match accepted {
                     Ok((stream, from)) if readers.len() < CONNECTIONS_MAX + STOPPERS_MAX => {
-                        let is_heard = readers.len() < CONNECTIONS_MAX;
+                        let is_read = readers.len() < CONNECTIONS_MAX;
                         let reader = LineReader {
                             from,
                             door: self.door(),
-                            lines: is_heard.then(|| lines.clone()),
+                            lines: is_read.then(|| lines.clone()),
                         };
                         readers.spawn(reader.run(stream));
                     }
@@ -219,20 +219,20 @@ impl Listening {
                     Err(_error) => tokio::time::sleep(REPORT_INTERVAL).await,
                 },
                 Some(_ended) = readers.join_next() => {}
-                Some((line, from)) = heard.recv() => self.take(line, from),
-                _ = tell.tick() => {
+                Some((line, from)) = received.recv() => self.receive(line, from),
+                _ = tick.tick() => {
                     self.is_news |= self.view.connections != readers.len();
                     self.view.connections = readers.len();
-                    self.tell();
+                    self.publish();
                 }
             }
         }
     }
 
-    fn take(&mut self, line: ReadLine, from: SocketAddr) {
+    fn receive(&mut self, line: ReadLine, from: SocketAddr) {
         let now = self.config.clock.now();
         self.is_news = true;
-        let Ok(line) = self.intake.take_parsed(line, from, now) else {
+        let Ok(line) = self.intake.accept_parsed(line, from, now) else {
             return;
         };
         if line.stop {
@@ -250,7 +250,7 @@ impl Listening {
         self.view.not_granted += u64::from(!self.outlet.offer(offer));
     }
 
-    fn tell(&mut self) {
+    fn publish(&mut self) {
         let intake = self.intake.view(self.config.clock.now());
         // The rate decreases with time alone.
         if !self.is_news && intake.rate_hz.to_bits() == self.view.intake.rate_hz.to_bits() {
@@ -258,7 +258,7 @@ impl Listening {
         }
         self.is_news = false;
         self.view.intake = intake.clone();
-        self.told.send_replace(self.view.clone());
+        self.views.send_replace(self.view.clone());
         (self.config.wake)();
     }
 }
@@ -283,31 +283,31 @@ impl LineReader {
                 break;
             };
             for cut in cutter.push(piece.get(..len).unwrap_or_default()) {
-                if !self.takes(cut).await {
+                if !self.forward(cut).await {
                     return;
                 }
             }
             if !begins_message(cutter.unfinished()) {
                 let text = cutter.unfinished().to_vec();
                 let has_stopped = false;
-                self.takes(Cut::Line { text, has_stopped }).await;
+                self.forward(LineEvent::Line { text, has_stopped }).await;
                 return;
             }
         }
         if let Some(cut) = cutter.end() {
-            self.takes(cut).await;
+            self.forward(cut).await;
         }
     }
 
     /// Reads a line and forwards it; returns false if the connection must end.
-    async fn takes(&self, cut: Cut) -> bool {
+    async fn forward(&self, cut: LineEvent) -> bool {
         let (text, read) = match cut {
-            Cut::Stop => {
+            LineEvent::Stop => {
                 (self.door.stop)();
                 return true;
             }
-            Cut::Line { text, .. } if scan::unmarked(&text).is_empty() => return true,
-            Cut::Line { text, has_stopped } => {
+            LineEvent::Line { text, .. } if scan::unmarked(&text).is_empty() => return true,
+            LineEvent::Line { text, has_stopped } => {
                 let read = if has_stopped {
                     StreamLine::parse(&text, self.door.side)
                 } else {

@@ -3,7 +3,7 @@
 
 use crate::checkup::check::{checks, stopped_early};
 use crate::checkup::free_file;
-use crate::checkup::kept::{self, Kept};
+use crate::checkup::kept::{self, StoredCheckup};
 use crate::checkup::report::{CheckupReport, JSON_FILE, Keeping, PAGE_FILE, RECORDING_FILE};
 use crate::checkup::usage::Usage;
 use crate::checkup::{Checkup, Measured};
@@ -46,7 +46,7 @@ impl CheckupFiles {
     ///
     /// # Errors
     /// As [`kept::read`].
-    pub fn earlier(&self) -> io::Result<Vec<Kept>> {
+    pub fn earlier(&self) -> io::Result<Vec<StoredCheckup>> {
         self.kept.as_deref().map_or(Ok(Vec::new()), kept::read)
     }
 
@@ -54,7 +54,7 @@ impl CheckupFiles {
     ///
     /// # Errors
     /// As [`kept::read`], or that the folder cannot be made.
-    pub fn prepare(&self) -> io::Result<Vec<Kept>> {
+    pub fn prepare(&self) -> io::Result<Vec<StoredCheckup>> {
         let earlier = self.earlier()?;
         let folder = self.kept.as_deref().and_then(Path::parent);
         folder.map_or(Ok(()), create_folder)?;
@@ -211,7 +211,7 @@ impl CheckupFiles {
             Some(dof) => Keeping::NotAsFirst { dof },
             None => {
                 self.keep_free_force(free);
-                let own = Kept {
+                let own = StoredCheckup {
                     at: report.at.clone(),
                     hand: report.hand.clone(),
                     figures,

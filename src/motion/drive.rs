@@ -5,7 +5,7 @@ use crate::hand::{ArmEpoch, HandCommand, HandSample, Moment, Setpoints};
 use crate::link::{Clock, Lease, LeaseRefusal, LinkHandle, LinkStatus, PollRates, Records, Stop};
 use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
 use crate::record::{Abort, Disarmed, LinkState, Record, SetpointConflict, WriteCause};
-use crate::trials::limits::{Stall, fault, heat_reason};
+use crate::trials::limits::{TaskStall, fault, heat_reason};
 use futures::{FutureExt as _, Stream, StreamExt as _};
 use std::pin::pin;
 use std::time::Duration;
@@ -315,7 +315,7 @@ impl Driving<'_> {
 /// The turns of the loop, and what lies between two that are far apart.
 struct Turns {
     last: Moment,
-    stall: Option<Stall>,
+    stall: Option<TaskStall>,
 }
 
 impl Turns {
@@ -327,10 +327,10 @@ impl Turns {
     }
 
     /// One more turn, which was due after `tick`; the stall before it, if there was one.
-    fn turn(&mut self, now: Moment, tick: Duration) -> Option<Stall> {
+    fn turn(&mut self, now: Moment, tick: Duration) -> Option<TaskStall> {
         let lasted = now.since(self.last);
         self.last = now;
-        let stall = (lasted > tick + STALL_MARGIN).then_some(Stall { lasted, ended: now });
+        let stall = (lasted > tick + STALL_MARGIN).then_some(TaskStall { lasted, ended: now });
         self.stall = stall.or(self.stall);
         stall
     }
@@ -364,7 +364,7 @@ mod tests {
         for ms in (1005..1100).step_by(5) {
             assert_eq!(turns.turn(at(ms), TICK), None);
         }
-        let stall = Stall {
+        let stall = TaskStall {
             lasted: Duration::from_millis(405),
             ended: at(1500),
         };

@@ -638,7 +638,7 @@ impl Program for ExhibitRun {
 
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
         let now = seen.now;
-        self.heat.take(seen.sample);
+        self.heat.apply(seen.sample);
         self.level = self.heat.level(now);
         self.watch_link(seen);
         if self.permitted && now.since(self.drawn.last()) >= DRAWN_TIMEOUT {

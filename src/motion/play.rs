@@ -202,7 +202,7 @@ impl Playing {
                 continue;
             };
             let dof = finger.bend();
-            let targets = match reacting.watch.take(finger, newtons, seen.now) {
+            let targets = match reacting.watch.apply(finger, newtons, seen.now) {
                 Some(true) => &reacting.cue.touched.targets,
                 Some(false) => &reacting.rest,
                 None => continue,

@@ -4,7 +4,7 @@
 use crate::hand::{AngleReading, Groups, HandSample, Moment, PerDof, Setpoints, Timed};
 use crate::link::{ArmRequest, LinkStatus, Owner, PollRates};
 use crate::record::{Abort, Disarmed};
-use crate::trials::limits::Stall;
+use crate::trials::limits::TaskStall;
 
 /// How a program ended: with its own outcome, or early.
 pub type Ended<O> = Result<O, Abort>;
@@ -54,7 +54,7 @@ pub struct Seen<'a> {
     /// The newest of everything that was read.
     pub sample: &'a HandSample,
     /// The last time in which the loop did not run.
-    pub stall: Option<Stall>,
+    pub stall: Option<TaskStall>,
     /// The time of this step.
     pub now: Moment,
 }
@@ -91,7 +91,7 @@ pub trait Program {
     /// Receives that a setpoint went out on the wire.
     fn sent(&mut self, _at: Moment) {}
     /// Receives how long the loop did not run.
-    fn stalled(&mut self, _stall: Stall) {}
+    fn stalled(&mut self, _stall: TaskStall) {}
     /// Advances the time.
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order>;
     /// Ends it early, or ends its control of the hand if it continues: then it moves nothing before [`Order::Grant`].

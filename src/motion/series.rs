@@ -6,7 +6,7 @@ use crate::link::{ArmRequest, LinkHandle, PollRates};
 use crate::motion::drive::{Armed, Driven, drive};
 use crate::motion::program::{Ended, Order, Program, Seen};
 use crate::record::Abort;
-use crate::trials::limits::Stall;
+use crate::trials::limits::TaskStall;
 use crate::trials::plan::TrialPlan;
 use crate::trials::search::{SearchProgress, SettingsSearch};
 use crate::trials::series::{SeriesView, TrialSeries};
@@ -64,7 +64,7 @@ impl Program for TrialSeries {
         Self::read(self, sample, fresh);
     }
 
-    fn stalled(&mut self, stall: Stall) {
+    fn stalled(&mut self, stall: TaskStall) {
         Self::stalled(self, stall);
     }
 

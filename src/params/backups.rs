@@ -86,7 +86,7 @@ impl Backups {
                 replace_keeping_last(&own, &std::fs::read_to_string(&path)?)?;
             }
         }
-        self.let_go_of_old_backups()?;
+        self.remove_old_backups()?;
         self.forget_saved()?;
         for name in [SAVED, ATTEMPT] {
             let (from, to) = (former.newest(name), self.folder.join(name));
@@ -97,7 +97,7 @@ impl Backups {
         Ok(())
     }
 
-    fn let_go_of_old_backups(&self) -> io::Result<()> {
+    fn remove_old_backups(&self) -> io::Result<()> {
         for old in self.backup_paths()?.iter().rev().skip(BACKUPS_MAX) {
             std::fs::remove_file(old)?;
         }
@@ -141,7 +141,7 @@ impl Backups {
         };
         let path = backups.join(name);
         replace_keeping_last(&path, &file.to_toml())?;
-        self.let_go_of_old_backups()?;
+        self.remove_old_backups()?;
         Ok(path)
     }
 

@@ -166,7 +166,7 @@ pub fn read(text: &str) -> Result<ParamsFile, FileError> {
         }
     }
     for id in ParamId::all() {
-        let Some(got) = take(&mut table, &id.name()) else {
+        let Some(got) = remove(&mut table, &id.name()) else {
             continue;
         };
         let value = got.clone().try_into().ok();
@@ -194,7 +194,7 @@ pub fn load(path: &Path) -> Result<ParamsFile, FileError> {
 }
 
 fn word(table: &mut Table, field: &str) -> Result<String, FileError> {
-    match take(table, field) {
+    match remove(table, field) {
         None => Ok(String::new()),
         Some(toml::Value::String(text)) => Ok(text),
         Some(got) => Err(bad_value(field, &got, "text in quotes".into())),
@@ -213,7 +213,7 @@ fn bad_value(field: &str, got: &toml::Value, allowed: String) -> FileError {
 }
 
 /// Removes and returns the value of a name; a dot separates group and key.
-fn take(table: &mut Table, name: &str) -> Option<toml::Value> {
+fn remove(table: &mut Table, name: &str) -> Option<toml::Value> {
     match name.split_once('.') {
         Some((group, key)) => table.get_mut(group)?.as_table_mut()?.remove(key),
         None => table.remove(name),

@@ -74,7 +74,7 @@ impl Params {
     }
 
     /// Decodes the rows that a span of the hand's memory covers. Rows only partly in it are unchanged.
-    pub fn take(&mut self, span: Span, bytes: &[u8]) {
+    pub fn apply(&mut self, span: Span, bytes: &[u8]) {
         for id in ParamId::all() {
             if let Some(value) = decoded(id, span, bytes) {
                 self.put(id, value);
@@ -137,7 +137,7 @@ mod tests {
         let mut params = Params::default();
         for span in SPANS {
             let known = params.iter().count();
-            params.take(span, &vec![1; usize::from(span.len)]);
+            params.apply(span, &vec![1; usize::from(span.len)]);
             let inside = |id: &ParamId| span.covers(span_of(*id));
             let rows = ParamId::all().into_iter().filter(inside).count();
             assert_eq!(params.iter().count(), known + rows, "{span:?}");
@@ -146,7 +146,7 @@ mod tests {
         let speed = ParamId::DefaultSpeed(Dof::Ring);
         assert_eq!(params.get(speed), Some(Value::Number(257)));
         let mut short = Params::default();
-        short.take(SPANS[2], &[1, 2, 3]);
+        short.apply(SPANS[2], &[1, 2, 3]);
         assert_eq!(short.iter().count(), 1, "half a value is none");
     }
 

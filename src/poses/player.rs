@@ -324,7 +324,7 @@ impl Player {
         grasp: &GripEstimate,
     ) -> Option<WayPart> {
         match self.view.phase {
-            PlayPhase::Moving { since } if !self.due && self.took_hold(since, grasp) => {
+            PlayPhase::Moving { since } if !self.due && self.has_grasped(since, grasp) => {
                 self.arrive(now);
             }
             PlayPhase::Moving { since } | PlayPhase::Opening { since } if !self.due => {
@@ -349,7 +349,7 @@ impl Player {
     }
 
     /// What closes on an object never arrives: the grip that the step waits for ends its way. One of before does not.
-    fn took_hold(&self, since: Moment, grasp: &GripEstimate) -> bool {
+    fn has_grasped(&self, since: Moment, grasp: &GripEstimate) -> bool {
         let is_new = grasp.since >= since.plus(REACTION_TIME);
         let is_held = grasp.state == GripState::Holding && is_new;
         let closes = |part: &WayPart| part.is_pinching || self.parts.len() == 1;

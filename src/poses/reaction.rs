@@ -69,7 +69,7 @@ impl TouchWatch {
     }
 
     /// Applies the normal force of a fingertip, N. Returns `Some(true)` when it becomes touched, `Some(false)` when it is released.
-    pub fn take(&mut self, finger: Finger, newtons: f32, now: Moment) -> Option<bool> {
+    pub fn apply(&mut self, finger: Finger, newtons: f32, now: Moment) -> Option<bool> {
         let tip = &mut self.tips[finger];
         if !newtons.is_finite() {
             return None;
@@ -103,7 +103,7 @@ mod tests {
     fn a_touch_counts_from_what_the_tip_felt_at_first_and_ends_after_a_while() {
         let mut watch = TouchWatch::new(TouchForce::try_from(0.5).unwrap());
         let mut take =
-            |ms: u64, newtons| watch.take(Finger::Index, newtons, Moment::from_micros(ms * 1000));
+            |ms: u64, newtons| watch.apply(Finger::Index, newtons, Moment::from_micros(ms * 1000));
         assert_eq!(take(0, 2.0), None, "its zero, whatever it is");
         assert_eq!(take(20, 2.4), None);
         assert_eq!(take(40, f32::NAN), None);

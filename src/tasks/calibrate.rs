@@ -29,7 +29,7 @@ pub const TAKES: Duration = Duration::from_secs(8);
 
 /// Condition for calibrating the force sensors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Check {
+pub enum CalibrationCondition {
     /// Every joint is open.
     Open,
     /// No joint moves.
@@ -44,7 +44,7 @@ pub enum Check {
     Disarmed,
 }
 
-impl Check {
+impl CalibrationCondition {
     /// All, in the order in which the user sees to them.
     pub const ALL: [Self; 6] = [
         Self::Disarmed,
@@ -88,37 +88,37 @@ impl Checks {
     /// Whether something is so; `None` = not known.
     pub fn check(
         &self,
-        check: Check,
+        check: CalibrationCondition,
         sample: &HandSample,
         link: &LinkStatus,
         now: Moment,
     ) -> Option<bool> {
         let fresh = |asked: Moment| link.state.is_live() && now.since(asked) <= MAX_AGE;
         match check {
-            Check::Disarmed => match link.state {
+            CalibrationCondition::Disarmed => match link.state {
                 LinkState::Offline | LinkState::Identifying => None,
                 state => Some(!matches!(state, LinkState::Armed | LinkState::Holding)),
             },
-            Check::NoFault => {
+            CalibrationCondition::NoFault => {
                 let all = sample.faults.filter(|all| fresh(all.asked))?;
                 Some(all.value.iter().all(|(_, faults)| faults.is_empty()))
             }
-            Check::Open => {
+            CalibrationCondition::Open => {
                 let all = sample.angle.filter(|all| fresh(all.asked))?;
                 let is_open =
                     |dof: Dof| dof == Dof::ThumbRotate || all.value[dof].raw() >= OPEN_FROM;
                 Some(Dof::ALL.into_iter().all(is_open))
             }
-            Check::Still => match link.rest {
+            CalibrationCondition::Still => match link.rest {
                 Rest::Unknown => None,
                 rest => Some(rest == Rest::Resting),
             },
-            Check::Untouched => {
+            CalibrationCondition::Untouched => {
                 let all = sample.force.filter(|all| fresh(all.asked))?;
                 let free = |force: &ForceReading| force.raw().unsigned_abs() <= FREE_BELOW_G;
                 Some(all.value.iter().all(|(_, force)| free(force)) && is_untouched(sample)?)
             }
-            Check::Steady => self.is_steady(now),
+            CalibrationCondition::Steady => self.is_steady(now),
         }
     }
 
@@ -140,7 +140,7 @@ impl Checks {
     /// True if all of it is so.
     pub fn is_ready(&self, sample: &HandSample, link: &LinkStatus, now: Moment) -> bool {
         let is_so = |check| self.check(check, sample, link, now) == Some(true);
-        Check::ALL.into_iter().all(is_so)
+        CalibrationCondition::ALL.into_iter().all(is_so)
     }
 
     /// The mean of the forces that were looked at.

@@ -47,7 +47,7 @@ pub async fn rows(hand: &LinkHandle, mut took: impl FnMut(Span, &[u8])) -> ReadR
     for span in SPANS {
         match group(hand, span).await {
             Ok(bytes) => {
-                rows.params.take(span, &bytes);
+                rows.params.apply(span, &bytes);
                 took(span, &bytes);
             }
             Err(error) => rows.troubles.push(error),

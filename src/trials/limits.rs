@@ -17,12 +17,12 @@ pub const HEAT_MAX_AGE: Duration = Duration::from_secs(3);
 
 /// An interval in which this program did not run: the computer was busy, or the program's output was blocked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stall {
+pub struct TaskStall {
     pub lasted: Duration,
     pub ended: Moment,
 }
 
-impl Stall {
+impl TaskStall {
     /// Extra age allowed for readings shortly after a stall: the replies that arrived during it are still unread.
     fn excuses(self, now: Moment) -> Duration {
         if now.since(self.ended) <= CATCH_UP {
@@ -42,7 +42,7 @@ pub fn reason(seen: &Feedback<'_>, limits: &Limits) -> Option<Abort> {
 }
 
 /// The reason after the link disarmed a hand for heat, if a reading shows it.
-pub fn heat_reason(sample: &HandSample, stall: Option<Stall>, now: Moment) -> Option<Abort> {
+pub fn heat_reason(sample: &HandSample, stall: Option<TaskStall>, now: Moment) -> Option<Abort> {
     let rest_g = &PerDof::splat(None);
     let seen = Feedback {
         sample,
@@ -61,7 +61,7 @@ pub struct Feedback<'a> {
     /// Force of each joint at rest, g; `None` until it is known.
     pub rest_g: &'a PerDof<Option<f64>>,
     /// The last stall of the program.
-    pub stall: Option<Stall>,
+    pub stall: Option<TaskStall>,
     pub now: Moment,
 }
 

@@ -5,7 +5,7 @@ use crate::hand::{
 };
 use crate::hand::{ArmEpoch, Setpoints};
 use crate::record::Abort;
-use crate::trials::limits::{Feedback, Stall, reason};
+use crate::trials::limits::{Feedback, TaskStall, reason};
 use crate::trials::plan::{Approach, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::{TrialEvent, TrialRecording};
 use std::time::Duration;
@@ -63,7 +63,7 @@ pub enum Stage {
 }
 
 /// End of a trial; `Err` with the reason if it ended early.
-pub type Ending = Result<(), Abort>;
+pub type TrialEnd = Result<(), Abort>;
 
 #[derive(Debug, Clone)]
 pub struct Runner {
@@ -78,7 +78,7 @@ pub struct Runner {
     /// Angles at which all joints are still on the way to the start, and since when.
     pose: Option<(Moment, PerDof<i16>)>,
     recording: TrialRecording,
-    ending: Option<Ending>,
+    ending: Option<TrialEnd>,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -143,7 +143,7 @@ impl Runner {
     }
 
     /// The end of the trial; `None` while it runs.
-    pub const fn ending(&self) -> Option<Ending> {
+    pub const fn ending(&self) -> Option<TrialEnd> {
         self.ending
     }
 
@@ -159,7 +159,7 @@ impl Runner {
         }
     }
 
-    pub fn take(&mut self, sample: &HandSample, fresh: Groups) {
+    pub fn apply(&mut self, sample: &HandSample, fresh: Groups) {
         if self.ending.is_some() {
             return;
         }
@@ -178,7 +178,7 @@ impl Runner {
     pub fn tick(
         &mut self,
         sample: &HandSample,
-        stall: Option<Stall>,
+        stall: Option<TaskStall>,
         now: Moment,
     ) -> Option<Setpoints> {
         if self.ending.is_some() {
@@ -355,11 +355,11 @@ impl Runner {
         let mut all_stopped = true;
         for (dof, joint) in self.joints.iter_mut() {
             let Some(joint) = joint else { continue };
-            joint.look(sample, since, now);
+            joint.update(sample, since, now);
             // A joint that stopped earlier, at an obstacle or for lack of accuracy, continues from where it is.
             if !joint.slow
                 && (joint.begins_slow(self.plan.approach, sample, rest_g[dof])
-                    || joint.stands(sample, now))
+                    || joint.is_still(sample, now))
             {
                 joint.slow = true;
                 joint.still = None;
@@ -435,7 +435,7 @@ impl ClosingJoint {
     }
 
     /// Updates its motion state.
-    fn look(&mut self, sample: &HandSample, since: Moment, now: Moment) {
+    fn update(&mut self, sample: &HandSample, since: Moment, now: Moment) {
         let Some(angle) = sample.angle.filter(|angle| angle.asked >= since) else {
             return;
         };
@@ -456,25 +456,25 @@ impl ClosingJoint {
         angle.and_then(AngleReading::documented).is_some_and(|at| {
             let short = at.saturating_sub(halt.get());
             let is_near = short <= Angle::ARRIVED_TOLERANCE.cast_signed();
-            short <= STILL_COUNTS || (is_near && self.says_stopped(sample))
+            short <= STILL_COUNTS || (is_near && self.reports_stop(sample))
         })
     }
 
     /// True if it has moved and its drive reports a stop.
-    fn says_stopped(&self, sample: &HandSample) -> bool {
+    fn reports_stop(&self, sample: &HandSample) -> bool {
         let says = sample.status.map(|status| status.value[self.dof]);
         self.moved && says.is_some_and(Status::is_stopped)
     }
 
     /// True once it has finally stopped: at its target, at its force, or at an obstacle.
     fn has_stopped(&self, sample: &HandSample, now: Moment) -> bool {
-        self.slow && self.stands(sample, now)
+        self.slow && self.is_still(sample, now)
     }
 
-    fn stands(&self, sample: &HandSample, now: Moment) -> bool {
+    fn is_still(&self, sample: &HandSample, now: Moment) -> bool {
         let still = self.still.map(|(since, _)| now.since(since));
         still.is_some_and(|still| {
-            still >= STILL_ANYWAY || (self.says_stopped(sample) && still >= STILL_DURATION)
+            still >= STILL_ANYWAY || (self.reports_stop(sample) && still >= STILL_DURATION)
         })
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::hand::{Angle, ArmEpoch, Groups, HandSample, Moment, PerDof, Setpoints, Speed};
 use crate::record::Abort;
-use crate::trials::limits::{Stall, warmest};
+use crate::trials::limits::{TaskStall, warmest};
 use crate::trials::measure::metrics::measure;
 use crate::trials::plan::{Approach, PlanError, TrialPlan, TrialSetting};
 use crate::trials::runner::{Runner, Stage};
@@ -156,7 +156,7 @@ impl TrialSeries {
     fn wait(
         &mut self,
         sample: &HandSample,
-        stall: Option<Stall>,
+        stall: Option<TaskStall>,
         until: Moment,
         now: Moment,
     ) -> Option<Setpoints> {
@@ -361,14 +361,14 @@ impl TrialSeries {
     }
 
     /// The program that runs it did not run for a while.
-    pub fn stalled(&mut self, stall: Stall) {
+    pub fn stalled(&mut self, stall: TaskStall) {
         self.stall = self.stall.max(Some(stall.lasted));
     }
 
     /// Receives readings.
     pub fn read(&mut self, sample: &HandSample, fresh: Groups) {
         if let SeriesPhase::Running(runner, _) = &mut self.phase {
-            runner.take(sample, fresh);
+            runner.apply(sample, fresh);
         }
     }
 
@@ -376,7 +376,7 @@ impl TrialSeries {
     pub fn tick(
         &mut self,
         sample: &HandSample,
-        stall: Option<Stall>,
+        stall: Option<TaskStall>,
         now: Moment,
     ) -> Option<Setpoints> {
         match &mut self.phase {

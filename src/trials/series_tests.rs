@@ -7,7 +7,7 @@ use crate::hand::{
 use crate::hand::{ArmEpoch, Setpoints};
 use crate::record::{Abort, Disarmed};
 use crate::trials::best::scores;
-use crate::trials::limits::Stall;
+use crate::trials::limits::TaskStall;
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan, TrialSetting, Until};
 use crate::trials::recording::{TrialEvent, seconds};
 use crate::trials::series::TrialSeries;
@@ -36,7 +36,7 @@ struct Hand {
     rests_short: i16,
     /// Where something is in the way.
     blocked_at: i16,
-    stall: Option<Stall>,
+    stall: Option<TaskStall>,
 }
 
 impl Hand {
@@ -272,7 +272,7 @@ fn readings_are_awaited_after_a_stall_of_this_program_and_a_stall_is_named_as_th
                 begun = Some(now);
                 hand.now = now.plus(Duration::from_millis(800));
                 hand.force_at = Some(now);
-                hand.stall = Some(Stall {
+                hand.stall = Some(TaskStall {
                     lasted: Duration::from_millis(800),
                     ended: hand.now,
                 });
@@ -306,7 +306,7 @@ fn the_longest_stall_of_a_trial_is_kept_with_it() {
             && series.view().number == 1
             && let Some(ms) = stalls.pop()
         {
-            series.stalled(Stall {
+            series.stalled(TaskStall {
                 lasted: Duration::from_millis(ms),
                 ended: hand.now,
             });

@@ -8,7 +8,7 @@ use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::trials::work::{SeriesHand, ends};
 use crate::checkup::free_file;
-use crate::checkup::subject::Light;
+use crate::checkup::subject::Grade;
 use crate::checkup::{Checkup, CheckupPlan};
 use crate::hand::Setpoints;
 use crate::motion::checkup::{CheckupFiles, ConcludedCheckup, EndedCheckup};
@@ -121,8 +121,8 @@ impl HandCheckup {
             Err(error) => vec![NoticeKind::not_saved(PathBuf::from("checks"), &error)],
             Ok(ConcludedCheckup { report, written }) => {
                 let mut told = vec![NoticeKind::CheckupEnded {
-                    act: report.count(Light::Act),
-                    watch: report.count(Light::Watch),
+                    act: report.count(Grade::Act),
+                    watch: report.count(Grade::Watch),
                     aborted: report.aborted,
                 }];
                 let folder = match written.transpose() {

@@ -325,7 +325,7 @@ impl ParamsState {
     /// Applies a block of values that was read.
     pub(crate) fn take(&mut self, span: Span, bytes: &[u8], at: Moment) {
         let mut read = Params::default();
-        read.take(span, bytes);
+        read.apply(span, bytes);
         for (id, value) in read.iter() {
             if self.first.get(id).is_none() {
                 self.first.put(id, value);

@@ -2,7 +2,7 @@
 
 use crate::checkup::check::Check;
 use crate::checkup::report::{CheckupReport, Keeping};
-use crate::checkup::subject::Light;
+use crate::checkup::subject::Grade;
 use serde_json::{Map, Value, json};
 
 impl CheckupReport {
@@ -53,6 +53,6 @@ fn check(check: &Check) -> Value {
         "past": past.collect::<Vec<_>>(),
         "drift": drift,
         "light": check.light,
-        "advice": (check.light >= Light::Watch).then_some(row.advice),
+        "advice": (check.light >= Grade::Watch).then_some(row.advice),
     })
 }

@@ -4,7 +4,7 @@ mod json;
 pub mod line;
 
 use crate::checkup::check::Check;
-use crate::checkup::subject::Light;
+use crate::checkup::subject::Grade;
 use crate::checkup::usage::Usage;
 use crate::hand::Dof;
 use crate::record::Abort;
@@ -57,7 +57,7 @@ pub struct CheckupReport {
 
 #[derive(Template)]
 #[template(path = "report.html", config = "checkup/report/askama.toml")]
-struct ReportPage<'a> {
+struct CheckupReportPage<'a> {
     report: &'a CheckupReport,
 }
 
@@ -67,18 +67,18 @@ impl CheckupReport {
     /// # Errors
     /// A template error.
     pub fn html(&self) -> Result<String, askama::Error> {
-        ReportPage { report: self }.render()
+        CheckupReportPage { report: self }.render()
     }
 
     /// The number of figures with this light.
-    pub fn count(&self, light: Light) -> usize {
+    pub fn count(&self, light: Grade) -> usize {
         self.checks.iter().filter(|own| own.light == light).count()
     }
 
     /// The number of figures with each light, as a sentence.
     pub fn summary(&self) -> String {
         let [fine, watch, act, unknown] =
-            [Light::Fine, Light::Watch, Light::Act, Light::Unknown].map(|light| self.count(light));
+            [Grade::Fine, Grade::Watch, Grade::Act, Grade::Unknown].map(|light| self.count(light));
         let all = self.checks.len();
         format!(
             "{all} figures: {fine} as they should be, {watch} to watch, {act} to act on, {unknown} not measured"
@@ -127,7 +127,7 @@ impl Keeping {
     }
 }
 
-impl<'a> ReportPage<'a> {
+impl<'a> CheckupReportPage<'a> {
     /// The checks grouped by joint, fingertip and hand, in order.
     fn groups(&self) -> Vec<(&'static str, &'a [Check])> {
         let same = |a: &Check, b: &Check| a.measured.of == b.measured.of;
@@ -142,13 +142,13 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
     use crate::checkup::check::checks;
-    use crate::checkup::kept::Kept;
+    use crate::checkup::kept::StoredCheckup;
     use crate::checkup::measure::Measured;
-    use crate::checkup::subject::{Part, Subject};
+    use crate::checkup::subject::{HandPart, Subject};
     use crate::hand::PerDof;
 
-    fn report(values: [Option<f64>; 3], earlier: &[Kept]) -> CheckupReport {
-        let of = Part::Joint(Dof::Index);
+    fn report(values: [Option<f64>; 3], earlier: &[StoredCheckup]) -> CheckupReport {
+        let of = HandPart::Joint(Dof::Index);
         let [backlash, dead, open] = values;
         let measured = vec![
             Measured::new(Subject::Backlash, of, backlash),
@@ -170,9 +170,9 @@ mod tests {
         }
     }
 
-    fn kept(day: u32, backlash: f64) -> Kept {
-        let of = Part::Joint(Dof::Index);
-        Kept {
+    fn kept(day: u32, backlash: f64) -> StoredCheckup {
+        let of = HandPart::Joint(Dof::Index);
+        StoredCheckup {
             at: format!("2026-11-{day:02}T10:00:00Z"),
             hand: "tcp:<b>".into(),
             figures: vec![Measured::new(Subject::Backlash, of, Some(backlash))],
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn a_figure_that_drifts_is_drawn_over_the_days_and_told_with_them() {
-        let earlier: Vec<Kept> = (1..=5_u32)
+        let earlier: Vec<StoredCheckup> = (1..=5_u32)
             .map(|day| kept(day, f64::from(day) + 1.0))
             .collect();
         let usage = Usage {

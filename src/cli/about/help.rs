@@ -21,8 +21,8 @@ pub(crate) fn run(out: &mut Out, args: &HelpArgs, program: Command) -> anyhow::R
         if rest.is_empty() {
             return plain(text).iter().try_for_each(|line| out.line(line));
         }
-        let told = format!("'{name}' is a topic: 'handscope help {name}' shows all of it");
-        return Err(WrongUsage(told).into());
+        let words = format!("'{name}' is a topic: 'handscope help {name}' shows all of it");
+        return Err(WrongUsage(words).into());
     }
     if let Some(word) = words.first()
         && program.find_subcommand(word).is_none()

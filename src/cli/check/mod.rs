@@ -8,7 +8,7 @@ pub(crate) use args::CheckArgs;
 use crate::app::env::day_folder;
 use crate::app::files::settings_file;
 use crate::checkup::free_file;
-use crate::checkup::subject::Light;
+use crate::checkup::subject::Grade;
 use crate::checkup::{Checkup, CheckupPlan, expected};
 use crate::cli::out::{Out, end};
 use crate::cli::trial::drive::ArmedHand;
@@ -38,12 +38,12 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
             bail!("the check-up cannot be recorded: {error}");
         }
     };
-    let mut told = None;
+    let mut shown = None;
     let checkup = Checkup::start(hand.armed.epoch, plan);
     let driven = hand
         .run(checkup, |checkup: &mut Checkup, _| {
             let view = checkup.view();
-            if told.replace(view) != Some(view) && !args.json {
+            if shown.replace(view) != Some(view) && !args.json {
                 output::progress(view);
             }
             true
@@ -59,7 +59,7 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
     }
     match &report.aborted_words {
         Some(why) => bail!("the check-up ended early, its report is partial: {why}"),
-        None => end(report.count(Light::Act) == 0),
+        None => end(report.count(Grade::Act) == 0),
     }
 }
 

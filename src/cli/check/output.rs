@@ -4,19 +4,19 @@ use crate::checkup::check::Check;
 use crate::checkup::report::CheckupReport;
 use crate::checkup::report::line::{drift_words, value_words};
 use crate::checkup::run::CheckupView;
-use crate::checkup::subject::Light;
-use crate::cli::out::say;
+use crate::checkup::subject::Grade;
+use crate::cli::out::notify;
 
 /// Findings with advice, and the summary.
 pub(crate) fn lines(report: &CheckupReport) -> Vec<String> {
     // Figures missing from a partial check-up are not reported.
-    let is_told = |check: &&Check| match check.light {
-        Light::Fine => check.drift().is_some(),
-        Light::Unknown => report.aborted.is_none(),
-        Light::Watch | Light::Act => true,
+    let is_reported = |check: &&Check| match check.light {
+        Grade::Fine => check.drift().is_some(),
+        Grade::Unknown => report.aborted.is_none(),
+        Grade::Watch | Grade::Act => true,
     };
-    let told = report.checks.iter().filter(is_told);
-    let mut lines: Vec<String> = told.map(line).collect();
+    let reported = report.checks.iter().filter(is_reported);
+    let mut lines: Vec<String> = reported.map(line).collect();
     lines.extend(report.remarks());
     lines.push(report.usage_words());
     lines.push(report.summary());
@@ -32,15 +32,15 @@ fn line(check: &Check) -> String {
     let first = check
         .first
         .map(|first| format!(", {} at first", row.text(first)));
-    let advice = (check.light != Light::Fine).then(|| row.advice.to_owned());
-    let told: Vec<String> = advice.into_iter().chain(drift_words(check)).collect();
+    let advice = (check.light != Grade::Fine).then(|| row.advice.to_owned());
+    let advice: Vec<String> = advice.into_iter().chain(drift_words(check)).collect();
     format!(
         "{light}: {of}: {} is {} (good: {}{}): {}",
         row.name,
         value_words(check),
         row.range(),
         first.unwrap_or_default(),
-        told.join("; ")
+        advice.join("; ")
     )
 }
 
@@ -55,6 +55,6 @@ pub(crate) fn progress(view: CheckupView) {
         (None, None) => "all joints".to_owned(),
     };
     if view.done < view.total {
-        say(&format!("{} of {}: {what}", view.done + 1, view.total));
+        notify(&format!("{} of {}: {what}", view.done + 1, view.total));
     }
 }

@@ -13,11 +13,11 @@ const TRIPS_MAX: usize = 65_536;
 pub(crate) const EDGES_MS: [u64; 7] = [1, 2, 4, 8, 16, 32, 64];
 
 /// One check-up of one hand.
-pub(crate) struct Checkup {
+pub(crate) struct Examination {
     pub(crate) endpoint: Endpoint,
     pub(crate) connection: ConnectionFacts,
     /// The measurements, or the reason why the hand did not answer.
-    pub(crate) answer: Result<Measured, String>,
+    pub(crate) answer: Result<LinkMeasurements, String>,
 }
 
 /// Type of the connection, as the system reports it.
@@ -33,7 +33,7 @@ pub(crate) enum ConnectionFacts {
 }
 
 /// Measurements of an answering hand.
-pub(crate) struct Measured {
+pub(crate) struct LinkMeasurements {
     /// Time from opening to the first answer.
     pub(crate) answered_after: Duration,
     pub(crate) status: LinkStatus,
@@ -70,7 +70,7 @@ impl BlockTiming {
         }
     }
 
-    pub(crate) fn took(&mut self, trip: Duration) {
+    pub(crate) fn add(&mut self, trip: Duration) {
         self.reads += 1;
         if self.trips.len() == TRIPS_MAX {
             self.trips.pop_front();
@@ -117,7 +117,7 @@ impl BlockTiming {
     }
 }
 
-impl Measured {
+impl LinkMeasurements {
     /// Number of requests of the check-up, answered or not.
     pub(crate) fn requests(&self) -> u64 {
         let asked = |window: &BlockTiming| window.reads + window.refused + window.failed;
@@ -135,7 +135,7 @@ mod tests {
         let mut window = BlockTiming::new("angles", Span::new(1546, 12), &endpoint);
         assert_eq!((window.percentile(50), window.hz()), (None, None));
         for ms in [0, 1, 3, 5, 9, 20, 40, 100] {
-            window.took(Duration::from_millis(ms));
+            window.add(Duration::from_millis(ms));
         }
         assert_eq!(window.histogram(), [1; 8]);
         assert_eq!(window.percentile(0), Some(Duration::ZERO));
@@ -150,7 +150,7 @@ mod tests {
     fn a_long_look_stays_small() {
         let mut window = BlockTiming::new("angles", Span::new(1546, 12), &Endpoint::sim());
         for _ in 0..=TRIPS_MAX {
-            window.took(Duration::from_millis(1));
+            window.add(Duration::from_millis(1));
         }
         assert_eq!(window.trips.len(), TRIPS_MAX);
         assert_eq!(window.reads, TRIPS_MAX as u64 + 1);

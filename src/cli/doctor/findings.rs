@@ -1,6 +1,6 @@
 //! Findings about a hand or the connection to it, with advice, as text.
 
-use crate::cli::doctor::checkup::{Checkup, ConnectionFacts, Measured};
+use crate::cli::doctor::checkup::{ConnectionFacts, Examination, LinkMeasurements};
 use crate::link::{LinkStats, priority};
 use crate::transport::can_facts::{CanFacts, QUEUE_LEN_USUAL};
 use crate::transport::{Endpoint, PortFacts, Route};
@@ -32,7 +32,7 @@ const STALL_HARMFUL: Duration = Duration::from_millis(50);
 const STALLS_MANY: u64 = 50;
 
 #[derive(Serialize)]
-pub(crate) struct Finding {
+pub(crate) struct Diagnosis {
     /// True for a problem, false for a note.
     #[serde(rename = "wrong")]
     pub(crate) is_wrong: bool,
@@ -42,23 +42,23 @@ pub(crate) struct Finding {
     pub(crate) advice: String,
 }
 
-fn wrong(what: impl Into<String>, advice: impl Into<String>) -> Finding {
-    Finding {
+fn wrong(what: impl Into<String>, advice: impl Into<String>) -> Diagnosis {
+    Diagnosis {
         is_wrong: true,
         what: what.into(),
         advice: advice.into(),
     }
 }
 
-fn hint(what: impl Into<String>, advice: impl Into<String>) -> Finding {
-    Finding {
+fn hint(what: impl Into<String>, advice: impl Into<String>) -> Diagnosis {
+    Diagnosis {
         is_wrong: false,
         ..wrong(what, advice)
     }
 }
 
 /// Findings about stalls of this computer.
-fn stalls(measured: &Measured, found: &mut Vec<Finding>) {
+fn stalls(measured: &LinkMeasurements, found: &mut Vec<Diagnosis>) {
     let stats = &measured.stats;
     if stats.longest_stall < STALL_HARMFUL && stats.stalls < STALLS_MANY {
         return;
@@ -79,7 +79,7 @@ fn stalls(measured: &Measured, found: &mut Vec<Finding>) {
 }
 
 /// All findings, problems first.
-pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
+pub(crate) fn judge(checkup: &Examination) -> Vec<Diagnosis> {
     let mut found = Vec::new();
     let endpoint = &checkup.endpoint;
     match &checkup.answer {
@@ -101,7 +101,7 @@ pub(crate) fn judge(checkup: &Checkup) -> Vec<Finding> {
     found
 }
 
-fn answers(checkup: &Checkup, measured: &Measured, found: &mut Vec<Finding>) {
+fn answers(checkup: &Examination, measured: &LinkMeasurements, found: &mut Vec<Diagnosis>) {
     if let Some(why) = &measured.lost {
         found.push(wrong(
             format!("the link was lost during the check: {why}"),
@@ -140,7 +140,7 @@ fn answers(checkup: &Checkup, measured: &Measured, found: &mut Vec<Finding>) {
 }
 
 /// Judges every counter of the link. All fields are listed, so that a new one does not compile without a judgement.
-fn counters(measured: &Measured, id: u16, found: &mut Vec<Finding>) {
+fn counters(measured: &LinkMeasurements, id: u16, found: &mut Vec<Diagnosis>) {
     let LinkStats {
         timeouts,
         checksum_errors,
@@ -169,7 +169,7 @@ fn counters(measured: &Measured, id: u16, found: &mut Vec<Finding>) {
     } = measured.stats;
     let requests = measured.requests().max(1);
     let is_over = |count: u64, per_mille: u64| count * 1000 / requests > per_mille;
-    let mut judge = |is_found: bool, finding: Finding| {
+    let mut judge = |is_found: bool, finding: Diagnosis| {
         if is_found {
             found.push(finding);
         }
@@ -242,7 +242,7 @@ fn counters(measured: &Measured, id: u16, found: &mut Vec<Finding>) {
     );
 }
 
-fn two_devices(id: u16, replies: u64, requests: u64) -> Finding {
+fn two_devices(id: u16, replies: u64, requests: u64) -> Diagnosis {
     wrong(
         format!(
             "two devices answer as id {id}: {replies} replies came to {requests} requests that nobody had asked for"
@@ -251,7 +251,7 @@ fn two_devices(id: u16, replies: u64, requests: u64) -> Finding {
     )
 }
 
-fn refused(measured: &Measured, refusals: u64, requests: u64) -> Finding {
+fn refused(measured: &LinkMeasurements, refusals: u64, requests: u64) -> Diagnosis {
     let blocks = whole_blocks(measured);
     wrong(
         format!("{refusals} of {requests} requests were refused{blocks}"),
@@ -260,7 +260,7 @@ fn refused(measured: &Measured, refusals: u64, requests: u64) -> Finding {
 }
 
 /// Names the blocks that were refused every time.
-fn whole_blocks(measured: &Measured) -> String {
+fn whole_blocks(measured: &LinkMeasurements) -> String {
     let refused = measured.windows.iter();
     let names: Vec<&str> = refused
         .filter(|window| window.refused > 0 && window.reads == 0)
@@ -272,7 +272,12 @@ fn whole_blocks(measured: &Measured) -> String {
     }
 }
 
-fn port(port: &str, facts: &PortFacts, measured: Option<&Measured>, found: &mut Vec<Finding>) {
+fn port(
+    port: &str,
+    facts: &PortFacts,
+    measured: Option<&LinkMeasurements>,
+    found: &mut Vec<Diagnosis>,
+) {
     // The error of a port that could not be opened for this reason names the holder already.
     if let Some(holder) = facts.holder.as_ref().filter(|_| measured.is_some()) {
         found.push(wrong(
@@ -313,7 +318,7 @@ fn timer_advice(facts: &PortFacts, port: &str) -> String {
     format!("run 'echo 1 | sudo tee /sys/bus/usb-serial/devices/{name}/latency_timer'")
 }
 
-fn net(way: Option<&Route>, is_answered: bool, found: &mut Vec<Finding>) {
+fn net(way: Option<&Route>, is_answered: bool, found: &mut Vec<Diagnosis>) {
     let Some(way) = way.filter(|way| way.is_direct() == Some(false)) else {
         return;
     };
@@ -345,7 +350,7 @@ fn neighbour(way: &Route) -> String {
     }
 }
 
-fn can(interface: &str, facts: &CanFacts, found: &mut Vec<Finding>) {
+fn can(interface: &str, facts: &CanFacts, found: &mut Vec<Diagnosis>) {
     let is_well = |state: &&str| matches!(*state, "ERROR-ACTIVE" | "STOPPED");
     if let Some(state) = facts.state.as_deref().filter(|state| !is_well(state)) {
         found.push(wrong(
@@ -377,12 +382,12 @@ mod tests {
     use crate::link::LinkStatus;
     use crate::transport::UsbFound;
 
-    fn healthy(endpoint: &Endpoint) -> Measured {
+    fn healthy(endpoint: &Endpoint) -> LinkMeasurements {
         let mut window = BlockTiming::new("angles", Span::new(1546, 12), endpoint);
         for _ in 0..1000 {
-            window.took(Duration::from_millis(6));
+            window.add(Duration::from_millis(6));
         }
-        Measured {
+        LinkMeasurements {
             answered_after: Duration::from_millis(9),
             status: LinkStatus::default(),
             stats: LinkStats::default(),
@@ -392,11 +397,14 @@ mod tests {
         }
     }
 
-    fn told(place: ConnectionFacts, change: impl Fn(&mut Measured)) -> Vec<(bool, String)> {
+    fn findings(
+        place: ConnectionFacts,
+        change: impl Fn(&mut LinkMeasurements),
+    ) -> Vec<(bool, String)> {
         let endpoint: Endpoint = "rs485:/dev/ttyT0".parse().unwrap();
         let mut measured = healthy(&endpoint);
         change(&mut measured);
-        let checkup = Checkup {
+        let checkup = Examination {
             endpoint,
             connection: place,
             answer: Ok(measured),
@@ -426,15 +434,18 @@ mod tests {
 
     #[test]
     fn a_healthy_hand_has_no_findings() {
-        assert_eq!(told(ConnectionFacts::BuiltIn, |_| ()), []);
-        assert_eq!(told(usb(Some(1)), |_| ()), []);
+        assert_eq!(findings(ConnectionFacts::BuiltIn, |_| ()), []);
+        assert_eq!(findings(usb(Some(1)), |_| ()), []);
         // A few of a thousand are this computer being busy.
-        assert_eq!(told(usb(None), |measured| measured.stats.timeouts = 3), []);
+        assert_eq!(
+            findings(usb(None), |measured| measured.stats.timeouts = 3),
+            []
+        );
     }
 
     #[test]
     fn each_trouble_has_its_own_words_and_advice() {
-        type Change = fn(&mut Measured);
+        type Change = fn(&mut LinkMeasurements);
         let cases: [(ConnectionFacts, Change, bool, &str); 10] = [
             (
                 ConnectionFacts::BuiltIn,
@@ -501,7 +512,7 @@ mod tests {
             ),
         ];
         for (place, change, is_wrong, part) in cases {
-            let found = told(place, change);
+            let found = findings(place, change);
             let [(wrong, words)] = found.as_slice() else {
                 unreachable!("{part}: {found:?}");
             };
@@ -561,7 +572,7 @@ mod tests {
             (|stats| &mut stats.dropped_events, false, "dropped"),
         ];
         for (count, is_wrong, part) in counts {
-            let found = told(ConnectionFacts::BuiltIn, |measured| {
+            let found = findings(ConnectionFacts::BuiltIn, |measured| {
                 measured.stats.readings = 1000;
                 *count(&mut measured.stats) = 564;
             });
@@ -574,7 +585,7 @@ mod tests {
 
     #[test]
     fn a_few_of_a_thousand_are_no_finding() {
-        let found = told(ConnectionFacts::BuiltIn, |measured| {
+        let found = findings(ConnectionFacts::BuiltIn, |measured| {
             measured.stats = LinkStats {
                 timeouts: 3,
                 resyncs: 3,
@@ -592,7 +603,7 @@ mod tests {
     #[test]
     fn a_timer_that_the_driver_calls_short_is_not_suspected() {
         assert_eq!(
-            told(usb(Some(1)), |measured| measured.ticks_seen = true),
+            findings(usb(Some(1)), |measured| measured.ticks_seen = true),
             []
         );
     }
@@ -605,7 +616,7 @@ mod tests {
             interface: Some("eth0".into()),
             prefix: Some(24),
         }));
-        let checkup = Checkup {
+        let checkup = Examination {
             endpoint: "tcp:192.168.11.210".parse().unwrap(),
             connection: place,
             answer: Err("nothing came".into()),

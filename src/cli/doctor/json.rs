@@ -1,7 +1,9 @@
 //! A check-up as one JSON object; a contract with scripts, documented in `assets/manual/json.md`.
 
-use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, EDGES_MS, Measured};
-use crate::cli::doctor::findings::Finding;
+use crate::cli::doctor::checkup::{
+    BlockTiming, ConnectionFacts, EDGES_MS, Examination, LinkMeasurements,
+};
+use crate::cli::doctor::findings::Diagnosis;
 use crate::cli::watch::telemetry::stalls_json;
 use crate::link::priority;
 use serde::Serialize;
@@ -9,7 +11,7 @@ use serde_json::{Value, json};
 use std::time::Duration;
 
 /// The complete object. Unknown values are null.
-pub(crate) fn object(checkup: &Checkup, found: &[Finding]) -> Value {
+pub(crate) fn object(checkup: &Examination, found: &[Diagnosis]) -> Value {
     let measured = checkup.answer.as_ref().ok();
     let (mut port, mut network, mut can) = (None, None, None);
     match &checkup.connection {
@@ -71,7 +73,7 @@ fn window_json(window: &BlockTiming) -> Value {
     })
 }
 
-fn errors_json(measured: &Measured) -> Value {
+fn errors_json(measured: &LinkMeasurements) -> Value {
     let stats = &measured.stats;
     json!({
         "requests": measured.requests(),

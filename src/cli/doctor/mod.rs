@@ -5,7 +5,7 @@ mod findings;
 mod json;
 mod text;
 
-use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, Measured};
+use crate::cli::doctor::checkup::{BlockTiming, ConnectionFacts, Examination, LinkMeasurements};
 use crate::cli::out::Out;
 use crate::cli::parse::seconds;
 use crate::cli::session;
@@ -58,10 +58,10 @@ const TIPS: Span = Span::new(register::TOUCH.address, 232);
 const LAST_TIP: Span = Span::new(register::TOUCH.address + TIPS.len, 58);
 
 /// Checks the connection, then the hand, until the time is up or the user ends it.
-async fn check(hand: &Endpoint, length: Duration) -> anyhow::Result<Checkup> {
+async fn check(hand: &Endpoint, length: Duration) -> anyhow::Result<Examination> {
     let interrupt = Interrupt::listen()?;
     let connection = connection(hand).await;
-    Ok(Checkup {
+    Ok(Examination {
         answer: answer(hand, length, interrupt).await,
         endpoint: hand.clone(),
         connection,
@@ -92,7 +92,7 @@ async fn answer(
     hand: &Endpoint,
     length: Duration,
     mut interrupt: Interrupt,
-) -> Result<Measured, String> {
+) -> Result<LinkMeasurements, String> {
     let begun = Instant::now();
     let link = session::open(hand, RATES, Clock::start());
     let answered = session::answered(&link, hand);
@@ -108,11 +108,11 @@ async fn answer(
         biased;
         () = interrupt.wished() => {}
         () = sleep_until(until) => {}
-        () = reader.ask_on(&link) => {}
+        () = reader.send_requests(&link) => {}
     }
     let status = link.status();
     let lost = session::trouble(&status).map(ToString::to_string);
-    Ok(Measured {
+    Ok(LinkMeasurements {
         answered_after,
         lost: lost.or_else(|| reader.is_lost.then(|| "the link was lost".into())),
         stats: link.stats(),
@@ -148,14 +148,14 @@ impl BlockReader {
     }
 
     /// Sends requests until the link is lost.
-    async fn ask_on(&mut self, link: &LinkHandle) {
+    async fn send_requests(&mut self, link: &LinkHandle) {
         loop {
             for window in &mut self.windows {
                 let asked = Instant::now();
                 match link.read(window.span).await {
                     Ok(_bytes) => {
                         let trip = asked.elapsed();
-                        window.took(trip);
+                        window.add(trip);
                         self.ticks.took(window.span.len, trip);
                     }
                     Err(RequestError::Refused { .. } | RequestError::WrongLength { .. }) => {

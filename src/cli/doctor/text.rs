@@ -1,14 +1,14 @@
 //! A check-up as lines of text.
 
-use crate::cli::doctor::checkup::{BlockTiming, Checkup, ConnectionFacts, Measured};
-use crate::cli::doctor::findings::Finding;
+use crate::cli::doctor::checkup::{BlockTiming, ConnectionFacts, Examination, LinkMeasurements};
+use crate::cli::doctor::findings::Diagnosis;
 use crate::transport::can_facts::CanFacts;
 use crate::transport::{PortFacts, Route, UsbFound};
 use std::fmt::Display;
 use std::time::Duration;
 
 /// The complete text.
-pub(crate) fn lines(checkup: &Checkup, found: &[Finding]) -> Vec<String> {
+pub(crate) fn lines(checkup: &Examination, found: &[Diagnosis]) -> Vec<String> {
     let mut lines = vec![row("hand", checkup.endpoint.to_string())];
     lines.extend(connection(&checkup.connection));
     match &checkup.answer {
@@ -113,7 +113,7 @@ fn can(facts: &CanFacts) -> Vec<String> {
     ]
 }
 
-fn answer(measured: &Measured) -> Vec<String> {
+fn answer(measured: &LinkMeasurements) -> Vec<String> {
     let status = &measured.status;
     let after = millis(measured.answered_after);
     let mut lines = vec![row("answer", format!("after {after} ms"))];
@@ -147,7 +147,7 @@ fn answer(measured: &Measured) -> Vec<String> {
     lines
 }
 
-fn errors(measured: &Measured) -> String {
+fn errors(measured: &LinkMeasurements) -> String {
     let stats = &measured.stats;
     format!(
         "of {} requests: {} without a reply, {} wrong checksums, {} bursts of noise, {} foreign replies, {} late replies, {} foreign requests, {} refused, {} of {} readings implausible, {} reconnects",

@@ -57,7 +57,7 @@ pub(crate) async fn forget_earlier(from: Option<ConsentFrom>) -> Result<(), NoCo
 }
 
 /// Waits for the line that answers. Must be called immediately after the question.
-pub(crate) async fn given() -> Result<(), NoConsent> {
+pub(crate) async fn answer() -> Result<(), NoConsent> {
     spawn_blocking(input::line)
         .await
         .unwrap_or(Err(NoConsent::Ended))

@@ -2,7 +2,7 @@
 
 use crate::cli::inputs::consent::{self, ConsentFrom};
 use crate::cli::inputs::source::{Allowed, FollowSource, SourceArgs};
-use crate::cli::out::{AlreadyReported, Out, ReaderGone, WrongUsage, say};
+use crate::cli::out::{AlreadyReported, Out, ReaderGone, WrongUsage, notify};
 use crate::cli::parse::{self, number};
 use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
@@ -125,19 +125,19 @@ pub(crate) async fn run(out: &mut Out, args: &FollowArgs) -> anyhow::Result<()> 
         clock,
         args,
         source: &source,
-        teller: ProgressPrinter {
+        printer: ProgressPrinter {
             out,
             json: args.json,
             question: None,
             heat: None,
             odd_stops: 0,
-            told: None,
+            printed: None,
         },
     };
     let ended = tokio::select! {
         biased;
         () = interrupt.wished() => Ok(()),
-        Err(ended) = at.go_on() => Err(ended),
+        Err(ended) = at.run() => Err(ended),
     };
     drop(at);
     let done = if args.arm {
@@ -158,11 +158,11 @@ fn leave(ended: anyhow::Result<()>, stopped: anyhow::Result<()>) -> anyhow::Resu
             Ok(()) => "the hand was stopped".to_owned(),
             Err(not) => not.to_string(),
         };
-        say(&format!("nobody reads the output any more: {words}"));
+        notify(&format!("nobody reads the output any more: {words}"));
         return Err(AlreadyReported.into());
     }
     if let Err(not) = stopped {
-        say(&not.to_string());
+        notify(&not.to_string());
     }
     Err(why)
 }
@@ -194,14 +194,14 @@ struct FollowCommand<'a> {
     clock: Clock,
     args: &'a FollowArgs,
     source: &'a FollowSource,
-    teller: ProgressPrinter<'a>,
+    printer: ProgressPrinter<'a>,
 }
 
 impl FollowCommand<'_> {
     /// Follows senders, each time with the user's permission.
-    async fn go_on(&mut self) -> anyhow::Result<Infallible> {
-        self.teller.out.line(&self.source.ready())?;
-        self.teller.out.flush()?;
+    async fn run(&mut self) -> anyhow::Result<Infallible> {
+        self.printer.out.line(&self.source.ready())?;
+        self.printer.out.flush()?;
         loop {
             let (owner, sender) = self.sender().await?;
             let end = tokio::select! {
@@ -210,7 +210,7 @@ impl FollowCommand<'_> {
                 end = self.follow(owner) => end?,
             };
             let why = ended(end, &sender);
-            self.ask(&why).await?;
+            self.request_consent(&why).await?;
         }
     }
 
@@ -224,42 +224,42 @@ impl FollowCommand<'_> {
             seen: self.seen,
             clock: self.clock,
         };
-        let (source, teller, clock) = (self.source, &mut self.teller, self.clock);
-        let (untold, mut failed) = mpsc::channel(1);
-        let tell = |view| {
-            if let Err(error) = teller.tell(source, Some(view), clock.now()) {
+        let (source, printer, clock) = (self.source, &mut self.printer, self.clock);
+        let (errors, mut failed) = mpsc::channel(1);
+        let report = |view| {
+            if let Err(error) = printer.print(source, Some(view), clock.now()) {
                 // One error is enough.
-                let _again = untold.try_send(error);
+                let _again = errors.try_send(error);
             }
         };
         tokio::select! {
             biased;
             Some(error) = failed.recv() => Err(error),
-            end = follow(&self.link, start, offers, tell) => Ok(end),
+            end = follow(&self.link, start, offers, report) => Ok(end),
         }
     }
 
     /// Asks the user for permission to move the hand again, and waits for the answer.
-    async fn ask(&mut self, why: &str) -> anyhow::Result<()> {
+    async fn request_consent(&mut self, why: &str) -> anyhow::Result<()> {
         let earlier = consent::forget_earlier(self.args.consent);
-        let earlier = self.telling_meanwhile(earlier).await?;
+        let earlier = self.reporting_meanwhile(earlier).await?;
         earlier.map_err(|nobody| anyhow!("{why}, and {nobody}"))?;
         let how = match self.args.consent {
             None => "press Enter to let it move again, Ctrl-C to leave",
             Some(ConsentFrom::Stdin) => "enter a line to let it move again",
         };
-        say(&format!("{why}; {how}"));
-        self.teller.question = Some(why.to_owned());
-        let given = self.telling_meanwhile(consent::given()).await?;
-        self.teller.question = None;
+        notify(&format!("{why}; {how}"));
+        self.printer.question = Some(why.to_owned());
+        let given = self.reporting_meanwhile(consent::answer()).await?;
+        self.printer.question = None;
         given.map_err(|nobody| anyhow!("{why}, and {nobody}"))
     }
 
     /// Continues progress reports while waiting.
-    async fn telling_meanwhile<T>(&mut self, wait: impl Future<Output = T>) -> anyhow::Result<T> {
+    async fn reporting_meanwhile<T>(&mut self, wait: impl Future<Output = T>) -> anyhow::Result<T> {
         let mut wait = pin!(wait);
         loop {
-            self.look()?;
+            self.poll()?;
             if let Ok(done) = timeout(POLL_INTERVAL, &mut wait).await {
                 return Ok(done);
             }
@@ -269,7 +269,7 @@ impl FollowCommand<'_> {
     /// Waits for a sender to follow; forever if the hand must not move.
     async fn sender(&mut self) -> anyhow::Result<(Owner, String)> {
         loop {
-            self.look()?;
+            self.poll()?;
             let owner = self.source.owner(self.clock.now());
             if let Some(owner) = owner.filter(|_| self.args.arm) {
                 return Ok(owner);
@@ -279,14 +279,14 @@ impl FollowCommand<'_> {
     }
 
     /// Applies readings while nothing is followed, and reports the progress.
-    fn look(&mut self) -> anyhow::Result<()> {
+    fn poll(&mut self) -> anyhow::Result<()> {
         while let Some(record) = self.records.try_next() {
             if let Record::Reading { sample, .. } = record {
                 self.seen = *sample;
             }
         }
-        self.teller.heat = self.link.status().heat;
-        self.teller.tell(self.source, None, self.clock.now())
+        self.printer.heat = self.link.status().heat;
+        self.printer.print(self.source, None, self.clock.now())
     }
 }
 
@@ -327,11 +327,11 @@ struct ProgressPrinter<'a> {
     heat: Option<DriveHeat>,
     /// Number of irregular stops reported.
     odd_stops: u64,
-    told: Option<((Option<FollowPhase>, bool), Moment)>,
+    printed: Option<((Option<FollowPhase>, bool), Moment)>,
 }
 
 impl ProgressPrinter<'_> {
-    fn tell(
+    fn print(
         &mut self,
         source: &FollowSource,
         follow: Option<FollowView>,
@@ -341,19 +341,20 @@ impl ProgressPrinter<'_> {
             self.heat = view.heat;
         }
         let phase = follow.map(|view| view.phase);
-        let stands = (phase, self.question.is_some());
-        let is_due = |(told, at): (_, Moment)| told != stands || now.since(at) >= REPORT_INTERVAL;
-        if !self.told.is_none_or(is_due) {
+        let state = (phase, self.question.is_some());
+        let is_due =
+            |(printed, at): (_, Moment)| printed != state || now.since(at) >= REPORT_INTERVAL;
+        if !self.printed.is_none_or(is_due) {
             return Ok(());
         }
-        self.told = Some((stands, now));
+        self.printed = Some((state, now));
         if let Some((count, words)) = source.odd_stops()
             && count != std::mem::replace(&mut self.odd_stops, count)
         {
-            say(&words);
+            notify(&words);
         }
         let phase = phase.map_or("waiting", phase_word);
-        let (words, mut object) = source.told(now);
+        let (words, mut object) = source.progress(now);
         match object.as_object_mut().filter(|_| self.json) {
             Some(fields) => {
                 fields.insert("t_s".into(), now.since(Moment::ZERO).as_secs_f64().into());

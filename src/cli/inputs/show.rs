@@ -1,7 +1,7 @@
 //! `inputs`: lists the gamepads of this computer, and shows the effect of their controls without a hand. Moves nothing.
 
 use crate::cli::inputs::source::{is_folder, pad_input};
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, notify};
 use crate::hand::{Angle, Dof, Moment, PerDof};
 use crate::inputs::Offer;
 use crate::inputs::pad::device::{FOLDER, PadReader, find};
@@ -56,7 +56,7 @@ fn list(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
     }
     if found.is_empty() {
         let folder = args.devices.display();
-        say(&format!(
+        notify(&format!(
             "there is no gamepad in {folder}: plug one in, or pair it; 'handscope inputs --watch' waits for one"
         ));
     }
@@ -71,7 +71,7 @@ async fn watch(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
     let mut reader = PadReader::start(args.devices.clone(), Arc::new(move || clock.now()))?;
     let mut printer = PadPrinter::new(input, args.json);
     let hint = dead_man_name(printer.input.map());
-    say(&format!(
+    notify(&format!(
         "waiting for a gamepad; hold {hint} to see where the joints would go; Ctrl-C ends"
     ));
     loop {
@@ -86,7 +86,7 @@ async fn watch(out: &mut Out, args: &InputsArgs) -> anyhow::Result<()> {
         if let PadNews::Trouble(trouble) = &report.news {
             match trouble {
                 PadTrouble::LinuxOnly => return Err(trouble.clone().into()),
-                trouble => say(&trouble.to_string()),
+                trouble => notify(&trouble.to_string()),
             }
         }
         if let Some(line) = printer.line(&report) {
@@ -134,7 +134,7 @@ impl PadPrinter {
 
     /// Line to print for this report; `None` if nothing printable has changed.
     fn line(&mut self, report: &PadReport) -> Option<String> {
-        let event = self.input.take(report);
+        let event = self.input.receive(report);
         let offer = self.input.offer(report.at);
         if let Some(offer) = &offer {
             for (dof, joint) in self.actual.iter_mut() {
@@ -149,8 +149,8 @@ impl PadPrinter {
             } else {
                 pad_text(facts)
             }),
-            (Some(PadEvent::Gone), _) => Some(self.told("gone", "the gamepad is gone")),
-            (Some(PadEvent::Lost), _) => Some(self.told(
+            (Some(PadEvent::Gone), _) => Some(self.event_line("gone", "the gamepad is gone")),
+            (Some(PadEvent::Lost), _) => Some(self.event_line(
                 "lost",
                 "events were lost: let everything go and press it anew",
             )),
@@ -158,7 +158,7 @@ impl PadPrinter {
         }
     }
 
-    fn told(&self, key: &str, words: &str) -> String {
+    fn event_line(&self, key: &str, words: &str) -> String {
         if self.as_json {
             json!({ key: words }).to_string()
         } else {
@@ -196,10 +196,10 @@ impl PadPrinter {
     fn move_text(&self, control: Option<PadControl>, now: &Printed, is_stop: bool) -> String {
         let name = control.map_or("", PadControl::name);
         let amount = control.map_or(String::new(), |control| match value(&now.state, control) {
-            Shown::Button(true) => "down".into(),
-            Shown::Button(false) => "up".into(),
-            Shown::Amount(amount) => hundredths(amount),
-            Shown::Place([right, up]) => format!("{} {}", hundredths(right), hundredths(up)),
+            ControlValue::Button(true) => "down".into(),
+            ControlValue::Button(false) => "up".into(),
+            ControlValue::Amount(amount) => hundredths(amount),
+            ControlValue::Place([right, up]) => format!("{} {}", hundredths(right), hundredths(up)),
         });
         let asked = match (is_stop, now.is_held) {
             (true, _) => "STOP".into(),
@@ -218,22 +218,22 @@ impl PadPrinter {
 
 /// Value of a control as printed: in hundredths, to suppress a trembling stick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Shown {
+enum ControlValue {
     Button(bool),
     Amount(i16),
     /// To the right and up.
     Place([i16; 2]),
 }
 
-fn value(state: &PadState, control: PadControl) -> Shown {
+fn value(state: &PadState, control: PadControl) -> ControlValue {
     // Full deflection must remain exactly full.
     let rounded = |thousandths: i16| thousandths / (FULL / 100);
     match control.kind() {
-        ControlKind::Button => Shown::Button(state.is_held(control)),
-        ControlKind::Trigger => Shown::Amount(rounded(state.trigger(control))),
+        ControlKind::Button => ControlValue::Button(state.is_held(control)),
+        ControlKind::Trigger => ControlValue::Amount(rounded(state.trigger(control))),
         ControlKind::Stick => {
             let place = state.stick(control);
-            Shown::Place([rounded(place.right), rounded(place.up)])
+            ControlValue::Place([rounded(place.right), rounded(place.up)])
         }
     }
 }
@@ -264,9 +264,9 @@ fn pad_json(facts: &PadFacts) -> Value {
 fn move_json(at: Moment, control: Option<PadControl>, now: &Printed, is_stop: bool) -> Value {
     let aims = Dof::ALL.map(|dof| (dof.name().to_owned(), json!(now.aims[dof])));
     let shown = control.map(|control| match value(&now.state, control) {
-        Shown::Button(is_down) => json!(is_down),
-        Shown::Amount(amount) => json!(share(amount)),
-        Shown::Place(place) => json!(place.map(share)),
+        ControlValue::Button(is_down) => json!(is_down),
+        ControlValue::Amount(amount) => json!(share(amount)),
+        ControlValue::Place(place) => json!(place.map(share)),
     });
     json!({ "move": {
         "at_s": at.secs(),

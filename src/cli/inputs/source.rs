@@ -241,26 +241,26 @@ impl FollowSource {
 
     /// Number of irregular stops, which were obeyed despite another error in the message, and the newest one as text.
     pub(super) fn odd_stops(&self) -> Option<(u64, String)> {
-        let told = |sender: &dyn Display, why: &dyn Display| {
+        let text = |sender: &dyn Display, why: &dyn Display| {
             format!("{sender} sent a stop, which was obeyed; odd in it: {why}")
         };
         match self {
             Self::Stream(_, source) => {
                 let intake = source.view().intake;
                 let (sender, why) = intake.last_odd?;
-                Some((intake.odd_stops, told(&sender, &why)))
+                Some((intake.odd_stops, text(&sender, &why)))
             }
             Self::Dds(source, ..) => {
                 let view = source.view();
                 let (sender, why) = view.last_odd?;
-                Some((view.odd_stops, told(&sender, &why)))
+                Some((view.odd_stops, text(&sender, &why)))
             }
             Self::Pad(_) | Self::Mirror(..) => None,
         }
     }
 
     /// Progress as text and as an object.
-    pub(super) fn told(&self, now: Moment) -> (String, Value) {
+    pub(super) fn progress(&self, now: Moment) -> (String, Value) {
         match self {
             Self::Stream(_, source) => {
                 let StreamView {
@@ -293,7 +293,7 @@ impl FollowSource {
                 });
                 (words, object)
             }
-            Self::Dds(source, out, _) => told_of_dds(&source.view(), out),
+            Self::Dds(source, out, _) => dds_progress(&source.view(), out),
             Self::Pad(source) => {
                 let view = source.view();
                 let held = if view.is_held { "held" } else { "not held" };
@@ -325,21 +325,21 @@ impl FollowSource {
     }
 }
 
-fn told_of_dds(view: &DdsView, out: &SharedOnDds) -> (String, Value) {
+fn dds_progress(view: &DdsView, out: &SharedOnDds) -> (String, Value) {
     let refused: BTreeMap<&str, u64> = view
         .refused
         .iter()
         .map(|(fault, count)| (fault.name(), *count))
         .collect();
     let newest = view.refused.keys().next_back();
-    let told = out.told();
+    let sent = out.told();
     let words = format!(
         "{:6.1} messages/s  {} taken  {} refused{}  {} states out",
         view.rate_hz,
         view.taken,
         refused.values().sum::<u64>(),
         newest.map_or_else(String::new, |fault| format!(" ({fault})")),
-        told.states,
+        sent.states,
     );
     let object = json!({
         "sender": view.sender.map(|(sender, _)| sender.to_string()),
@@ -348,9 +348,9 @@ fn told_of_dds(view: &DdsView, out: &SharedOnDds) -> (String, Value) {
         "refused": refused,
         "odd_stops": view.odd_stops,
         "not_granted": view.not_granted,
-        "states": told.states,
-        "incomplete": told.incomplete,
-        "lost": told.lost,
+        "states": sent.states,
+        "incomplete": sent.incomplete,
+        "lost": sent.lost,
     });
     (words, object)
 }

@@ -20,10 +20,10 @@ impl EndWished {
         let mut interrupt = Interrupt::listen()?;
         drop(within);
         let wished = Self(Arc::default());
-        let told = wished.clone();
+        let flag = wished.clone();
         let listens = move || {
             runtime.block_on(interrupt.wished());
-            told.0.store(true, Ordering::Relaxed);
+            flag.0.store(true, Ordering::Relaxed);
         };
         let thread = std::thread::Builder::new().name("signals".into());
         thread.spawn(listens).context("cannot listen for Ctrl-C")?;

@@ -21,7 +21,7 @@ fn messages() -> Option<&'static LineWriter> {
     MESSAGES.get_or_init(started).as_ref()
 }
 
-pub(crate) fn say(words: &str) {
+pub(crate) fn notify(words: &str) {
     static LOST: AtomicU64 = AtomicU64::new(0);
     let mut line = match LOST.load(Ordering::Relaxed) {
         0 => String::new(),

@@ -7,7 +7,7 @@ mod messages;
 pub(crate) mod progress;
 mod writer;
 
-pub(crate) use crate::cli::out::messages::{finish_messages, say};
+pub(crate) use crate::cli::out::messages::{finish_messages, notify};
 
 use crate::cli::out::messages::{READ_AT_ONCE, drained};
 use crate::cli::out::writer::{LineClass, LineWriter, WriteEnd};
@@ -156,7 +156,7 @@ impl Out {
     pub(crate) fn finish(self) -> anyhow::Result<()> {
         let left = drained(&self.to, self.waits).map_err(failed)?;
         if self.lost_total > 0 {
-            say(&format!(
+            notify(&format!(
                 "{} lines of output were not read in time and are left out",
                 self.lost_total
             ));

@@ -15,7 +15,7 @@ const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 #[derive(Debug)]
 pub(crate) struct Progress {
     began: Instant,
-    told: Cell<Option<Instant>>,
+    reported: Cell<Option<Instant>>,
     is_read: bool,
 }
 
@@ -23,20 +23,23 @@ impl Progress {
     pub(crate) fn new() -> Self {
         Self {
             began: Instant::now(),
-            told: Cell::new(None),
+            reported: Cell::new(None),
             is_read: io::stderr().is_terminal(),
         }
     }
 
     /// Reports the completed share, 0 to 1.
-    pub(crate) fn tell(&self, share: f64) {
+    pub(crate) fn report(&self, share: f64) {
         let now = Instant::now();
-        let is_due = self.told.get().is_none_or(|at| now - at >= REPORT_INTERVAL);
+        let is_due = self
+            .reported
+            .get()
+            .is_none_or(|at| now - at >= REPORT_INTERVAL);
         if !self.is_read || !is_due {
             return;
         }
         if let Some(words) = words(share, now - self.began) {
-            self.told.set(Some(now));
+            self.reported.set(Some(now));
             show(&format!("\r\x1b[K{words}"));
         }
     }
@@ -44,7 +47,7 @@ impl Progress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if self.told.get().is_some() {
+        if self.reported.get().is_some() {
             show("\r\x1b[K");
         }
     }
@@ -81,8 +84,8 @@ mod tests {
             (0.1, 30.0, Some("10 %, 4 min 30 s left")),
             (1.0, 60.0, Some("100 %, 0 s left")),
         ] {
-            let told = words(share, Duration::from_secs_f64(since_s));
-            assert_eq!(told.as_deref(), wanted, "{share} after {since_s} s");
+            let text = words(share, Duration::from_secs_f64(since_s));
+            assert_eq!(text.as_deref(), wanted, "{share} after {since_s} s");
         }
     }
 }

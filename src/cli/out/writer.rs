@@ -37,10 +37,10 @@ pub(crate) enum WriteEnd {
 }
 
 /// A writing thread, and its queue.
-pub(crate) struct LineWriter(Arc<Shared>);
+pub(crate) struct LineWriter(Arc<SharedQueue>);
 
 #[derive(Default)]
-struct Shared {
+struct SharedQueue {
     queue: Mutex<Queue>,
     changed: Condvar,
 }
@@ -142,7 +142,7 @@ impl Drop for LineWriter {
     }
 }
 
-impl Shared {
+impl SharedQueue {
     fn lock(&self) -> MutexGuard<'_, Queue> {
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,6 +1,6 @@
 //! `params apply`: writes rows of a file to the hand and reads each back, with a backup before and a rollback after a failure.
 
-use crate::cli::out::{Out, WrongUsage, end, say};
+use crate::cli::out::{Out, WrongUsage, end, notify};
 use crate::cli::params::args::ApplyArgs;
 use crate::cli::params::patience::Patience;
 use crate::cli::params::words::{self, or_dash, outcome_json, outcome_line};
@@ -20,7 +20,7 @@ pub(crate) const UNKNOWN: &str = "it is not known what the hand holds: see with 
 pub(crate) async fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
     let (file, note) =
         words::load(&args.file).map_err(|error| anyhow!("{error}; nothing was written"))?;
-    note.iter().for_each(|note| say(note));
+    note.iter().for_each(|note| notify(note));
     let wanted = args.chosen(&file.params);
     if wanted.is_empty() {
         let what = if args.only.is_empty() {
@@ -31,7 +31,7 @@ pub(crate) async fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
         let path = args.file.display();
         bail!("{path} holds {what}; nothing was written");
     }
-    let place = place::wanted_row(&args.common.hand, &wanted)?;
+    let place = place::place_row(&args.common.hand, &wanted)?;
     let is_done = match place {
         Some((id, value)) => place::change(out, args, id, value).await,
         None => rows(out, args, &file.params, wanted).await,
@@ -65,22 +65,22 @@ async fn rows(
     let link = patience
         .see_through(reach::open(&args.common.hand), "")
         .await??;
-    let told = |step| match step {
+    let watch = |step| match step {
         ParamStep::Meant(risks) => words::warn(&risks),
         ParamStep::Writing => written.set(true),
         _ => {}
     };
-    let apply = apply(&link, &task, told);
+    let apply = apply(&link, &task, watch);
     let applied = patience.see_through(apply, UNKNOWN).await??;
     for row in applied.before.differences(whole) {
         if row.id.is_place() && task.wanted.get(row.id).is_none() {
             let (name, theirs, ours) = (row.id.name(), row.theirs, or_dash(row.ours));
-            say(&format!(
+            notify(&format!(
                 "left alone: {name} ({theirs} in the file, {ours} in the hand); --only {name} would change it",
             ));
         }
     }
-    tell(out, args, &applied)
+    report_applied(out, args, &applied)
 }
 
 /// Converts an error of the task into one of the command.
@@ -104,7 +104,11 @@ fn nothing_to_write(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
     )
 }
 
-fn tell(out: &mut Out, args: &ApplyArgs, applied: &Applied) -> anyhow::Result<Option<bool>> {
+fn report_applied(
+    out: &mut Out,
+    args: &ApplyArgs,
+    applied: &Applied,
+) -> anyhow::Result<Option<bool>> {
     let Some(backup) = &applied.backup else {
         return Ok(None);
     };
@@ -126,16 +130,16 @@ fn tell(out: &mut Out, args: &ApplyArgs, applied: &Applied) -> anyhow::Result<Op
     words::show(out, args.common.json, &object, &lines)?;
     if is_whole {
         if rows.iter().any(|row| row.id == ParamId::IpAddress) {
-            say(
+            notify(
                 "ip_address takes effect after a save and a power cycle; until then the hand answers at its old address",
             );
         }
         return Ok(Some(true));
     }
     if let Some(why) = &applied.broken_off {
-        say(&format!("not everything was written: {why}"));
+        notify(&format!("not everything was written: {why}"));
     }
-    say(match applied.undone {
+    notify(match applied.undone {
         None => "not all rows were applied; those that were stay",
         Some(true) => "not all rows were applied; the hand holds what it held before",
         Some(false) => {

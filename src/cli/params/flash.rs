@@ -1,6 +1,6 @@
 //! `params save` and `params reset`: write the hand's flash or reset it to factory parameters, each with a backup first.
 
-use crate::cli::out::{Out, end, say};
+use crate::cli::out::{Out, end, notify};
 use crate::cli::params::args::FlashArgs;
 use crate::cli::params::patience::Patience;
 use crate::cli::params::reach::{self, LinkOpener};
@@ -35,12 +35,12 @@ pub(crate) async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> 
         consent: Consent::Given,
         overshoot: reach::overshoot(&common.hand),
     };
-    let told = |step| match step {
+    let watch = |step| match step {
         ParamStep::Meant(risks) => words::warn(&risks),
         ParamStep::Saving => written.set(true),
         _ => {}
     };
-    let save = save::save(&link, &task, told);
+    let save = save::save(&link, &task, watch);
     let report = patience.see_through(save, UNKNOWN_SAVE).await??;
     let sentence = words::saved(&report.saved);
     if let Some(why) = report.not_noted {
@@ -58,7 +58,7 @@ pub(crate) async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> 
         let lines = [sentence, words::backup(&report.backup)];
         words::show(out, common.json, &object, &lines)?;
     } else {
-        say(&sentence);
+        notify(&sentence);
     }
     end(is_saved)
 }
@@ -76,13 +76,13 @@ pub(crate) async fn reset(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()>
     // Reports the reason if the hand does not answer.
     drop(patience.see_through(reach::open(hand), "").await??);
     let places = reset::places(hand);
-    let told = |step| {
+    let watch = |step| {
         if step == ResetStep::Sending {
             written.set(true);
         }
     };
     let mut links = LinkOpener::default();
-    let reset = reset::reset(&mut links, &places, &files, told);
+    let reset = reset::reset(&mut links, &places, &files, watch);
     let report = patience.see_through(reset, UNKNOWN_RESET).await??;
     match &report.end {
         ResetEnd::NotSent(Some(why)) => bail!("not reset, nothing was written: {why}"),
@@ -95,16 +95,16 @@ pub(crate) async fn reset(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()>
         ResetEnd::Found { .. } => {}
     }
     if let Some(why) = &report.not_noted {
-        say(&format!(
+        notify(&format!(
             "the files of the hand could not be kept up: {why}"
         ));
     }
-    let is_reset = tell_reset(out, args, &places, &report)?;
+    let is_reset = report_reset(out, args, &places, &report)?;
     end(is_reset && report.not_noted.is_none())
 }
 
 /// Reports the parameters of a hand that answers after the reset. Returns true if they show that it was reset.
-fn tell_reset(
+fn report_reset(
     out: &mut Out,
     args: &FlashArgs,
     places: &PlacePair,
@@ -155,7 +155,7 @@ fn tell_reset(
         words::show(out, args.common.json, &object, &lines)?;
     }
     if !is_reset {
-        lines.iter().for_each(|line| say(line));
+        lines.iter().for_each(|line| notify(line));
     }
     Ok(is_reset)
 }

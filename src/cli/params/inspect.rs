@@ -1,7 +1,7 @@
 //! The parameter commands that only read: `params dump`, `params diff` and `params backups`.
 
 use crate::cli::out::file::{nothing_at, write_file};
-use crate::cli::out::{Out, end, say};
+use crate::cli::out::{Out, end, notify};
 use crate::cli::params::args::{Common, DiffArgs, DumpArgs};
 use crate::cli::params::reach;
 use crate::cli::params::words::{load, table};
@@ -35,7 +35,7 @@ pub(crate) async fn dump(out: &mut Out, args: &DumpArgs) -> anyhow::Result<()> {
         &json!({ "hand": file.hand, "at": file.at, "params": params }),
         table(["holds", "factory"], rows),
     )?;
-    say_troubles(&troubles, true)
+    report_troubles(&troubles, true)
 }
 
 /// Values that the hand is compared with.
@@ -75,9 +75,9 @@ pub(crate) async fn diff(out: &mut Out, args: &DiffArgs) -> anyhow::Result<()> {
             out.lines(table(["holds", other.what], rows))?;
         }
         out.lines(differences.is_empty().then_some("no difference"))?;
-        other.notes.iter().for_each(|note| say(note));
+        other.notes.iter().for_each(|note| notify(note));
     }
-    say_troubles(&troubles, differences.is_empty())
+    report_troubles(&troubles, differences.is_empty())
 }
 
 fn other(args: &DiffArgs, files: &Backups) -> anyhow::Result<Other> {
@@ -138,7 +138,7 @@ pub(crate) fn backups(out: &mut Out, args: &Common) -> anyhow::Result<()> {
         let path = backup.path.display();
         match &backup.file {
             Ok(file) => out.line(&format!("{}  {:<14} {path}", file.at, file.why))?,
-            Err(error) => say(&format!("{path}: {error}")),
+            Err(error) => notify(&format!("{path}: {error}")),
         }
     }
     out.line(&known.saved.map_or_else(
@@ -180,9 +180,9 @@ async fn read_rows(hand: &Endpoint) -> anyhow::Result<(Params, Vec<RequestError>
 }
 
 /// Reports read errors. Fails if there are any, or if `is_well` is false.
-fn say_troubles(troubles: &[RequestError], is_well: bool) -> anyhow::Result<()> {
+fn report_troubles(troubles: &[RequestError], is_well: bool) -> anyhow::Result<()> {
     for trouble in troubles {
-        say(&format!("cannot read everything: {trouble}"));
+        notify(&format!("cannot read everything: {trouble}"));
     }
     end(is_well && troubles.is_empty())
 }

@@ -1,7 +1,7 @@
 //! Ctrl-C during writes to a hand: no write is left half done without a report. Before the first write, Ctrl-C ends the command;
 //! after it, the command completes or rolls back, and reports the values in the hand; a second Ctrl-C ends it at once.
 
-use crate::cli::out::say;
+use crate::cli::out::notify;
 use crate::shell::interrupt::Interrupt;
 use anyhow::bail;
 use std::cell::Cell;
@@ -47,7 +47,7 @@ impl Patience {
             if std::mem::replace(&mut is_asked, true) {
                 bail!("ended at once: {unknown}");
             }
-            say(
+            notify(
                 "this is finished first, and then told what the hand holds; Ctrl-C again ends at once",
             );
         }

@@ -1,9 +1,9 @@
 //! `params apply` for an address row: the wire is closed and reopened for each address.
 
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, notify};
 use crate::cli::params::args::ApplyArgs;
 use crate::cli::params::patience::Patience;
-use crate::cli::params::reach::{self, LinkOpener, said_yes};
+use crate::cli::params::reach::{self, LinkOpener, consent_given};
 use crate::cli::params::words;
 use crate::params::place::{self, Moved, new_place};
 use crate::params::rows::{ParamId, Value};
@@ -51,12 +51,12 @@ pub(crate) async fn change(
         is_followed: true,
     };
     let mut reach = LinkOpener::default();
-    let told = |step| {
+    let watch = |step| {
         if matches!(step, PlaceStep::Writing(_)) {
             written.set(true);
         }
     };
-    let changed = change_place(&mut reach, &change, &files, said_yes(), told);
+    let changed = change_place(&mut reach, &change, &files, consent_given(), watch);
     let report = patience.see_through(changed, UNKNOWN).await??;
     if let Some(why) = &report.not_noted {
         bail!(
@@ -64,10 +64,10 @@ pub(crate) async fn change(
             files.folder().display()
         );
     }
-    tell(out, args, &change, &report)
+    report_change(out, args, &change, &report)
 }
 
-fn tell(
+fn report_change(
     out: &mut Out,
     args: &ApplyArgs,
     change: &PlaceChange,
@@ -104,7 +104,7 @@ fn tell(
         words::show(out, args.common.json, &object, &lines)?;
     }
     if !is_done {
-        say(&sentence);
+        notify(&sentence);
     }
     Ok(Some(is_done))
 }
@@ -136,7 +136,7 @@ fn outcome(moved: &Moved, change: &PlaceChange, backup: &Path) -> String {
 }
 
 /// The address row of a file that affects this wire, if any.
-pub(crate) fn wanted_row(
+pub(crate) fn place_row(
     hand: &Endpoint,
     chosen: &Params,
 ) -> anyhow::Result<Option<(ParamId, Value)>> {

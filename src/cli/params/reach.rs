@@ -45,7 +45,7 @@ impl Reach for LinkOpener {
 }
 
 /// Decisions under --yes: the change is kept, and not saved, because SAVE is a separate command.
-pub(crate) fn said_yes() -> Decisions {
+pub(crate) fn consent_given() -> Decisions {
     Decisions {
         keeps: Box::pin(ready(true)),
         saves: Box::pin(ready(false)),

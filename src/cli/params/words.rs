@@ -1,6 +1,6 @@
 //! Rows, dangers and results as sentences, tables and JSON, shared by the parameter commands. Pure.
 
-use crate::cli::out::{Out, ReaderGone, say};
+use crate::cli::out::{Out, ReaderGone, notify};
 use crate::hand::overshoot::MeasuredOn;
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::danger::Danger;
@@ -53,7 +53,7 @@ pub(crate) fn show(
     let shown = out.result(as_json, object, lines);
     let shown = shown.and_then(|()| out.shown());
     if shown.is_err() {
-        lines.iter().for_each(|line| say(line));
+        lines.iter().for_each(|line| notify(line));
     }
     match shown {
         Err(error) if !error.is::<ReaderGone>() => Err(error),
@@ -101,7 +101,7 @@ pub(crate) fn risks(risks: &Risks) -> Vec<String> {
 /// Prints the risks as warnings.
 pub(crate) fn warn(meant: &Risks) {
     for reason in risks(meant) {
-        say(&format!("warning: {reason}"));
+        notify(&format!("warning: {reason}"));
     }
 }
 

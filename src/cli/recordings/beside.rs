@@ -1,8 +1,8 @@
 //! A recording made alongside another command, in the same format as `record`. Its errors are reported and do not delay the command.
 
 use crate::cli::out::file::nothing_at;
-use crate::cli::out::say;
-use crate::cli::recordings::record::{FileTold, tell_parameters};
+use crate::cli::out::notify;
+use crate::cli::recordings::record::{FileReporter, record_parameters};
 use crate::hand::kinematics::Side;
 use crate::link::entries;
 use crate::link::{Clock, LinkHandle};
@@ -22,9 +22,9 @@ const POLL_INTERVAL: Duration = Duration::from_millis(200);
 const LINK_END_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A recording in the background, if requested.
-pub(crate) struct SideRecording(Option<Running>);
+pub(crate) struct SideRecording(Option<RunningRecording>);
 
-struct Running {
+struct RunningRecording {
     recorder: Arc<Recorder>,
     pump: JoinHandle<()>,
     /// Records the hand's persistent parameters, then reports the recorder status.
@@ -52,12 +52,12 @@ impl SideRecording {
             part_length: PART_LENGTH,
         })
         .context("cannot start the recorder")?;
-        say(&format!("recording {hand} to {}", path.display()));
+        notify(&format!("recording {hand} to {}", path.display()));
         let recorder = Arc::new(recorder);
         let observed = link.observe();
         let pump = tokio::spawn(entries::record(observed, recorder.input(), clock));
         let beside = watch(Arc::clone(&recorder), link.clone(), hand.clone(), clock);
-        Ok(Self(Some(Running {
+        Ok(Self(Some(RunningRecording {
             recorder,
             pump,
             beside: tokio::spawn(beside),
@@ -104,7 +104,7 @@ impl SideRecording {
     ) -> anyhow::Result<()> {
         match (done, recorded) {
             (Err(why), Err(recording)) => {
-                say(&format!("{recording:#}"));
+                notify(&format!("{recording:#}"));
                 Err(why)
             }
             (done, recorded) => done.and(recorded),
@@ -114,12 +114,12 @@ impl SideRecording {
 
 /// Records the hand's persistent parameters once, then reports changes of the file's status.
 async fn watch(recorder: Arc<Recorder>, link: LinkHandle, hand: Endpoint, clock: Clock) {
-    tell_parameters(&link, &hand, &recorder.input(), clock).await;
+    record_parameters(&link, &hand, &recorder.input(), clock).await;
     drop(link);
-    let mut told = FileTold::default();
+    let mut reporter = FileReporter::default();
     let mut tick = interval(POLL_INTERVAL);
     loop {
         tick.tick().await;
-        told.tell(&recorder);
+        reporter.report(&recorder);
     }
 }

@@ -2,10 +2,10 @@
 
 use crate::cli::out::ending::EndWished;
 use crate::cli::out::progress::Progress;
-use crate::cli::out::{Out, ReaderGone, WrongUsage, say};
+use crate::cli::out::{Out, ReaderGone, WrongUsage, notify};
 use crate::cli::recordings::picture;
 use crate::cli::recordings::recording_file::{
-    self, FileArgs, StretchArgs, is_standard, lost, say_remarks,
+    self, FileArgs, StretchArgs, is_standard, lost, report_remarks,
 };
 use crate::record::export::lerobot::{EpisodeStart, LeRobotPlan, LeRobotSet};
 use crate::record::export::output::Folder;
@@ -153,7 +153,7 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
             files.push(recording_file::open_or_stdin(path)?);
         }
     }
-    files.iter().for_each(say_remarks);
+    files.iter().for_each(report_remarks);
     let named = |file: &RecordingFile| match args.stretch.of(file) {
         Err(why) if files.len() > 1 => Err(why.context(file.path().display().to_string())),
         stretch => stretch,
@@ -172,7 +172,7 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
     } else {
         EndWished::listen()?
     };
-    let work = Work {
+    let work = ExportJob {
         files: &files,
         stretches: &stretches,
         form,
@@ -186,7 +186,7 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
         _ => work.to_folder(&args.out),
     };
     drop(work.progress);
-    let done = done.map_err(told)?;
+    let done = done.map_err(explained)?;
     done.report(out, args, &files)
 }
 
@@ -243,7 +243,7 @@ impl ExportArgs {
 }
 
 /// A complete export job.
-struct Work<'a> {
+struct ExportJob<'a> {
     files: &'a [RecordingFile],
     stretches: &'a [Stretch],
     form: Form,
@@ -251,12 +251,12 @@ struct Work<'a> {
     progress: Progress,
 }
 
-struct Done {
+struct ExportedFiles {
     recordings: Vec<Exported>,
     set: Option<LeRobotSet>,
 }
 
-impl Work<'_> {
+impl ExportJob<'_> {
     /// Passes a recording to `give`, with progress over all recordings.
     fn watched<T>(
         &self,
@@ -266,7 +266,7 @@ impl Work<'_> {
         let (file, stretch) = (self.files.get(number)?, self.stretches.get(number)?);
         let watch = |share: f64| {
             self.progress
-                .tell(share_of_all(number, share, self.files.len()));
+                .report(share_of_all(number, share, self.files.len()));
             self.wished.flow()
         };
         Some(give(Source {
@@ -276,7 +276,7 @@ impl Work<'_> {
         }))
     }
 
-    fn one_by_one(&self, places: &[Destination]) -> Result<Done, ExportError> {
+    fn one_by_one(&self, places: &[Destination]) -> Result<ExportedFiles, ExportError> {
         let mut recordings = Vec::new();
         for (number, to) in places.iter().enumerate() {
             let export = |source: Source<'_>| match (self.form, to) {
@@ -291,14 +291,14 @@ impl Work<'_> {
                 exported => exported.transpose()?,
             });
         }
-        Ok(Done {
+        Ok(ExportedFiles {
             recordings,
             set: None,
         })
     }
 
     /// Writes each recording into a file of its own, named after it.
-    fn to_folder(&self, out: &Path) -> Result<Done, ExportError> {
+    fn to_folder(&self, out: &Path) -> Result<ExportedFiles, ExportError> {
         let folder = Folder::new(out)?;
         let mut places: Vec<Destination> = Vec::new();
         for name in self.files.iter().map(RecordingFile::path) {
@@ -326,11 +326,11 @@ impl Work<'_> {
         Ok(done)
     }
 
-    fn lerobot(&self, out: &Path, plan: &LeRobotPlan) -> Result<Done, ExportError> {
+    fn lerobot(&self, out: &Path, plan: &LeRobotPlan) -> Result<ExportedFiles, ExportError> {
         let shares = (0..self.files.len()).map(|number| {
             move |share: f64| {
                 self.progress
-                    .tell(share_of_all(number, share, self.files.len()));
+                    .report(share_of_all(number, share, self.files.len()));
                 self.wished.flow()
             }
         });
@@ -344,7 +344,7 @@ impl Work<'_> {
             })
             .collect();
         let set = lerobot::write(&sources, out, plan)?;
-        Ok(Done {
+        Ok(ExportedFiles {
             recordings: set.recordings.clone(),
             set: Some(set),
         })
@@ -357,7 +357,7 @@ fn share_of_all(number: usize, share: f64, all: usize) -> f64 {
     (count(number) + share) / count(all.max(1))
 }
 
-impl Done {
+impl ExportedFiles {
     fn report(
         &self,
         out: &mut Out,
@@ -368,10 +368,10 @@ impl Done {
         let mut all = Exported::default();
         for (file, recording) in files.iter().zip(&self.recordings) {
             if let Some(words) = lost(&recording.damage) {
-                say(&format!("{} is damaged: {words}", file.path().display()));
+                notify(&format!("{} is damaged: {words}", file.path().display()));
             }
             if recording.rows == 0 && files.len() > 1 {
-                say(&format!(
+                notify(&format!(
                     "there is nothing to export of {}",
                     file.path().display()
                 ));
@@ -391,7 +391,7 @@ impl Done {
             warn_read_back(set);
         }
         if is_standard(&args.out) {
-            say(&format!("{} {}", all.rows, form.rows()));
+            notify(&format!("{} {}", all.rows, form.rows()));
         } else {
             out.result(args.json, &object, [line])?;
         }
@@ -406,7 +406,7 @@ impl Done {
 
 fn warn_read_back(set: &LeRobotSet) {
     if set.read_back > 0 {
-        say(&format!(
+        notify(&format!(
             "in {} of {} frames something else than the recorded commands set a target, another controller or the hand itself for a gesture: 'action' is there what the hand held when it was read, up to half a second late",
             set.read_back,
             set.frames()
@@ -422,7 +422,7 @@ fn picture(
 ) -> anyhow::Result<()> {
     let drawn = picture::draw(file, stretch, &args.out);
     drawn.map_err(|error| match error.downcast() {
-        Ok(error) => told(error),
+        Ok(error) => explained(error),
         Err(error) => error,
     })?;
     let exported = Exported {
@@ -437,12 +437,12 @@ fn picture(
 pub(crate) fn recover(out: &mut Out, args: &RecoverArgs) -> anyhow::Result<()> {
     let path = &args.file.file;
     let file = recording_file::open(path)?;
-    say_remarks(&file);
+    report_remarks(&file);
     let to = args.out.clone().unwrap_or_else(|| beside(path));
     let wished = EndWished::listen()?;
     let progress = Progress::new();
     let watch = |share: f64| {
-        progress.tell(share);
+        progress.report(share);
         wished.flow()
     };
     let source = Source {
@@ -452,7 +452,7 @@ pub(crate) fn recover(out: &mut Out, args: &RecoverArgs) -> anyhow::Result<()> {
     };
     let recovered = cut::recover(source, &Destination::Path(to.clone()));
     drop(progress);
-    let recovered = recovered.map_err(told)?;
+    let recovered = recovered.map_err(explained)?;
     let mut lines = vec![format!("{} entries in {}", recovered.rows, to.display())];
     lines.push(match (lost(&recovered.damage), file.is_closed()) {
         (Some(words), _) => format!("lost: {words}"),
@@ -485,7 +485,7 @@ fn as_json(path: &Path, exported: &Exported) -> serde_json::Value {
 }
 
 /// An export error with advice.
-pub(crate) fn told(error: ExportError) -> anyhow::Error {
+pub(crate) fn explained(error: ExportError) -> anyhow::Error {
     match error {
         ExportError::Exists { .. } => anyhow!("{error}; name another place with --out"),
         ExportError::Unwritable { .. } => {

@@ -2,8 +2,8 @@
 
 use crate::cli::out::ending::EndWished;
 use crate::cli::out::progress::Progress;
-use crate::cli::out::{Out, WrongUsage, say};
-use crate::cli::recordings::export::told;
+use crate::cli::out::{Out, WrongUsage, notify};
+use crate::cli::recordings::export::explained;
 use crate::cli::recordings::recording_file::{is_standard, stdin_as_file};
 use crate::record::export::Destination;
 use crate::record::import::csv::{self, ImportError, Imported};
@@ -76,7 +76,7 @@ fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
             .map_err(|error| anyhow!("cannot import {name}: {error}; check the path"))?
     };
     let imported = values(from, &to).map_err(|error| match error {
-        ImportError::Output(error) => told(error),
+        ImportError::Output(error) => explained(error),
         ImportError::Unreadable { .. } => anyhow!("cannot import {name}: {error}; check the path"),
         ImportError::Line { .. } => anyhow!("cannot import {name}: {error}; nothing was written"),
     })?;
@@ -99,7 +99,7 @@ fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
         ));
     }
     if to == Destination::Stdout {
-        lines.iter().for_each(|line| say(line));
+        lines.iter().for_each(|line| notify(line));
         return Ok(());
     }
     let object = json!({
@@ -134,7 +134,7 @@ fn values(mut from: File, to: &Destination) -> Result<Imported, ImportError> {
     let (progress, read) = (Progress::new(), Cell::new(0));
     let from = CountedRead { from, read: &read };
     csv::import(BufReader::new(from), to, &|| {
-        progress.tell(share(read.get(), length));
+        progress.report(share(read.get(), length));
         wished.flow()
     })
 }

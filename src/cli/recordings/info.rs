@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use std::time::Duration;
 
 /// Maximum number of gaps printed individually.
-const GAPS_TOLD: usize = 20;
+const GAPS_PRINTED: usize = 20;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct InfoArgs {
@@ -27,21 +27,21 @@ pub(crate) fn run(out: &mut Out, args: &InfoArgs) -> anyhow::Result<()> {
     let file = recording_file::open(path)?;
     let contents = Contents::of(&file)
         .with_context(|| format!("cannot read {} to its end", path.display()))?;
-    let told = Told {
+    let summary = RecordingSummary {
         file: &file,
         contents,
         bytes: file.bytes(),
     };
-    out.result(args.json, &told.json(), told.lines())
+    out.result(args.json, &summary.json(), summary.lines())
 }
 
-struct Told<'a> {
+struct RecordingSummary<'a> {
     file: &'a RecordingFile,
     contents: Contents,
     bytes: u64,
 }
 
-impl Told<'_> {
+impl RecordingSummary<'_> {
     /// Start time; `None` if the day is unknown.
     fn start(&self) -> Option<String> {
         let opening = self.file.opening();
@@ -49,7 +49,7 @@ impl Told<'_> {
     }
 
     /// Time ranges that the recorder reported as missing.
-    fn said_missing(&self) -> impl Iterator<Item = (Duration, &str)> {
+    fn reported_gaps(&self) -> impl Iterator<Item = (Duration, &str)> {
         let marks = self.file.overview().marks.iter();
         marks
             .filter(|mark| mark.kind == EventKind::Recording)
@@ -58,8 +58,8 @@ impl Told<'_> {
 
     /// Another part of the same recording that this file refers to by this prefix.
     fn part(&self, named: &str) -> Option<&str> {
-        let mut said = self.said_missing();
-        said.find_map(|(_, words)| Some(words.strip_prefix(named)?.split_once(": ")?.0))
+        let mut reported = self.reported_gaps();
+        reported.find_map(|(_, words)| Some(words.strip_prefix(named)?.split_once(": ")?.0))
     }
 
     fn gaps(&self) -> u64 {
@@ -70,10 +70,10 @@ impl Told<'_> {
             ..
         } = self.contents.damage;
         // Gaps reported by the recorder are also among those of known length.
-        let said = self.said_missing().count();
-        let said = u64::try_from(said).unwrap_or(u64::MAX);
+        let reported = self.reported_gaps().count();
+        let reported = u64::try_from(reported).unwrap_or(u64::MAX);
         let known = u64::try_from(gaps.len()).unwrap_or(u64::MAX);
-        known.max(chunks + u64::from(bytes > 0) + said)
+        known.max(chunks + u64::from(bytes > 0) + reported)
     }
 
     /// A moment in seconds from the start.
@@ -191,15 +191,15 @@ impl Told<'_> {
         lines.extend(lost(&self.contents.damage).map(|words| format!("missing: {words}")));
         lines.extend(self.gap_lines());
         lines.extend(
-            self.said_missing()
+            self.reported_gaps()
                 .map(|(at, words)| format!("at {:.3} s: {words}", at.as_secs_f64())),
         );
         let unread = &self.contents.unread;
-        lines.extend(unread.iter().take(GAPS_TOLD).map(|gap| {
+        lines.extend(unread.iter().take(GAPS_PRINTED).map(|gap| {
             let when = self.stretch(gap);
             format!("no readings: {when}): the hand did not answer, or was not read")
         }));
-        lines.extend(more_than_told(unread, "stretches without readings"));
+        lines.extend(more_than_printed(unread, "stretches without readings"));
         let is_whole = !self.file.remarks().iter().any(Remark::is_loss)
             && self.contents.damage == Damage::default();
         if self.file.is_closed() && self.gaps() == 0 && is_whole {
@@ -225,7 +225,7 @@ impl Told<'_> {
         let gaps = &self.contents.damage.gaps;
         let mut lines: Vec<String> = gaps
             .iter()
-            .take(GAPS_TOLD)
+            .take(GAPS_PRINTED)
             .map(|gap| {
                 let when = self.stretch(gap);
                 let count = match gap.messages {
@@ -235,13 +235,13 @@ impl Told<'_> {
                 format!("gap: {when}{count})")
             })
             .collect();
-        lines.extend(more_than_told(gaps, "gaps"));
+        lines.extend(more_than_printed(gaps, "gaps"));
         lines
     }
 }
 
 /// Number of entries beyond those printed.
-fn more_than_told(gaps: &[Gap], what: &str) -> Option<String> {
-    let more = gaps.len().checked_sub(GAPS_TOLD)?;
+fn more_than_printed(gaps: &[Gap], what: &str) -> Option<String> {
+    let more = gaps.len().checked_sub(GAPS_PRINTED)?;
     (more > 0).then(|| format!("and {more} more {what}; --json lists them"))
 }

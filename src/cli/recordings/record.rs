@@ -3,7 +3,7 @@
 
 use crate::app::env::day_folder;
 use crate::cli::out::file::nothing_at;
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, notify};
 use crate::cli::parse::seconds;
 use crate::cli::recordings::recording_file::add_files;
 use crate::cli::session;
@@ -90,8 +90,8 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
     let done = {
         let mut recording = pin!(async {
             begun(&recorder, &path).await?;
-            say(&format!("recording {} to {}", args.hand, path.display()));
-            tell_parameters(&link, &args.hand, &input, clock).await;
+            notify(&format!("recording {} to {}", args.hand, path.display()));
+            record_parameters(&link, &args.hand, &input, clock).await;
             watch(&recorder, &link, &args.hand).await
         });
         tokio::select! {
@@ -155,7 +155,7 @@ fn cannot_write(path: &Path, trouble: &str) -> anyhow::Error {
 }
 
 /// Records the hand's persistent parameters, if they can be read.
-pub(crate) async fn tell_parameters(
+pub(crate) async fn record_parameters(
     link: &LinkHandle,
     hand: &Endpoint,
     input: &RecorderInput,
@@ -181,14 +181,14 @@ pub(crate) async fn tell_parameters(
 
 /// Reports failures of the disk or the hand, and their recovery, once each. Never ends by itself.
 async fn watch(recorder: &Recorder, link: &LinkHandle, hand: &Endpoint) -> anyhow::Result<()> {
-    let (mut told, mut lost) = (FileTold::default(), None);
+    let (mut reporter, mut lost) = (FileReporter::default(), None);
     loop {
         sleep(POLL_INTERVAL).await;
-        told.tell(recorder);
+        reporter.report(recorder);
         let status = link.status();
         let trouble = session::trouble(&status).map(ToString::to_string);
         if lost != trouble && (trouble.is_some() || status.state.is_live()) {
-            say(&match &trouble {
+            notify(&match &trouble {
                 Some(trouble) => format!("link to {hand} lost: {trouble}; trying again"),
                 None => "the hand answers again".to_owned(),
             });
@@ -199,24 +199,24 @@ async fn watch(recorder: &Recorder, link: &LinkHandle, hand: &Endpoint) -> anyho
 
 /// The reported status of the file being written.
 #[derive(Default)]
-pub(crate) struct FileTold {
+pub(crate) struct FileReporter {
     trouble: Option<String>,
     notices: usize,
 }
 
-impl FileTold {
+impl FileReporter {
     /// Reports changes: the file was moved or removed, writing fails, or works again.
-    pub(crate) fn tell(&mut self, recorder: &Recorder) {
+    pub(crate) fn report(&mut self, recorder: &Recorder) {
         let RecorderStatus {
             trouble, notices, ..
         } = recorder.status();
         for notice in notices.iter().skip(self.notices) {
-            say(&notice.to_string());
+            notify(&notice.to_string());
         }
         self.notices = notices.len();
         let trouble = trouble.map(|trouble| trouble.to_string());
         if self.trouble != trouble {
-            say(&match &trouble {
+            notify(&match &trouble {
                 Some(trouble) => {
                     format!("the recording cannot be written: {trouble}; trying again")
                 }
@@ -256,8 +256,8 @@ fn finish(
             path.display()
         ))
     }));
-    let told = out.object(&object);
-    failed.and(told)
+    let printed = out.object(&object);
+    failed.and(printed)
 }
 
 /// Statistics of the file; `null` where it cannot be read.

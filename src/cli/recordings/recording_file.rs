@@ -1,6 +1,6 @@
 //! Recording files named by the user: opening, time ranges in seconds from the start, and remarks on missing data.
 
-use crate::cli::out::{WrongUsage, say};
+use crate::cli::out::{WrongUsage, notify};
 use crate::cli::parse::{RecordingTime, recording_time};
 use crate::hand::Moment;
 use crate::record::file::RecordingFile;
@@ -152,8 +152,8 @@ pub(crate) fn lost(damage: &Damage) -> Option<String> {
 }
 
 /// Reports remarks on the state of the file on standard error.
-pub(crate) fn say_remarks(file: &RecordingFile) {
+pub(crate) fn report_remarks(file: &RecordingFile) {
     for remark in file.remarks() {
-        say(&format!("{}: {remark}", file.path().display()));
+        notify(&format!("{}: {remark}", file.path().display()));
     }
 }

@@ -1,8 +1,8 @@
 //! `replay`: a hand that reports recorded values, on the wires of the simulated hand.
 
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, notify};
 use crate::cli::parse::number;
-use crate::cli::recordings::recording_file::{self, FileArgs, lost, say_remarks};
+use crate::cli::recordings::recording_file::{self, FileArgs, lost, report_remarks};
 use crate::cli::wires::{WireArgs, failed};
 use crate::hand::{Group, HandId, Moment};
 use crate::params::file;
@@ -52,7 +52,7 @@ pub(crate) async fn run(out: &mut Out, args: &ReplayArgs) -> anyhow::Result<()> 
     let mut interrupt = Interrupt::listen()?;
     let path = &args.file.file;
     let file = Arc::new(recording_file::open(path)?);
-    say_remarks(&file);
+    report_remarks(&file);
     let hands = SimHands::from(hand(&file, args.id)?);
     let wires = args.wires.serve(&hands).await?;
     out.lines(wires.iter().map(|wire| wire.ready()))?;
@@ -61,7 +61,7 @@ pub(crate) async fn run(out: &mut Out, args: &ReplayArgs) -> anyhow::Result<()> 
         loop {
             let damage = play(&file, &hands, args.speed).await?;
             if let Some(words) = lost(&damage) {
-                say(&format!("{} is damaged: {words}", path.display()));
+                notify(&format!("{} is damaged: {words}", path.display()));
             }
             if !args.again {
                 return Ok(());
@@ -77,7 +77,7 @@ pub(crate) async fn run(out: &mut Out, args: &ReplayArgs) -> anyhow::Result<()> 
 }
 
 /// A change of the hand.
-enum Step {
+enum ReplayStep {
     /// The memory from this address on has these contents.
     Memory(u16, Vec<u8>),
     /// The hand falls silent, or answers again.
@@ -96,7 +96,7 @@ fn hand(file: &RecordingFile, id: Option<u8>) -> anyhow::Result<SharedHand> {
     let read = file.entries(begin, |entry| {
         recorded_id = recorded_id.or_else(|| hand_id(&entry));
         for step in steps(&entry) {
-            if let Step::Memory(address, bytes) = step
+            if let ReplayStep::Memory(address, bytes) = step
                 && !first.iter().any(|(known, _)| *known == address)
             {
                 first.push((address, bytes));
@@ -125,8 +125,8 @@ async fn play(file: &Arc<RecordingFile>, hands: &SimHands, speed: f64) -> anyhow
         let after = at.since(file.first()).div_f64(speed);
         sleep_until(begun + after).await;
         hands.with_each(|hand, _| match &step {
-            Step::Memory(address, bytes) => hand.put_recorded(*address, bytes),
-            Step::Silent(silent) => hand.put_silent(*silent),
+            ReplayStep::Memory(address, bytes) => hand.put_recorded(*address, bytes),
+            ReplayStep::Silent(silent) => hand.put_silent(*silent),
         });
     }
     let damage = reader.await.context("the reader of the recording ended")?;
@@ -136,7 +136,7 @@ async fn play(file: &Arc<RecordingFile>, hands: &SimHands, speed: f64) -> anyhow
 /// Reads the file on a blocking thread, as far ahead as the queue permits.
 fn read_ahead(
     file: Arc<RecordingFile>,
-    give: mpsc::Sender<(Moment, Step)>,
+    give: mpsc::Sender<(Moment, ReplayStep)>,
 ) -> JoinHandle<std::io::Result<Damage>> {
     tokio::task::spawn_blocking(move || {
         let no_wire = Stretch {
@@ -155,21 +155,26 @@ fn read_ahead(
     })
 }
 
-fn steps(entry: &Entry) -> Vec<Step> {
+fn steps(entry: &Entry) -> Vec<ReplayStep> {
     match entry {
         Entry::Heard(Record::Reading { sample, fresh }) => Group::ALL
             .into_iter()
             .filter(|group| fresh.contains(*group))
-            .filter_map(|group| Some(Step::Memory(group.span().address, sample.memory(group)?)))
+            .filter_map(|group| {
+                Some(ReplayStep::Memory(
+                    group.span().address,
+                    sample.memory(group)?,
+                ))
+            })
             .collect(),
-        Entry::Heard(Record::State { state, .. }) => vec![Step::Silent(!state.is_live())],
+        Entry::Heard(Record::State { state, .. }) => vec![ReplayStep::Silent(!state.is_live())],
         Entry::Event(event) if event.kind == EventKind::Parameters => parameters(&event.words),
         _ => Vec::new(),
     }
 }
 
 /// Persistent parameters of the hand, except its ID, which the user chooses.
-fn parameters(toml: &str) -> Vec<Step> {
+fn parameters(toml: &str) -> Vec<ReplayStep> {
     let Ok(file) = file::read(toml) else {
         return Vec::new();
     };
@@ -182,7 +187,7 @@ fn parameters(toml: &str) -> Vec<Step> {
                 Value::Address(address) => address.octets(),
             };
             let kept = bytes.iter().take(usize::from(span.len)).copied();
-            Step::Memory(span.address, kept.collect())
+            ReplayStep::Memory(span.address, kept.collect())
         })
         .collect()
 }

@@ -1,6 +1,6 @@
 //! DDS from the command line: its interface, and the publication of a hand.
 
-use crate::cli::out::say;
+use crate::cli::out::notify;
 use crate::cli::parse::number;
 use crate::hand::kinematics::Side;
 use crate::share::dds::SharedOnDds;
@@ -60,7 +60,7 @@ impl DdsArgs {
         let node = DdsNode::open(&place)?;
         let address = node.address();
         if !address.is_loopback() {
-            say(&format!(
+            notify(&format!(
                 "warning: anyone in the network of {address} can {can}; --dds alone keeps to this computer"
             ));
         }

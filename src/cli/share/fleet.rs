@@ -1,6 +1,6 @@
 //! `fleet`: lists hands that Handscopes share on DDS, and their changes. Connects to none of them.
 
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, notify};
 use crate::cli::parse::seconds;
 use crate::cli::share::dds::{LOOPBACK, domain};
 use crate::hand::kinematics::Side;
@@ -45,7 +45,7 @@ pub(crate) async fn run(out: &mut Out, args: &FleetArgs) -> anyhow::Result<()> {
             None => std::future::pending().await,
         }
     };
-    let mut told = Told {
+    let mut printer = FleetPrinter {
         out,
         as_json: args.json,
         hands: Vec::new(),
@@ -55,14 +55,14 @@ pub(crate) async fn run(out: &mut Out, args: &FleetArgs) -> anyhow::Result<()> {
         biased;
         () = interrupt.wished() => {}
         () = over => {}
-        failed = told.tell(&mut list, clock) => return failed,
+        failed = printer.run(&mut list, clock) => return failed,
     }
-    if !told.is_any {
+    if !printer.is_any {
         if args.json {
-            told.object(clock)?;
+            printer.object(clock)?;
         }
         let interface = node.address();
-        say(&format!(
+        notify(&format!(
             "no hand is shared at {interface}: share one with 'handscope share --hand URL --tcp ADDR:PORT --dds', or name the network interface to look at"
         ));
     }
@@ -70,15 +70,15 @@ pub(crate) async fn run(out: &mut Out, args: &FleetArgs) -> anyhow::Result<()> {
 }
 
 /// Hands reported so far.
-struct Told<'a> {
+struct FleetPrinter<'a> {
     out: &'a mut Out,
     as_json: bool,
     hands: Vec<FleetHand>,
     is_any: bool,
 }
 
-impl Told<'_> {
-    async fn tell(&mut self, list: &mut FleetList, clock: Clock) -> anyhow::Result<()> {
+impl FleetPrinter<'_> {
+    async fn run(&mut self, list: &mut FleetList, clock: Clock) -> anyhow::Result<()> {
         while let Some(hands) = list.changed().await {
             self.is_any |= !hands.is_empty();
             if !self.as_json {

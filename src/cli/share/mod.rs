@@ -5,7 +5,7 @@ pub(crate) mod fleet;
 mod stdio;
 
 use crate::cli::listen;
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, notify};
 use crate::cli::parse::{number, side};
 use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
@@ -134,7 +134,7 @@ async fn serve(
     let done = tokio::select! {
         biased;
         done = served => done,
-        () = tell(link, gateway.as_ref(), &args.hand) => Ok(()),
+        () = report_status(link, gateway.as_ref(), &args.hand) => Ok(()),
     };
     let may_move = gateway.is_some_and(|gateway| close(link, gateway));
     // With --stdio, the hand was stopped before.
@@ -149,7 +149,7 @@ async fn serve(
 fn close(link: &LinkHandle, gateway: Gateway) -> bool {
     let is_held = |client: &GatewayClient| matches!(client.lease, ClientLease::Held(_));
     let may_move = gateway.clients().iter().any(is_held);
-    tell_movers(&gateway, link);
+    report_movers(&gateway, link);
     may_move
 }
 
@@ -193,36 +193,36 @@ fn show(
 }
 
 /// Reports status changes to the user while the hand is shared.
-async fn tell(link: &LinkHandle, gateway: Option<&Gateway>, hand: &Endpoint) {
-    let mut told = Told::default();
+async fn report_status(link: &LinkHandle, gateway: Option<&Gateway>, hand: &Endpoint) {
+    let mut reporter = StatusReporter::default();
     let mut tick = interval(POLL_INTERVAL);
     loop {
         tick.tick().await;
-        told.link(link, hand);
+        reporter.link(link, hand);
         if let Some(gateway) = gateway {
-            told.turned_away(gateway);
-            tell_movers(gateway, link);
+            reporter.turned_away(gateway);
+            report_movers(gateway, link);
         }
     }
 }
 
 /// Status reported so far.
 #[derive(Default)]
-struct Told {
+struct StatusReporter {
     trouble: Option<LinkTrouble>,
     turned_away: bool,
 }
 
-impl Told {
+impl StatusReporter {
     fn link(&mut self, link: &LinkHandle, hand: &Endpoint) {
         let status = link.status();
         match session::trouble(&status) {
             Some(trouble) if self.trouble.as_ref() != Some(trouble) => {
-                say(&format!("link to {hand} lost: {trouble}; trying again"));
+                notify(&format!("link to {hand} lost: {trouble}; trying again"));
                 self.trouble = Some(trouble.clone());
             }
             None if status.state.is_live() && self.trouble.take().is_some() => {
-                say("the hand answers again");
+                notify("the hand answers again");
             }
             _ => {}
         }
@@ -230,15 +230,15 @@ impl Told {
 
     fn turned_away(&mut self, gateway: &Gateway) {
         if gateway.turned_away() > 0 && !std::mem::replace(&mut self.turned_away, true) {
-            say("there are as many clients as there may be: more are turned away");
+            notify("there are as many clients as there may be: more are turned away");
         }
     }
 }
 
 /// Reports each client that gets or loses control of the hand.
-fn tell_movers(gateway: &Gateway, link: &LinkHandle) {
+fn report_movers(gateway: &Gateway, link: &LinkHandle) {
     for MoverEvent { client, change } in gateway.movers() {
-        say(&match change {
+        notify(&match change {
             MoverChange::Began => format!("{client} may move the hand"),
             MoverChange::Left => {
                 format!("{client}, which could move the hand, is gone: the hand is told to stop")

@@ -1,10 +1,10 @@
 //! A series on a real link: arming by the user, Ctrl-C as a stop, and the results. Contains no trial logic.
 
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, notify};
 use crate::cli::session;
 use crate::cli::trial::args::TrialArgs;
-use crate::cli::trial::output::Outcome;
-use crate::cli::trial::results::{ResultsWanted, TrialResults};
+use crate::cli::trial::output::SeriesResult;
+use crate::cli::trial::results::{ResultsRequest, TrialResults};
 use crate::hand::{HandSample, Setpoints};
 use crate::link::Stop;
 use crate::link::{ArmRequest, Clock, Lease, LinkHandle, Owner, Records};
@@ -31,8 +31,8 @@ pub(crate) async fn drive(
     out: &mut Out,
     args: &TrialArgs,
     plan: &TrialPlan,
-) -> anyhow::Result<Outcome> {
-    let wanted = ResultsWanted {
+) -> anyhow::Result<SeriesResult> {
+    let wanted = ResultsRequest {
         hand: &args.hand,
         json: args.json,
         folder: args.out.as_deref(),
@@ -43,7 +43,7 @@ pub(crate) async fn drive(
     let series = TrialSeries::start(plan.clone(), hand.armed.epoch, hand.armed.clock.now())?;
     let report = hand.run_trials(series, &mut results).await.report();
     let trials = results.close(report.aborted, None)?;
-    Ok(Outcome::of(trials, report, args.criterion()))
+    Ok(SeriesResult::of(trials, report, args.criterion()))
 }
 
 /// A hand that the user armed on the command line.
@@ -89,7 +89,7 @@ impl ArmedHand {
     pub(crate) async fn results<'a>(
         &self,
         out: &'a mut Out,
-        wanted: ResultsWanted<'_>,
+        wanted: ResultsRequest<'_>,
         plan: &TrialPlan,
     ) -> anyhow::Result<TrialResults<'a>> {
         match TrialResults::start(out, wanted, plan, &self.link) {
@@ -109,9 +109,9 @@ impl ArmedHand {
         results: &mut TrialResults<'_>,
     ) -> Driven<TrialSeries> {
         let ends = by_user(&mut self.interrupt);
-        let report = |step| results.take(step);
+        let report = |step| results.apply(step);
         let driven = series::trials(&self.link, self.armed, series, ends, report).await;
-        self.let_go(driven.stop).await;
+        self.release(driven.stop).await;
         driven
     }
 
@@ -124,14 +124,14 @@ impl ArmedHand {
     ) -> Driven<P> {
         let ends = by_user(&mut self.interrupt);
         let driven = drive::drive(&self.link, self.armed, program, ends, report).await;
-        self.let_go(driven.stop).await;
+        self.release(driven.stop).await;
         driven
     }
 
     /// Reports an unconfirmed stop, and waits until the hand is disarmed.
-    pub(crate) async fn let_go(&self, stop: Option<Stop>) {
+    pub(crate) async fn release(&self, stop: Option<Stop>) {
         if stop == Some(Stop::NotConfirmed) {
-            say(session::NOT_CONFIRMED);
+            notify(session::NOT_CONFIRMED);
         }
         self.disarm().await;
     }
@@ -169,7 +169,7 @@ async fn make_ready(
         sample.faults.is_some() && sample.angle.is_some() && sample.temperature.is_some()
     };
     while !known(&seen) {
-        take_news(records, &mut seen).await?;
+        next_record(records, &mut seen).await?;
         if Instant::now() >= until {
             bail!("the hand at {endpoint} does not tell its angles, faults and temperatures");
         }
@@ -189,7 +189,7 @@ async fn make_ready(
 }
 
 /// Receives the next record, or waits for a tick.
-async fn take_news(records: &mut Records, seen: &mut HandSample) -> anyhow::Result<()> {
+async fn next_record(records: &mut Records, seen: &mut HandSample) -> anyhow::Result<()> {
     match timeout(TICK, records.next()).await {
         Ok(Some(Record::Reading { sample, .. })) => *seen = *sample,
         Ok(None) => bail!("the link ended"),

@@ -10,7 +10,7 @@ use crate::trials::{Criterion, JointMetrics, TrialPlan, TrialSetting, TrialSumma
 use serde_json::{Value, json};
 
 /// A finished series, and the scores of its settings.
-pub(crate) struct Outcome {
+pub(crate) struct SeriesResult {
     trials: Vec<TrialSummary>,
     pub(crate) report: EndReport,
     scores: Vec<Score>,
@@ -18,7 +18,7 @@ pub(crate) struct Outcome {
     pub(crate) best: Option<TrialSetting>,
 }
 
-impl Outcome {
+impl SeriesResult {
     /// Scores the settings that were tried, and finds the best one if there is a criterion.
     pub(crate) fn of(
         trials: Vec<TrialSummary>,
@@ -215,7 +215,7 @@ mod tests {
             aborted: None,
             stop: None,
         };
-        Outcome::of(trials, report, None).nothing_words()
+        SeriesResult::of(trials, report, None).nothing_words()
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! `overshoot`: prints, exports or clears the measured overshoot of a hand. Opens no link.
 
 use crate::app::files::settings_file;
-use crate::cli::out::{Out, WrongUsage, say};
+use crate::cli::out::{Out, WrongUsage, notify};
 use crate::hand::overshoot::{MeasuredCloses, OvershootMap, Stages};
 use crate::transport::Endpoint;
 use crate::trials::overshoot_file;
@@ -38,7 +38,7 @@ pub(crate) fn run(out: &mut Out, args: &OvershootArgs) -> anyhow::Result<()> {
     let file = file.context("no home folder, in which it would be kept")?;
     let map = match overshoot_file::read(&file) {
         Err(error) if args.forget => {
-            say(&format!("{} could not be read: {error}", file.display()));
+            notify(&format!("{} could not be read: {error}", file.display()));
             OvershootMap::default()
         }
         read => {

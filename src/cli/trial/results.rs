@@ -2,7 +2,7 @@
 //! delay the hand's feedback.
 
 use crate::app::files::settings_file;
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, notify};
 use crate::cli::trial::output::{trial_json, trial_lines};
 use crate::hand::overshoot::OvershootMap;
 use crate::link::LinkHandle;
@@ -26,7 +26,7 @@ const WAITING_MAX: usize = 16;
 
 /// Destination of the results, and their hand.
 #[derive(Clone, Copy)]
-pub(crate) struct ResultsWanted<'a> {
+pub(crate) struct ResultsRequest<'a> {
     pub(crate) hand: &'a Endpoint,
     pub(crate) json: bool,
     pub(crate) folder: Option<&'a Path>,
@@ -38,7 +38,7 @@ pub(crate) struct ResultsWanted<'a> {
 pub(crate) struct TrialResults<'a> {
     out: &'a mut Out,
     json: bool,
-    writer: Option<Writer>,
+    writer: Option<WritingThread>,
     trials: Vec<TrialSummary>,
     /// Overshoot file of the hand, extended by threads that may wait.
     map: Option<PathBuf>,
@@ -49,7 +49,7 @@ pub(crate) struct TrialResults<'a> {
 }
 
 /// Sender to the writing thread, and the thread.
-type Writer = (
+type WritingThread = (
     mpsc::SyncSender<Trial>,
     JoinHandle<io::Result<TrialSessionWriter>>,
 );
@@ -58,7 +58,7 @@ impl<'a> TrialResults<'a> {
     /// Creates the folder, if one was given.
     pub(crate) fn start(
         out: &'a mut Out,
-        wanted: ResultsWanted<'_>,
+        wanted: ResultsRequest<'_>,
         plan: &TrialPlan,
         link: &LinkHandle,
     ) -> anyhow::Result<Self> {
@@ -90,7 +90,7 @@ impl<'a> TrialResults<'a> {
     }
 
     /// Handles a step of the series; returns false if it cannot be printed or written, which ends the series.
-    pub(crate) fn take(&mut self, step: SeriesStep) -> bool {
+    pub(crate) fn apply(&mut self, step: SeriesStep) -> bool {
         if let Err(error) = self.out.flush() {
             self.error.get_or_insert(error);
             return false;
@@ -142,7 +142,7 @@ impl<'a> TrialResults<'a> {
         for added in self.adding {
             let file = self.map.as_deref().unwrap_or(Path::new(""));
             if let Ok(Err(error)) = added.join() {
-                say(&format!(
+                notify(&format!(
                     "warning: what was measured of this hand is not kept in {}: {error}",
                     file.display()
                 ));
@@ -167,7 +167,7 @@ impl<'a> TrialResults<'a> {
     }
 }
 
-fn write_on_thread(mut writer: TrialSessionWriter) -> Writer {
+fn write_on_thread(mut writer: TrialSessionWriter) -> WritingThread {
     let (trials, waiting) = mpsc::sync_channel::<Trial>(WAITING_MAX);
     let thread = std::thread::spawn(move || {
         for trial in waiting {

@@ -9,7 +9,7 @@ use crate::cli::out::{Out, WrongUsage};
 use crate::cli::trial::args::check_joints;
 use crate::cli::trial::drive::ArmedHand;
 use crate::cli::trial::output::joints;
-use crate::cli::trial::results::ResultsWanted;
+use crate::cli::trial::results::ResultsRequest;
 use crate::cli::tune::output::SearchReport;
 use crate::motion::series;
 use crate::trials::TrialSeries;
@@ -47,7 +47,7 @@ async fn run_search(
     search: SettingsSearch,
 ) -> anyhow::Result<SearchReport> {
     let plan = search.plan();
-    let wanted = ResultsWanted {
+    let wanted = ResultsRequest {
         hand: &args.hand,
         json: args.json,
         folder: args.out.as_deref(),

@@ -2,7 +2,9 @@
 
 use crate::cli::tune::args::TuneArgs;
 use crate::motion::drive::{EndReport, stop_words};
-use crate::trials::search::{Claim, ComparedThreshold, Finding, FoundApproach, Tried, Untold};
+use crate::trials::search::{
+    Claim, ComparedThreshold, Finding, FoundApproach, OpenQuestion, Tried,
+};
 use serde_json::{Value, json};
 
 /// Result of a search.
@@ -42,7 +44,7 @@ pub(crate) fn json(args: &TuneArgs, report: &SearchReport) -> Value {
         "joints": claim.map(|claim| &claim.joints),
         "tried": report.tried,
         "compared": report.finding.as_ref().map(|finding| &finding.compared),
-        "untold": untold(report).iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "untold": open_questions(report).iter().map(ToString::to_string).collect::<Vec<_>>(),
         "aborted": report.series.aborted.map(|why| why.to_string()),
         "stop": report.series.stop,
     }})
@@ -100,7 +102,11 @@ pub(crate) fn lines(report: &SearchReport) -> Vec<String> {
         ),
     ];
     lines.extend(compared(report).map(ToString::to_string));
-    lines.extend(untold(report).iter().map(|own| format!("not told: {own}")));
+    lines.extend(
+        open_questions(report)
+            .iter()
+            .map(|own| format!("not told: {own}")),
+    );
     lines
 }
 
@@ -127,11 +133,11 @@ fn claim(report: &SearchReport) -> Option<&Claim> {
     finding.and_then(|finding| finding.result.as_ref().ok())
 }
 
-fn untold(report: &SearchReport) -> &[Untold] {
+fn open_questions(report: &SearchReport) -> &[OpenQuestion] {
     report
         .finding
         .as_ref()
-        .map_or(&[], |finding| &finding.untold)
+        .map_or(&[], |finding| &finding.open_questions)
 }
 
 /// Findings about the drives that show a notable offset.

@@ -7,7 +7,7 @@ mod wire;
 
 pub(crate) use args::WatchArgs;
 
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, notify};
 use crate::cli::session;
 use crate::cli::watch::datagrams::Datagrams;
 use crate::cli::watch::telemetry::{sample_json, sample_text, stats_json, stats_text};
@@ -31,10 +31,10 @@ const TEXT_LINE_INTERVAL: Duration = Duration::from_millis(100);
 /// Watches until the time is up or the user ends it. Fails if nothing was read, and if the link is lost at the end.
 pub(crate) async fn run(out: &mut Out, args: &WatchArgs) -> anyhow::Result<()> {
     let interrupt = Interrupt::listen()?;
-    Watch::new(out, args)?.run(interrupt).await
+    WatchRun::new(out, args)?.run(interrupt).await
 }
 
-struct Watch<'a> {
+struct WatchRun<'a> {
     args: &'a WatchArgs,
     out: &'a mut Out,
     clock: Clock,
@@ -50,10 +50,10 @@ struct Watch<'a> {
     taken: u64,
     last_text: Option<Moment>,
     answered: bool,
-    told: Option<LinkTrouble>,
+    reported: Option<LinkTrouble>,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> WatchRun<'a> {
     fn new(out: &'a mut Out, args: &'a WatchArgs) -> anyhow::Result<Self> {
         let datagrams = args.udp.map(Datagrams::to).transpose()?;
         let clock = Clock::start();
@@ -70,7 +70,7 @@ impl<'a> Watch<'a> {
             taken: 0,
             last_text: None,
             answered: false,
-            told: None,
+            reported: None,
         })
     }
 
@@ -90,7 +90,7 @@ impl<'a> Watch<'a> {
                 record = self.records.next() => record,
             };
             match record {
-                Some(record) => self.take(record)?,
+                Some(record) => self.apply(record)?,
                 None => break,
             }
         }
@@ -109,16 +109,16 @@ impl<'a> Watch<'a> {
         self.out.flush()?;
         let status = self.link.status();
         if status.state.is_live() {
-            if self.told.take().is_some() {
-                say(&answers_again(status.moved_to.as_deref()));
+            if self.reported.take().is_some() {
+                notify(&answers_again(status.moved_to.as_deref()));
             }
             self.answered = true;
             return Ok(());
         }
         if let Some(trouble) = session::trouble(&status) {
-            self.tell(trouble)
+            self.report_trouble(trouble)
         } else if !self.answered
-            && self.told.is_none()
+            && self.reported.is_none()
             && self.elapsed() >= session::patience(&status)
         {
             self.give_up(&session::unanswered(&self.args.hand))
@@ -128,13 +128,13 @@ impl<'a> Watch<'a> {
     }
 
     /// Reports each cause once, until the hand answers again.
-    fn tell(&mut self, trouble: &LinkTrouble) -> anyhow::Result<()> {
-        if self.told.as_ref() == Some(trouble) {
+    fn report_trouble(&mut self, trouble: &LinkTrouble) -> anyhow::Result<()> {
+        if self.reported.as_ref() == Some(trouble) {
             return Ok(());
         }
-        self.told = Some(trouble.clone());
+        self.reported = Some(trouble.clone());
         if self.answered {
-            say(&format!(
+            notify(&format!(
                 "link to {} lost: {trouble}; trying again",
                 self.args.hand
             ));
@@ -146,14 +146,14 @@ impl<'a> Watch<'a> {
     /// Without a time limit, ends the wait for a hand that has never answered.
     fn give_up(&mut self, why: &str) -> anyhow::Result<()> {
         if self.args.length.is_some() {
-            say(&format!("{why}; trying again"));
+            notify(&format!("{why}; trying again"));
             return Ok(());
         }
         self.statistics()?;
         bail!("{why}")
     }
 
-    fn take(&mut self, record: Record) -> anyhow::Result<()> {
+    fn apply(&mut self, record: Record) -> anyhow::Result<()> {
         let Record::Reading { sample, fresh } = record else {
             return Ok(());
         };
@@ -192,7 +192,10 @@ impl<'a> Watch<'a> {
         self.answered |= status.state.is_live();
         self.statistics()?;
         let hand = &self.args.hand;
-        match (session::trouble(&status).or(self.told.as_ref()), self.taken) {
+        match (
+            session::trouble(&status).or(self.reported.as_ref()),
+            self.taken,
+        ) {
             (Some(trouble), 1..) if !status.state.is_live() => {
                 bail!("the link to {hand} is lost: {trouble}")
             }
@@ -215,7 +218,7 @@ impl<'a> Watch<'a> {
         while self.taken < stats.state_reads
             && let Some(record) = self.records.try_next()
         {
-            self.take(record)?;
+            self.apply(record)?;
         }
         stats.dropped_events = self.records.lost();
         // A sample may be printed before it is counted.

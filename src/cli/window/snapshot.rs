@@ -76,7 +76,7 @@ const THEMES: [(&str, Theme); 2] = [("dark", Theme::Dark), ("light", Theme::Ligh
 const LANGUAGES: [(&str, Language); 2] = [("en", Language::En), ("zh", Language::Zh)];
 
 /// The chosen values, with the suffixes of their file names.
-fn wanted<T: Copy>(name: &str, both: [(&str, T); 2]) -> Vec<(T, String)> {
+fn chosen<T: Copy>(name: &str, both: [(&str, T); 2]) -> Vec<(T, String)> {
     let [(_, first), (second_name, second)] = both;
     match name {
         "all" => vec![(first, String::new()), (second, format!("-{second_name}"))],
@@ -100,8 +100,8 @@ pub(crate) fn run(out: &mut Out, args: &SnapshotArgs) -> anyhow::Result<()> {
     }
     fs::create_dir_all(&args.out)
         .with_context(|| format!("cannot make the folder {}", args.out.display()))?;
-    for (language, of_language) in wanted(&args.lang, LANGUAGES) {
-        for (number, (theme, of_theme)) in wanted(&args.theme, THEMES).iter().enumerate() {
+    for (language, of_language) in chosen(&args.lang, LANGUAGES) {
+        for (number, (theme, of_theme)) in chosen(&args.theme, THEMES).iter().enumerate() {
             driver.dress(*theme, language);
             for (name, view) in pictures(args.view) {
                 let card = args.card.as_ref();

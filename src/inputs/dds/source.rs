@@ -91,19 +91,19 @@ pub struct DdsSource {
 impl DdsSource {
     /// Receives these messages from now on. Must be called within a tokio runtime.
     pub fn open(config: DdsSourceConfig, commands: DdsCommands) -> Self {
-        let (told, view) = watch::channel(DdsView::default());
+        let (views, view) = watch::channel(DdsView::default());
         let outlet = OfferOutlet::default();
-        let taking = Taking {
+        let receiver = DdsReceiver {
             config,
             view: DdsView::default(),
             rate: EventRate::default(),
             outlet: outlet.clone(),
-            told,
+            views,
         };
         Self {
             view,
             outlet,
-            _task: AbortOnDropHandle::new(tokio::spawn(taking.run(commands))),
+            _task: AbortOnDropHandle::new(tokio::spawn(receiver.run(commands))),
         }
     }
 
@@ -118,33 +118,33 @@ impl DdsSource {
     }
 }
 
-struct Taking {
+struct DdsReceiver {
     config: DdsSourceConfig,
     view: DdsView,
     rate: EventRate,
     outlet: OfferOutlet,
-    told: watch::Sender<DdsView>,
+    views: watch::Sender<DdsView>,
 }
 
-impl Taking {
+impl DdsReceiver {
     async fn run(mut self, mut commands: DdsCommands) {
-        let mut tell = interval(REPORT_INTERVAL);
+        let mut tick = interval(REPORT_INTERVAL);
         loop {
             tokio::select! {
                 message = commands.ctrl.recv() => match message {
-                    Some(message) => self.take_ctrl(&message),
-                    None => return self.tell(),
+                    Some(message) => self.receive_ctrl(&message),
+                    None => return self.publish(),
                 },
                 Some(message) = commands.motors.recv() => {
                     let asked = motors::parse(&message.bytes, self.config.side);
-                    self.take(message.from, asked);
+                    self.receive(message.from, asked);
                 }
-                _ = tell.tick() => self.tell(),
+                _ = tick.tick() => self.publish(),
             }
         }
     }
 
-    fn take_ctrl(&mut self, message: &DdsMessage) {
+    fn receive_ctrl(&mut self, message: &DdsMessage) {
         let is_stop = ctrl::is_stop(&message.bytes);
         if is_stop {
             (self.config.stop)();
@@ -153,11 +153,11 @@ impl Taking {
         if is_stop {
             self.stopped(message.from, asked.err());
         } else {
-            self.take(message.from, asked);
+            self.receive(message.from, asked);
         }
     }
 
-    fn take(&mut self, from: DdsWriterId, asked: Result<CtrlMessage, CtrlFault>) {
+    fn receive(&mut self, from: DdsWriterId, asked: Result<CtrlMessage, CtrlFault>) {
         let now = self.config.clock.now();
         let asked = asked.and_then(|asked| self.in_turn(from, now).map(|()| asked));
         let asked = match asked {
@@ -168,10 +168,10 @@ impl Taking {
             }
         };
         let is_new = self
-            .told
+            .views
             .borrow()
             .sender
-            .is_none_or(|(told, last)| told != from || !is_fresh(last, now));
+            .is_none_or(|(sender, last)| sender != from || !is_fresh(last, now));
         self.view.taken += 1;
         self.rate.hit(now);
         let offer = Offer {
@@ -185,7 +185,7 @@ impl Taking {
         self.view.not_granted += u64::from(!self.outlet.offer(offer));
         if is_new {
             // A user may be waiting for a sender to follow.
-            self.tell();
+            self.publish();
         }
     }
 
@@ -210,12 +210,12 @@ impl Taking {
         Ok(())
     }
 
-    fn tell(&mut self) {
+    fn publish(&mut self) {
         self.view.rate_hz = self.rate.hz(self.config.clock.now());
-        let is_news = self.told.send_if_modified(|told| {
-            let is_news = *told != self.view;
+        let is_news = self.views.send_if_modified(|view| {
+            let is_news = *view != self.view;
             if is_news {
-                told.clone_from(&self.view);
+                view.clone_from(&self.view);
             }
             is_news
         });

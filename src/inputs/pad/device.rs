@@ -70,7 +70,7 @@ impl PadReader {
         let (to, reports) = channel(REPORTS_MAX);
         let news = PadNews::Trouble(PadTrouble::LinuxOnly);
         // There is room for the first report.
-        let _told = to.try_send(PadReport { at: clock(), news });
+        let _sent = to.try_send(PadReport { at: clock(), news });
         Ok(Self { reports })
     }
 

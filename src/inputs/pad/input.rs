@@ -136,8 +136,8 @@ impl PadInput {
         let before = self.held_pose();
         self.poses = poses;
         if self.held_pose() != before {
-            self.let_go();
-            self.look();
+            self.release_all();
+            self.update_held();
         }
     }
 
@@ -149,8 +149,8 @@ impl PadInput {
     /// Changes the assignment of the controls. All held controls must be pressed again.
     pub fn set_map(&mut self, map: PadMap) {
         self.map = map;
-        self.let_go();
-        self.look();
+        self.release_all();
+        self.update_held();
     }
 
     /// Assignment of the controls.
@@ -175,11 +175,11 @@ impl PadInput {
 
     /// Applies a report. Of gamepads that are not followed only STOP counts, and STOP counts wherever it is seen down:
     /// even when a gamepad is found with STOP down, or events were lost around it.
-    pub fn take(&mut self, report: &PadReport) -> Option<PadEvent> {
+    pub fn receive(&mut self, report: &PadReport) -> Option<PadEvent> {
         if self.sees_stop(report) {
             self.apply(report);
-            self.let_go();
-            self.look();
+            self.release_all();
+            self.update_held();
             return Some(PadEvent::Stop);
         }
         self.apply(report)
@@ -251,7 +251,7 @@ impl PadInput {
             PadNews::Gone(pad) if of_ours(pad) => {
                 self.pad = None;
                 self.state = PadState::default();
-                self.let_go();
+                self.release_all();
                 Some(PadEvent::Gone)
             }
             _ => None,
@@ -286,7 +286,7 @@ impl PadInput {
     }
 
     /// Ignores everything that was held before.
-    fn let_go(&mut self) {
+    fn release_all(&mut self) {
         self.may_hold = false;
         self.pose = None;
         self.push = None;
@@ -295,17 +295,17 @@ impl PadInput {
 
     fn read_anew(&mut self, now: &[KernelEvent]) {
         self.state = self.state.released();
-        self.let_go();
+        self.release_all();
         for event in now {
             self.state.apply(*event);
         }
-        self.look();
+        self.update_held();
     }
 
     fn moved(&mut self, event: KernelEvent) {
         let before = self.state.held().clone();
         self.state.apply(event);
-        self.look();
+        self.update_held();
         let pressed: BTreeSet<_> = self.state.held().difference(&before).copied().collect();
         for control in pressed {
             if let PadAction::Pose(_) = self.map.action(control) {
@@ -315,7 +315,7 @@ impl PadInput {
     }
 
     /// Updates the states that need no press: the released dead-man and the chosen fingers.
-    fn look(&mut self) {
+    fn update_held(&mut self) {
         self.may_hold |= !self.is_dead_man_down();
         let choosing = self.map.doing(&PadAction::ChooseFingers);
         let mut places = choosing.map(|stick| self.state.stick(stick));

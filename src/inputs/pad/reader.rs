@@ -61,7 +61,7 @@ pub enum DeviceSays {
 }
 
 /// Identifies the device behind a file: device numbers are reused.
-type FileMark = (u64, i64, i64);
+type DeviceFileId = (u64, i64, i64);
 
 struct OpenedPad {
     id: PadId,
@@ -77,8 +77,8 @@ struct PadThread {
     to: Sender<PadReport>,
     pads: BTreeMap<PathBuf, OpenedPad>,
     /// Devices of other kinds, remembered so that they are not reopened.
-    others: BTreeMap<PathBuf, FileMark>,
-    told: Option<PadTrouble>,
+    others: BTreeMap<PathBuf, DeviceFileId>,
+    trouble: Option<PadTrouble>,
     next: u64,
 }
 
@@ -99,7 +99,7 @@ pub(crate) fn spawn(
         to,
         pads: BTreeMap::new(),
         others: BTreeMap::new(),
-        told: None,
+        trouble: None,
         next: 0,
     };
     let named = thread::Builder::new().name("gamepads".into());
@@ -131,21 +131,21 @@ pub(crate) fn find(folder: &Path, opener: &dyn OpenPad) -> Result<Vec<PadFacts>,
 
 impl PadThread {
     fn run(mut self) -> Result<(), NobodyListens> {
-        let mut looked: Option<Instant> = None;
-        let mut said = Instant::now();
+        let mut scanned: Option<Instant> = None;
+        let mut alive_at = Instant::now();
         while !self.to.is_closed() {
-            if looked.is_none_or(|at| at.elapsed() >= POLL_INTERVAL) {
-                looked = Some(Instant::now());
-                self.look()?;
+            if scanned.is_none_or(|at| at.elapsed() >= POLL_INTERVAL) {
+                scanned = Some(Instant::now());
+                self.scan()?;
             }
             for path in self.wait() {
                 self.read(&path)?;
             }
-            if said.elapsed() >= Duration::from_millis(ALIVE_EACH_MS.into()) {
-                said = Instant::now();
+            if alive_at.elapsed() >= Duration::from_millis(ALIVE_EACH_MS.into()) {
+                alive_at = Instant::now();
                 let all: Vec<PadId> = self.pads.values().map(|pad| pad.id).collect();
                 for pad in all {
-                    self.say(PadNews::Alive(pad))?;
+                    self.send(PadNews::Alive(pad))?;
                 }
             }
         }
@@ -153,10 +153,10 @@ impl PadThread {
     }
 
     /// Opens new gamepads, and reports the reason if there is none.
-    fn look(&mut self) -> Result<(), NobodyListens> {
+    fn scan(&mut self) -> Result<(), NobodyListens> {
         let files = match event_files(&self.folder) {
             Ok(files) => files,
-            Err(trouble) => return self.tell(Some(trouble)),
+            Err(trouble) => return self.report(Some(trouble)),
         };
         self.others.retain(|path, _| files.contains(path));
         let mut refused = BTreeSet::new();
@@ -175,7 +175,7 @@ impl PadThread {
             }
         }
         let trouble = may_not_open(&refused).filter(|_| self.pads.is_empty());
-        self.tell(trouble)
+        self.report(trouble)
     }
 
     fn begin(
@@ -198,7 +198,7 @@ impl PadThread {
             is_behind: false,
         };
         self.pads.insert(path, pad);
-        self.say(news)
+        self.send(news)
     }
 
     /// Waits, for a limited time, for gamepads with events.
@@ -227,26 +227,26 @@ impl PadThread {
             return Ok(());
         };
         match pad.news() {
-            Ok(news) => news.into_iter().try_for_each(|news| self.say(news)),
+            Ok(news) => news.into_iter().try_for_each(|news| self.send(news)),
             Err(_gone) => {
                 let gone = PadNews::Gone(pad.id);
                 self.pads.remove(path);
-                self.say(gone)
+                self.send(gone)
             }
         }
     }
 
     /// Reports a problem if it is new.
-    fn tell(&mut self, trouble: Option<PadTrouble>) -> Result<(), NobodyListens> {
-        if self.told == trouble {
+    fn report(&mut self, trouble: Option<PadTrouble>) -> Result<(), NobodyListens> {
+        if self.trouble == trouble {
             return Ok(());
         }
-        self.told.clone_from(&trouble);
-        trouble.map_or(Ok(()), |trouble| self.say(PadNews::Trouble(trouble)))
+        self.trouble.clone_from(&trouble);
+        trouble.map_or(Ok(()), |trouble| self.send(PadNews::Trouble(trouble)))
     }
 
     /// Blocks while the queue is full: the kernel reports that it dropped events meanwhile.
-    fn say(&self, news: PadNews) -> Result<(), NobodyListens> {
+    fn send(&self, news: PadNews) -> Result<(), NobodyListens> {
         let at = (self.clock)();
         let sent = self.to.blocking_send(PadReport { at, news });
         sent.map_err(|_unsent| NobodyListens)
@@ -256,8 +256,8 @@ impl PadThread {
 impl OpenedPad {
     fn news(&mut self) -> io::Result<Vec<PadNews>> {
         let mut news = Vec::new();
-        for said in self.device.read()? {
-            match said {
+        for message in self.device.read()? {
+            match message {
                 DeviceSays::Event(event) => {
                     let pad = self.id;
                     news.push(if self.is_behind {
@@ -304,7 +304,7 @@ fn event_files(folder: &Path) -> Result<BTreeSet<PathBuf>, PadTrouble> {
     Ok(files)
 }
 
-fn mark(about: &Metadata) -> FileMark {
+fn mark(about: &Metadata) -> DeviceFileId {
     (about.ino(), about.ctime(), about.ctime_nsec())
 }
 

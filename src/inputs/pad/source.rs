@@ -70,10 +70,10 @@ pub struct PadSource {
 impl PadSource {
     /// Reads from now on. Must be called within a tokio runtime.
     pub fn open(config: PadSourceConfig) -> Self {
-        let (told, view) = watch::channel(PadView::default());
+        let (views, view) = watch::channel(PadView::default());
         let outlet = OfferOutlet::default();
         let (poses, changed) = watch::channel(PadPoses::new());
-        let task = tokio::spawn(run(config, told, (outlet.clone(), changed)));
+        let task = tokio::spawn(run(config, views, (outlet.clone(), changed)));
         Self {
             view,
             poses,
@@ -89,9 +89,9 @@ impl PadSource {
 
     /// Sets the poses of its buttons.
     pub fn set_poses(&self, poses: PadPoses) {
-        self.poses.send_if_modified(|told| {
-            let is_news = *told != poses;
-            *told = poses;
+        self.poses.send_if_modified(|current| {
+            let is_news = *current != poses;
+            *current = poses;
             is_news
         });
     }
@@ -104,7 +104,7 @@ impl PadSource {
 
 async fn run(
     mut config: PadSourceConfig,
-    told: watch::Sender<PadView>,
+    views: watch::Sender<PadView>,
     (outlet, mut poses): (OfferOutlet, watch::Receiver<PadPoses>),
 ) {
     let mut tick = interval(OFFER_INTERVAL);
@@ -123,7 +123,7 @@ async fn run(
                     PadNews::Trouble(trouble) => view.trouble = Some(trouble.clone()),
                     _ => {}
                 }
-                match config.input.take(&report) {
+                match config.input.receive(&report) {
                     Some(PadEvent::Stop) => (config.stop)(),
                     Some(PadEvent::Gone) => view.name = None,
                     _ => {}
@@ -150,7 +150,7 @@ async fn run(
         view.fingers = config.input.fingers();
         let offer = config.input.offer(now);
         view.aims = offer.map(|offer| offer.aims).unwrap_or_default();
-        if told.send_if_modified(|shown| {
+        if views.send_if_modified(|shown| {
             let is_news = *shown != view;
             if is_news {
                 shown.clone_from(&view);

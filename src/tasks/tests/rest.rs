@@ -10,7 +10,7 @@ use crate::params::values::Params;
 use crate::record::{Calibrated, NotSent, Rest, Saved};
 use crate::tasks::Consent;
 use crate::tasks::apply::{Apply, Otherwise, apply};
-use crate::tasks::calibrate::{Check, Checks, calibrate};
+use crate::tasks::calibrate::{CalibrationCondition, Checks, calibrate};
 use crate::tasks::place::{Decisions, PlaceChange, PlaceEnd, change_place};
 use crate::tasks::reset::{ResetEnd, places, reset};
 use crate::tasks::save::{Save, save};
@@ -184,15 +184,30 @@ async fn a_calibration_wants_a_hand_that_is_known_to_rest() {
         (Rest::Unknown, None),
     ] {
         status.rest = rest;
-        let still = checks.check(Check::Still, &sample, &status, hand.clock.now());
+        let still = checks.check(
+            CalibrationCondition::Still,
+            &sample,
+            &status,
+            hand.clock.now(),
+        );
         assert_eq!(still, want);
     }
     assert_eq!(
-        checks.check(Check::Steady, &sample, &status, hand.clock.now()),
+        checks.check(
+            CalibrationCondition::Steady,
+            &sample,
+            &status,
+            hand.clock.now()
+        ),
         Some(true)
     );
     sleep(Duration::from_millis(600)).await;
-    for check in [Check::NoFault, Check::Open, Check::Untouched, Check::Steady] {
+    for check in [
+        CalibrationCondition::NoFault,
+        CalibrationCondition::Open,
+        CalibrationCondition::Untouched,
+        CalibrationCondition::Steady,
+    ] {
         let old = checks.check(check, &sample, &status, hand.clock.now());
         assert_eq!(old, None, "{check:?}: what is old says nothing of now");
     }

@@ -60,11 +60,11 @@ pub fn unseen(force: &TimeSeries, span: RiseSpan) -> Unseen {
     let slopes = pairs().map(|(a, b)| (b.v - a.v) / (b.t - a.t).max(1e-3));
     let steepest = slopes.fold(0.0, f64::max);
     let peak = points.iter().map(|point| point.v).fold(0.0, f64::max);
-    let told = BRIEF_SIGMAS * span.noise_g + BRIEF_G;
+    let least = BRIEF_SIGMAS * span.noise_g + BRIEF_G;
     let mut unseen = Unseen::default();
     for (a, b) in pairs().filter(|(a, b)| b.t >= from && a.t <= to) {
         let apart = b.t - a.t;
-        let is_brief = a.v >= peak && b.v < BRIEF_BELOW * peak && a.v - b.v > told;
+        let is_brief = a.v >= peak && b.v < BRIEF_BELOW * peak && a.v - b.v > least;
         if apart > GAP_S || is_brief {
             let missed = a.v.max(0.0) + steepest * apart - peak;
             unseen.missed_g = unseen.missed_g.max(missed);

@@ -37,7 +37,7 @@ struct TrialCurves {
 /// Data for the template.
 #[derive(Template)]
 #[template(path = "report.html", config = "trials/report/askama.toml")]
-struct ReportPage<'a> {
+struct TrialReportPage<'a> {
     head: &'a SessionHead,
     plan: &'a TrialPlan,
     trials: &'a [TrialSummary],
@@ -73,7 +73,7 @@ impl Report {
     /// # Errors
     /// A template error.
     pub fn html(&self, session: &TrialSessionFile) -> Result<String, askama::Error> {
-        let page = ReportPage {
+        let page = TrialReportPage {
             head: &session.head,
             plan: &session.head.plan,
             trials: &session.trials,
@@ -87,7 +87,7 @@ impl Report {
     }
 }
 
-impl ReportPage<'_> {
+impl TrialReportPage<'_> {
     fn angles(&self, angles: &PerDof<Option<Angle>>) -> String {
         let word = |(dof, angle): (Dof, &Option<Angle>)| {
             angle.map(|angle| format!("{} {}", dof.name(), angle.get()))

@@ -75,9 +75,9 @@ impl CloseFacts {
         let pressed = joint.contact_angle.zip(resting);
         let pressed = pressed.map(|(contact, resting)| contact - resting);
         let pressed = joint.steady_force_g.zip(pressed);
-        let (told, untold): (Option<_>, Option<_>) = match pressed {
+        let (measured, unmeasured): (Option<_>, Option<_>) = match pressed {
             Some((_, pressed)) if pressed < PRESSED_LEAST => (None, joint.steady_force_g),
-            told => (told, None),
+            measured => (measured, None),
         };
         Self {
             dof: joint.dof,
@@ -99,8 +99,8 @@ impl CloseFacts {
             is_clipped: joint.clipped == Some(true),
             steady_g: joint.steady_force_g,
             noise_g: joint.noise_g.unwrap_or_default(),
-            stiffness: told.map(|(steady, pressed)| steady / pressed),
-            stiffness_at_least: untold.map(|steady| steady / PRESSED_LEAST),
+            stiffness: measured.map(|(steady, pressed)| steady / pressed),
+            stiffness_at_least: unmeasured.map(|steady| steady / PRESSED_LEAST),
             slips: joint.slip_count,
             reading_s: joint.rate_hz.map(|rate| 1.0 / rate.max(1.0)),
             longest_gap_s: joint.longest_gap_s,

@@ -10,7 +10,7 @@ use crate::hand::statistics::{count, mean, spread};
 use crate::trials::search::close::CloseFacts;
 use crate::trials::search::finding::JointClaim;
 use crate::trials::search::joint::JointModel;
-use crate::trials::search::peak::Contact;
+use crate::trials::search::peak::ContactSetting;
 use crate::trials::search::tolerance::{Assurance, tolerance_factor};
 
 /// The largest peak is not an exact bound: readings may miss the top of a peak, and scaled peaks are uncertain. This many
@@ -80,7 +80,7 @@ impl Confirmation {
     pub(crate) fn claims(
         &self,
         models: &[JointModel],
-        now: Contact,
+        now: ContactSetting,
         is_free: bool,
     ) -> Vec<JointClaim> {
         let joints = self.joints.iter().zip(models);
@@ -103,7 +103,7 @@ impl JointCloses {
 }
 
 /// Bound of the future peaks of a setting, g.
-pub(crate) fn bound_g(model: &JointModel, now: Contact, is_free: bool) -> f64 {
+pub(crate) fn bound_g(model: &JointModel, now: ContactSetting, is_free: bool) -> f64 {
     if is_free {
         return largest_g(model, now);
     }
@@ -120,14 +120,14 @@ pub(crate) fn bound_g(model: &JointModel, now: Contact, is_free: bool) -> f64 {
 }
 
 /// The distribution-free bound, g; 0 without peaks.
-pub(crate) fn largest_g(model: &JointModel, now: Contact) -> f64 {
+pub(crate) fn largest_g(model: &JointModel, now: ContactSetting) -> f64 {
     let peaks = model.growth.carried(now).peaks_g;
     let highest = peaks.iter().copied().fold(0.0, f64::max);
     highest + LARGEST_MORE * deviation(&peaks)
 }
 
 /// True if one of the peaks was far above the others.
-pub(crate) fn has_tail(model: &JointModel, now: Contact) -> bool {
+pub(crate) fn has_tail(model: &JointModel, now: ContactSetting) -> bool {
     is_far_above(&model.growth.carried(now).peaks_g, model.noise_g())
 }
 

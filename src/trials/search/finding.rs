@@ -2,7 +2,7 @@
 
 use crate::hand::Dof;
 use crate::trials::plan::TrialSetting;
-use crate::trials::search::offset::Compared;
+use crate::trials::search::offset::ThresholdReference;
 use crate::trials::search::tolerance::Assurance;
 use serde::Serialize;
 use std::time::Duration;
@@ -225,7 +225,7 @@ pub struct ComparedThreshold {
     #[serde(rename = "joint")]
     pub dof: Dof,
     /// `None` if the closes do not determine it.
-    pub compared: Option<Compared>,
+    pub compared: Option<ThresholdReference>,
     /// Reading of its force sensor at rest, g.
     pub offset_g: f64,
 }
@@ -244,15 +244,15 @@ impl std::fmt::Display for ComparedThreshold {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let (name, offset) = (self.dof.name(), self.offset_g);
         match self.compared {
-            Some(Compared::AsRead) => write!(
+            Some(ThresholdReference::AsRead) => write!(
                 f,
                 "{name} compares its threshold with FORCE_ACT as read: it reads {offset:.0} g at rest, so a threshold stops it at that much less force above rest"
             ),
-            Some(Compared::AboveRest) => write!(
+            Some(ThresholdReference::AboveRest) => write!(
                 f,
                 "{name} compares its threshold with the force above rest: the {offset:.0} g that it reads at rest do not count"
             ),
-            Some(Compared::Unknown) | None => write!(
+            Some(ThresholdReference::Unknown) | None => write!(
                 f,
                 "whether {name} counts the {offset:.0} g that it reads at rest in its threshold was not told"
             ),
@@ -262,7 +262,7 @@ impl std::fmt::Display for ComparedThreshold {
 
 /// A question that the search could not answer.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum Untold {
+pub enum OpenQuestion {
     #[error("whether the object slipped: the fingertip of {} told too little", dof.name())]
     Slips { dof: Dof },
     #[error(
@@ -285,7 +285,7 @@ pub enum Untold {
     OtherSpeeds { closes: usize },
 }
 
-impl Untold {
+impl OpenQuestion {
     /// True for the same question about the same joint; figures may differ.
     pub(crate) fn is_of_same(&self, other: &Self) -> bool {
         match (self, other) {
@@ -307,7 +307,7 @@ pub struct Finding {
     pub result: Result<Claim, NoClaim>,
     /// Every close, in order.
     pub tried: Vec<Tried>,
-    pub untold: Vec<Untold>,
+    pub open_questions: Vec<OpenQuestion>,
     /// The threshold references of the drives, in joint order.
     pub compared: Vec<ComparedThreshold>,
 }

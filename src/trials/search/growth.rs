@@ -4,8 +4,8 @@
 
 use crate::hand::impact::{overshoot_g, second_hand_overshoot_g};
 use crate::hand::statistics::{count, mean, median, spread};
-use crate::trials::search::offset::{Compared, OffsetEvidence};
-use crate::trials::search::peak::{CarriedPeaks, Contact, SeenPeak};
+use crate::trials::search::offset::{OffsetEvidence, ThresholdReference};
+use crate::trials::search::peak::{CarriedPeaks, ContactSetting, SeenPeak};
 
 /// Number of mixtures of the two published shapes.
 const MIXTURES: u32 = 10;
@@ -46,8 +46,8 @@ pub struct PeakGrowth {
     evidence: OffsetEvidence,
     noise_g: f64,
     /// The fitted shapes: the best, and all that are possible.
-    best: Option<Fit>,
-    possible: Vec<Fit>,
+    best: Option<GrowthFit>,
+    possible: Vec<GrowthFit>,
     is_strange: bool,
     /// Scatter of a peak, as a share of its overshoot.
     repeats_to: f64,
@@ -58,9 +58,9 @@ pub struct PeakGrowth {
 
 /// A fitted shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Fit {
-    compared: Compared,
-    shape: Shape,
+struct GrowthFit {
+    compared: ThresholdReference,
+    shape: GrowthShape,
     scale: f64,
     unsure: f64,
     misfit: f64,
@@ -92,13 +92,13 @@ impl PeakGrowth {
     }
 
     /// The reference of the drive's threshold; `None` if the closes do not determine it.
-    pub fn compared(&self) -> Option<Compared> {
-        self.evidence.told().or_else(|| {
+    pub fn compared(&self) -> Option<ThresholdReference> {
+        self.evidence.reference().or_else(|| {
             let (as_read, above_rest) = (self.as_read?, self.above_rest?);
             if as_read + COMPARED_TOLD < above_rest {
-                Some(Compared::AsRead)
+                Some(ThresholdReference::AsRead)
             } else if above_rest + COMPARED_TOLD < as_read {
-                Some(Compared::AboveRest)
+                Some(ThresholdReference::AboveRest)
             } else {
                 None
             }
@@ -125,7 +125,7 @@ impl PeakGrowth {
     }
 
     /// The expected peak, g; `None` before any was measured.
-    pub fn likely(&self, at: Contact) -> Option<f64> {
+    pub fn likely(&self, at: ContactSetting) -> Option<f64> {
         let best = self.best.as_ref()?;
         let stops_at = best.compared.stops_at(at.threshold_g, self.offset_g());
         let over = best.shape.peak_g(at.speed, stops_at, best.scale) - stops_at;
@@ -133,7 +133,7 @@ impl PeakGrowth {
     }
 
     /// Ratio of measured to fitted overshoot, interpolated between the nearest trials on both sides.
-    fn correction(&self, fit: &Fit, speed: f64) -> f64 {
+    fn correction(&self, fit: &GrowthFit, speed: f64) -> f64 {
         let side = |is_on_it: &dyn Fn(f64) -> bool, nearer: &dyn Fn(f64, f64) -> bool| {
             let on_it = self.seen.iter().map(|own| own.at.speed);
             let nearest = on_it.filter(|own| is_on_it(*own));
@@ -160,7 +160,7 @@ impl PeakGrowth {
     }
 
     /// The highest possible mean peak, g; `None` without a fit.
-    pub fn upper(&self, at: Contact) -> Option<f64> {
+    pub fn upper(&self, at: ContactSetting) -> Option<f64> {
         let most = self.possible.iter().map(|fit| {
             let stops_at = fit.compared.stops_at(at.threshold_g, self.offset_g());
             if self.is_strange {
@@ -178,7 +178,7 @@ impl PeakGrowth {
     /// The peaks of all relevant closes, those at this speed or faster and somewhat slower ones, scaled to it along the best
     /// shape: a stop that was late in one of them would be equally late here. Once there are several closes at this setting, their
     /// median corrects the scaling.
-    pub fn carried(&self, at: Contact) -> CarriedPeaks {
+    pub fn carried(&self, at: ContactSetting) -> CarriedPeaks {
         let Some(best) = self.best.as_ref() else {
             return CarriedPeaks::default();
         };
@@ -223,7 +223,7 @@ impl PeakGrowth {
     }
 
     /// Standard deviation of single closes around the expected peak, g.
-    pub fn scatter(&self, at: Contact) -> f64 {
+    pub fn scatter(&self, at: ContactSetting) -> f64 {
         let over = self.likely(at).unwrap_or_default() - self.stops_at(at.threshold_g);
         self.noise_g.hypot(self.repeats_to * over)
     }
@@ -232,7 +232,9 @@ impl PeakGrowth {
     fn repeated(&self) -> f64 {
         let (mut squares, mut freedom) = (REPEATS_TRUST * REPEATS_TO.powi(2), REPEATS_TRUST);
         let mut fitted = FITTED;
-        let compared = self.best.map_or(Compared::AboveRest, |fit| fit.compared);
+        let compared = self
+            .best
+            .map_or(ThresholdReference::AboveRest, |fit| fit.compared);
         for (nth, own) in self.seen.iter().enumerate() {
             let is_first = self.seen.iter().take(nth).all(|other| other.at != own.at);
             let same = self.seen.iter().filter(|other| other.at == own.at);
@@ -257,31 +259,31 @@ impl PeakGrowth {
     fn fit_all(&mut self) {
         let mixtures = (0..=MIXTURES).map(|n| f64::from(n) / f64::from(MIXTURES));
         let mixtures =
-            mixtures.flat_map(|second| PACES.map(|pace| Shape::Published { second, pace }));
-        let shapes: Vec<Shape> = mixtures.chain(POWERS.map(Shape::Late)).collect();
+            mixtures.flat_map(|second| PACES.map(|pace| GrowthShape::Published { second, pace }));
+        let shapes: Vec<GrowthShape> = mixtures.chain(POWERS.map(GrowthShape::Late)).collect();
         let repeats = self.repeats();
-        let fits_of = |compared: Compared| -> Vec<Fit> {
+        let fits_of = |compared: ThresholdReference| -> Vec<GrowthFit> {
             let shapes = shapes.iter();
             let fits = shapes.filter_map(|shape| self.fit(compared, *shape, &repeats));
             fits.collect()
         };
-        let all: Vec<Vec<Fit>> = self.evidence.possible().into_iter().map(fits_of).collect();
+        let all: Vec<Vec<GrowthFit>> = self.evidence.possible().into_iter().map(fits_of).collect();
         let best = all
             .iter()
             .flatten()
             .min_by(|a, b| a.misfit.total_cmp(&b.misfit));
         let best = best.copied();
         let least = best.map_or(0.0, |fit| fit.misfit);
-        let misfit_of = |compared: Compared| {
+        let misfit_of = |compared: ThresholdReference| {
             let own = all.iter().flatten().filter(|fit| fit.compared == compared);
             own.map(|fit| fit.misfit).reduce(f64::min)
         };
-        let evidence_of = |compared: Compared| {
+        let evidence_of = |compared: ThresholdReference| {
             let own = all.iter().flatten().filter(|fit| fit.compared == compared);
             own.map(|fit| fit.misfit_of_settings).reduce(f64::min)
         };
-        self.as_read = evidence_of(Compared::AsRead);
-        self.above_rest = evidence_of(Compared::AboveRest);
+        self.as_read = evidence_of(ThresholdReference::AsRead);
+        self.above_rest = evidence_of(ThresholdReference::AboveRest);
         let trials: f64 = self.seen.iter().map(|_| 1.0).sum();
         self.is_strange = least > STRANGE * trials;
         let possible = all.iter().flatten().filter(|fit| {
@@ -304,7 +306,12 @@ impl PeakGrowth {
     }
 
     /// Fits the scale by weighted least squares. A peak below the force that stops the drive shows no overshoot and is skipped.
-    fn fit(&self, compared: Compared, shape: Shape, repeats: &[f64]) -> Option<Fit> {
+    fn fit(
+        &self,
+        compared: ThresholdReference,
+        shape: GrowthShape,
+        repeats: &[f64],
+    ) -> Option<GrowthFit> {
         let noise = self.noise_g + 1.0;
         let (mut xy, mut xx) = (0.0, 0.0);
         let tells = |own: &&SeenPeak| !compared.is_contradicted_by(own, self.noise_g);
@@ -335,7 +342,7 @@ impl PeakGrowth {
             misfit += own;
             misfit_of_settings += own / repeats;
         }
-        Some(Fit {
+        Some(GrowthFit {
             compared,
             shape,
             scale,
@@ -346,7 +353,7 @@ impl PeakGrowth {
     }
 
     /// The scale at which a shape passes through the fastest trial.
-    fn scale_of_fastest(&self, fit: &Fit) -> f64 {
+    fn scale_of_fastest(&self, fit: &GrowthFit) -> f64 {
         let fastest = self.seen.iter();
         let fastest = fastest.max_by(|a, b| a.at.speed.total_cmp(&b.at.speed));
         fastest.map_or(0.0, |from| {
@@ -360,7 +367,7 @@ impl PeakGrowth {
     }
 }
 
-impl Fit {
+impl GrowthFit {
     /// The fitted overshoot of a close, g.
     fn over_g(&self, seen: &SeenPeak) -> f64 {
         let stops_at = self.compared.stops_at_in(seen);
@@ -370,7 +377,7 @@ impl Fit {
 
 /// Shape of the growth of a peak with the speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Shape {
+enum GrowthShape {
     /// As measured on the published block.
     Published {
         /// Share of the second hand's shape, 0..=1.
@@ -382,7 +389,7 @@ enum Shape {
     Late(f64),
 }
 
-impl Shape {
+impl GrowthShape {
     /// The peak of a drive that is stopped at this force, g.
     fn peak_g(self, speed: f64, stops_at: f64, scale: f64) -> f64 {
         match self {
@@ -423,14 +430,14 @@ fn published_g(speed: f64, threshold_g: f64, second: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn at(speed: f64) -> Contact {
-        Contact {
+    fn at(speed: f64) -> ContactSetting {
+        ContactSetting {
             speed,
             threshold_g: 220.0,
         }
     }
 
-    fn seen(at: Contact, offset_g: f64, peak_g: f64) -> SeenPeak {
+    fn seen(at: ContactSetting, offset_g: f64, peak_g: f64) -> SeenPeak {
         SeenPeak {
             at,
             offset_g,
@@ -493,7 +500,7 @@ mod tests {
         let stops_at = 220.0 - 146.0;
         let closes = [25.0, 8.0].map(|speed| seen(at(speed), 146.0, stops_at + late_g(speed)));
         let growth = known(3.0, &closes);
-        assert_eq!(growth.compared(), Some(Compared::AsRead));
+        assert_eq!(growth.compared(), Some(ThresholdReference::AsRead));
         for speed in [50.0, 200.0, 434.0, 1000.0] {
             let (upper, truth) = (growth.upper(at(speed)).unwrap(), stops_at + late_g(speed));
             assert!(upper > truth, "{speed}: {upper} {truth}");
@@ -504,7 +511,7 @@ mod tests {
     fn a_drive_that_does_not_count_the_offset_is_told_by_a_negative_one() {
         let closes = [25.0, 8.0].map(|speed| seen(at(speed), -60.0, 220.0 + 0.2 * late_g(speed)));
         let growth = known(3.0, &closes);
-        assert_eq!(growth.compared(), Some(Compared::AboveRest));
+        assert_eq!(growth.compared(), Some(ThresholdReference::AboveRest));
     }
 
     #[test]

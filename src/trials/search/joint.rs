@@ -5,8 +5,8 @@ use crate::hand::statistics::{count, mean, median, spread};
 use crate::trials::search::close::CloseFacts;
 use crate::trials::search::finding::{ComparedThreshold, NoClaim};
 use crate::trials::search::growth::PeakGrowth;
-use crate::trials::search::offset::Compared;
-use crate::trials::search::peak::{Contact, SeenPeak};
+use crate::trials::search::offset::ThresholdReference;
+use crate::trials::search::peak::{ContactSetting, SeenPeak};
 
 /// Published scatter of a contact, units of ANGLE_ACT (7.5 counts of the position), and its weight in closes.
 const CONTACT_SCATTER: f64 = 3.75;
@@ -82,7 +82,7 @@ impl JointModel {
     }
 
     /// Learns from a close. Returns the reason to end the search if the object gave.
-    pub(crate) fn learn(&mut self, facts: &CloseFacts, at: Contact) -> Option<NoClaim> {
+    pub(crate) fn learn(&mut self, facts: &CloseFacts, at: ContactSetting) -> Option<NoClaim> {
         let dof = self.dof;
         self.noises.push(facts.noise_g);
         self.growth.set_noise(self.noise_g());
@@ -125,7 +125,7 @@ impl JointModel {
     }
 
     /// The stiffness before and now, if it dropped.
-    fn gives(&self, facts: &CloseFacts, at: Contact) -> Option<(f64, f64)> {
+    fn gives(&self, facts: &CloseFacts, at: ContactSetting) -> Option<(f64, f64)> {
         let stops_at = self.growth.stops_at(at.threshold_g);
         let gone = facts.peak_g.zip(facts.steady_g).filter(|(peak, steady)| {
             *peak >= stops_at && *steady < GONE_BELOW * stops_at && peak - steady > stops_at / 4.0
@@ -139,12 +139,12 @@ impl JointModel {
     }
 
     /// Motion of a joint between two readings, units of ANGLE_ACT.
-    fn step(&self, facts: &CloseFacts, at: Contact) -> f64 {
+    fn step(&self, facts: &CloseFacts, at: ContactSetting) -> f64 {
         facts.reading_s.unwrap_or_default() * at.speed * self.rate()
     }
 
     /// The stiffness shown by a close; `None` if the error of the contact is a large part of the way into the object.
-    fn stiffness_in(&self, facts: &CloseFacts, at: Contact) -> Option<f64> {
+    fn stiffness_in(&self, facts: &CloseFacts, at: ContactSetting) -> Option<f64> {
         let pressed = facts.steady_g.zip(facts.stiffness);
         let (steady, stiffness) = pressed.filter(|_| !facts.is_uncertain)?;
         let pressed = steady / stiffness.max(0.01);
@@ -152,7 +152,7 @@ impl JointModel {
     }
 
     /// Upper bound of the stiffness in a close: interpolation places a contact early, never late.
-    fn stiffness_most(&self, facts: &CloseFacts, at: Contact) -> Option<f64> {
+    fn stiffness_most(&self, facts: &CloseFacts, at: ContactSetting) -> Option<f64> {
         let pressed = facts.steady_g.zip(facts.stiffness);
         let (steady, stiffness) = pressed.filter(|_| !facts.is_uncertain)?;
         let pressed = steady / stiffness.max(0.01) - self.step(facts, at);
@@ -162,9 +162,9 @@ impl JointModel {
     /// The trend of the contact from close to close, if the object does not stay in place.
     pub(crate) fn creeps(&self) -> Option<NoClaim> {
         let (counts, unsure) = trend(&self.contacts)?;
-        let is_told = counts.abs() > CREEP_SIGMAS * unsure;
+        let is_certain = counts.abs() > CREEP_SIGMAS * unsure;
         let way = counts.abs() * count(&self.contacts);
-        (is_told && way > CREEP_LEAST).then_some(NoClaim::Creeps {
+        (is_certain && way > CREEP_LEAST).then_some(NoClaim::Creeps {
             dof: self.dof,
             counts,
         })
@@ -218,8 +218,8 @@ impl JointModel {
         let stops_at = self.stops_least(limit_g);
         let compared = self.growth.compared();
         let counted = match compared {
-            Some(Compared::AsRead) => offset,
-            Some(Compared::AboveRest | Compared::Unknown) => 0.0,
+            Some(ThresholdReference::AsRead) => offset,
+            Some(ThresholdReference::AboveRest | ThresholdReference::Unknown) => 0.0,
             None => offset.max(0.0),
         };
         (stops_at + counted).max(THRESHOLD_MIN_G)
@@ -227,7 +227,10 @@ impl JointModel {
 
     /// The threshold that stops the drive at this force above rest, g; without the offset unless its drive is known to count it.
     pub(crate) fn threshold_for(&self, force_g: f64) -> f64 {
-        let compared = self.growth.compared().unwrap_or(Compared::AboveRest);
+        let compared = self
+            .growth
+            .compared()
+            .unwrap_or(ThresholdReference::AboveRest);
         compared.threshold_for(force_g, self.growth.offset_g())
     }
 
@@ -241,7 +244,7 @@ impl JointModel {
     }
 
     /// Lower bound of the remaining grip, g; `None` before any peak was measured.
-    pub(crate) fn holds(&self, at: Contact) -> Option<f64> {
+    pub(crate) fn holds(&self, at: ContactSetting) -> Option<f64> {
         let peak = self.growth.likely(at)?;
         let over = (1.0 - self.growth.stops_at(at.threshold_g) / peak.max(1.0)).clamp(0.0, 1.0);
         Some(self.left_of_peak(over) * peak - HOLD_MORE_G - self.noise_g())
@@ -253,7 +256,10 @@ impl JointModel {
         let seen = self.left.iter().filter(|own| own.peak_g > 1.0);
         let seen: Vec<(f64, f64)> = seen
             .map(|own| {
-                let compared = self.growth.compared().unwrap_or(Compared::AboveRest);
+                let compared = self
+                    .growth
+                    .compared()
+                    .unwrap_or(ThresholdReference::AboveRest);
                 let stops_at = compared.stops_at(own.threshold_g, own.offset_g);
                 let over = (1.0 - stops_at / own.peak_g).clamp(0.0, 1.0);
                 (over, own.steady_g / own.peak_g)

@@ -40,7 +40,7 @@ const fn stops(sd: f64, tail: (f64, f64)) -> Stops {
     }
 }
 
-struct Hand {
+struct LateHand {
     stops: Stops,
     rng: fastrand::Rng,
 }
@@ -55,7 +55,7 @@ struct Close {
     stop_s: f64,
 }
 
-impl Hand {
+impl LateHand {
     fn normal(&mut self, mean: f64, sd: f64) -> f64 {
         let u = self.rng.f64().max(f64::MIN_POSITIVE);
         let v = self.rng.f64();
@@ -193,7 +193,7 @@ fn count(stops: Stops, goal: &SearchGoal, most: u64) -> Count {
     let mut count = Count::default();
     for seed in 0..searches {
         let rng = fastrand::Rng::with_seed(seed);
-        let mut hand = Hand { stops, rng };
+        let mut hand = LateHand { stops, rng };
         count.searches += 1;
         let Some((claim, _)) = hand.search(goal) else {
             continue;
@@ -245,7 +245,7 @@ fn a_stop_later_than_all_before_seldom_goes_far_over_the_limit() {
         for seed in seeds {
             let rng = fastrand::Rng::with_seed(*seed);
             let stops = stops(2.0, (tail, 40.0));
-            let mut hand = Hand { stops, rng };
+            let mut hand = LateHand { stops, rng };
             let (claim, peaks) = hand.search(&goal).unwrap();
             let highest = peaks.iter().copied().fold(0.0, f64::max);
             assert!(highest < far, "{tail} {seed}: {highest} of {claim}");
@@ -259,7 +259,7 @@ fn a_claim_of_few_closes_says_what_it_takes_for_granted_unless_a_stop_was_late()
         closes: 10,
         ..SearchGoal::new(&[Dof::Index], LIMIT_G)
     };
-    let mut hand = Hand {
+    let mut hand = LateHand {
         stops: stops(2.0, (0.0, 0.0)),
         rng: fastrand::Rng::with_seed(1),
     };
@@ -273,7 +273,7 @@ fn a_claim_of_few_closes_says_what_it_takes_for_granted_unless_a_stop_was_late()
     );
     // One stop in five is late, which ten closes show.
     let late = (0..5).find_map(|seed| {
-        let mut hand = Hand {
+        let mut hand = LateHand {
             stops: stops(2.0, (0.2, 20.0)),
             rng: fastrand::Rng::with_seed(seed),
         };

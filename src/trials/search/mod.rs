@@ -19,10 +19,10 @@ pub mod settings_search;
 pub mod tolerance;
 
 pub use crate::trials::search::finding::{
-    Claim, ComparedThreshold, Finding, FoundApproach, JointClaim, NoClaim, SearchProgress,
-    SearchStage, Tried, Untold,
+    Claim, ComparedThreshold, Finding, FoundApproach, JointClaim, NoClaim, OpenQuestion,
+    SearchProgress, SearchStage, Tried,
 };
 pub use crate::trials::search::goal::{GoalError, SearchGoal};
-pub use crate::trials::search::offset::Compared;
+pub use crate::trials::search::offset::ThresholdReference;
 pub use crate::trials::search::settings_search::{NextClose, SettingsSearch};
 pub use crate::trials::search::tolerance::Assurance;

@@ -5,15 +5,15 @@ use crate::trials::search::peak::SeenPeak;
 use serde::Serialize;
 
 /// A peak is distinct from a threshold beyond this many times the noise plus some grams.
-const TOLD_SIGMAS: f64 = 4.0;
-const TOLD_MORE_G: f64 = 3.0;
+const DISTINCT_SIGMAS: f64 = 4.0;
+const DISTINCT_MORE_G: f64 = 3.0;
 /// A reference is excluded if more than this share of the closes contradict it.
 const AGAINST_MOST: f64 = 0.25;
 
 /// The reference of a drive's force threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Default)]
 #[serde(rename_all = "snake_case")]
-pub enum Compared {
+pub enum ThresholdReference {
     /// FORCE_ACT as read, including the sensor's offset (manual 2.6.12).
     #[default]
     AsRead,
@@ -23,7 +23,7 @@ pub enum Compared {
     Unknown,
 }
 
-impl Compared {
+impl ThresholdReference {
     /// All, the manual's first.
     pub const ALL: [Self; 3] = [Self::AsRead, Self::AboveRest, Self::Unknown];
 
@@ -48,7 +48,7 @@ impl Compared {
 
     /// True if a peak is lower than this reference allows.
     pub(crate) fn is_contradicted_by(self, seen: &SeenPeak, noise_g: f64) -> bool {
-        self.over_g(seen) < -told_from(noise_g) - seen.missed_g
+        self.over_g(seen) < -distinct_from_g(noise_g) - seen.missed_g
     }
 
     /// The threshold that stops the drive at this force above rest, g.
@@ -61,8 +61,8 @@ impl Compared {
 }
 
 /// Smallest difference that is distinct from noise, g.
-pub(crate) fn told_from(noise_g: f64) -> f64 {
-    TOLD_SIGMAS * noise_g + TOLD_MORE_G
+pub(crate) fn distinct_from_g(noise_g: f64) -> f64 {
+    DISTINCT_SIGMAS * noise_g + DISTINCT_MORE_G
 }
 
 /// Evidence about the reference of a drive, from the closes of its joint.
@@ -77,10 +77,11 @@ pub struct OffsetEvidence {
 
 impl OffsetEvidence {
     pub(crate) fn add(&mut self, seen: &SeenPeak, noise_g: f64) {
-        let against = |compared: Compared| f64::from(compared.is_contradicted_by(seen, noise_g));
+        let against =
+            |compared: ThresholdReference| f64::from(compared.is_contradicted_by(seen, noise_g));
         self.closes += 1.0;
-        self.against_as_read += against(Compared::AsRead);
-        self.against_above_rest += against(Compared::AboveRest);
+        self.against_as_read += against(ThresholdReference::AsRead);
+        self.against_above_rest += against(ThresholdReference::AboveRest);
         self.offset_g = seen.offset_g;
     }
 
@@ -98,21 +99,21 @@ impl OffsetEvidence {
     }
 
     /// The references that are still possible.
-    pub(crate) fn possible(&self) -> Vec<Compared> {
+    pub(crate) fn possible(&self) -> Vec<ThresholdReference> {
         let as_read = !self.is_against(self.against_as_read);
         let above_rest = !self.in_air && !self.is_against(self.against_above_rest);
         match (as_read, above_rest) {
-            (true, true) => vec![Compared::AsRead, Compared::AboveRest],
-            (true, false) => vec![Compared::AsRead],
-            (false, true) => vec![Compared::AboveRest],
-            (false, false) => vec![Compared::Unknown],
+            (true, true) => vec![ThresholdReference::AsRead, ThresholdReference::AboveRest],
+            (true, false) => vec![ThresholdReference::AsRead],
+            (false, true) => vec![ThresholdReference::AboveRest],
+            (false, false) => vec![ThresholdReference::Unknown],
         }
     }
 
     /// The reference, if the evidence leaves only one.
-    pub(crate) fn told(&self) -> Option<Compared> {
+    pub(crate) fn reference(&self) -> Option<ThresholdReference> {
         match self.possible().as_slice() {
-            [Compared::Unknown] => None,
+            [ThresholdReference::Unknown] => None,
             [one] => Some(*one),
             _ => None,
         }

@@ -2,7 +2,7 @@
 
 /// A speed and a threshold at the contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact {
+pub struct ContactSetting {
     /// Units of SPEED_SET.
     pub speed: f64,
     /// FORCE_SET, g.
@@ -12,7 +12,7 @@ pub struct Contact {
 /// The peak of one close.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenPeak {
-    pub at: Contact,
+    pub at: ContactSetting,
     /// Reading of the force sensor at rest before it, g.
     pub offset_g: f64,
     /// Highest force above that reading, g.

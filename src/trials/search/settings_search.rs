@@ -10,13 +10,13 @@ use crate::trials::recording::seconds;
 use crate::trials::search::close::CloseFacts;
 use crate::trials::search::confirm::{Confirmation, bound_g, has_tail, largest_g};
 use crate::trials::search::finding::{
-    Claim, ComparedThreshold, Finding, FoundApproach, NoClaim, SearchProgress, SearchStage, Tried,
-    Untold,
+    Claim, ComparedThreshold, Finding, FoundApproach, NoClaim, OpenQuestion, SearchProgress,
+    SearchStage, Tried,
 };
 use crate::trials::search::goal::{GoalError, LIMIT_MIN_G, SearchGoal, whole};
 use crate::trials::search::joint::JointModel;
-use crate::trials::search::offset::Compared;
-use crate::trials::search::peak::Contact;
+use crate::trials::search::offset::ThresholdReference;
+use crate::trials::search::peak::ContactSetting;
 use crate::trials::search::tolerance::{Assurance, FREE_95, tolerance_factor};
 use crate::trials::summary::Trial;
 use std::time::Duration;
@@ -99,7 +99,7 @@ enum SearchPhase {
 
 /// The setting and approach being tried.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Choice {
+pub(crate) struct Candidate {
     setting: TrialSetting,
     approach: FoundApproach,
 }
@@ -110,10 +110,10 @@ pub struct SettingsSearch {
     goal: SearchGoal,
     joints: Vec<JointModel>,
     phase: SearchPhase,
-    choice: Choice,
+    choice: Candidate,
     threshold_g: f64,
     /// Closes over the limit, or with a slip: nothing as fast at such a threshold is tried again.
-    barred: Vec<Contact>,
+    barred: Vec<ContactSetting>,
     /// Bound of the peaks, in standard deviations above their mean.
     factor: f64,
     /// Modelled hold that is required, g, after closes held less than their model.
@@ -124,10 +124,10 @@ pub struct SettingsSearch {
     /// A peak was far above the others: the distribution is not normal.
     has_tail: bool,
     tried: Vec<Tried>,
-    untold: Vec<Untold>,
+    open_questions: Vec<OpenQuestion>,
     result: Option<Result<Claim, NoClaim>>,
     /// Duration of the last close, including travel.
-    took: Option<Duration>,
+    last_duration: Option<Duration>,
 }
 
 impl SettingsSearch {
@@ -145,7 +145,7 @@ impl SettingsSearch {
         Ok(Self {
             joints,
             phase: SearchPhase::First,
-            choice: Choice {
+            choice: Candidate {
                 setting,
                 approach: FoundApproach::OneStage,
             },
@@ -157,9 +157,9 @@ impl SettingsSearch {
             confirmations: 0,
             has_tail: false,
             tried: Vec::new(),
-            untold: Vec::new(),
+            open_questions: Vec::new(),
             result: None,
-            took: None,
+            last_duration: None,
             goal,
         })
     }
@@ -175,17 +175,19 @@ impl SettingsSearch {
         let compared: Vec<ComparedThreshold> =
             self.joints.iter().map(JointModel::compared).collect();
         let open = compared.iter().filter(|own| {
-            let is_told = own.compared.is_some_and(|own| own != Compared::Unknown);
-            !is_told && own.is_notable()
+            let is_known = own
+                .compared
+                .is_some_and(|own| own != ThresholdReference::Unknown);
+            !is_known && own.is_notable()
         });
-        let open = open.map(|own| Untold::Offset {
+        let open = open.map(|own| OpenQuestion::Offset {
             dof: own.dof,
             offset_g: own.offset_g,
         });
         Some(Finding {
             result,
             tried: self.tried.clone(),
-            untold: self.untold.iter().copied().chain(open).collect(),
+            open_questions: self.open_questions.iter().copied().chain(open).collect(),
             compared,
         })
     }
@@ -207,7 +209,7 @@ impl SettingsSearch {
             SearchPhase::Confirming(confirmation) => {
                 let here = confirmation.closes();
                 let done = if self.is_free() {
-                    self.told(self.at(self.speed()))
+                    self.relevant_closes(self.at(self.speed()))
                 } else {
                     here
                 };
@@ -219,7 +221,7 @@ impl SettingsSearch {
                 (SearchStage::Confirming { done, of }, left)
             }
         };
-        let each = self.took.unwrap_or(CLOSE_TAKES);
+        let each = self.last_duration.unwrap_or(CLOSE_TAKES);
         let left = u32::try_from(closes_left).map_or(Duration::MAX, |n| each.saturating_mul(n));
         SearchProgress {
             stage,
@@ -255,14 +257,14 @@ impl SettingsSearch {
 
     /// Learns from a completed close, and chooses the next.
     pub fn learn(&mut self, trial: &Trial) {
-        self.took = took(trial).or(self.took);
+        self.last_duration = duration_of(trial).or(self.last_duration);
         self.learn_facts(trial.summary.number, &CloseFacts::of(trial));
     }
 
     /// Learns from the facts of a completed close, and chooses the next.
     pub(crate) fn learn_facts(&mut self, number: usize, facts: &[CloseFacts]) {
         self.note(number, facts);
-        if let Err(none) = self.take(facts) {
+        if let Err(none) = self.apply(facts) {
             self.result.get_or_insert(Err(none));
         }
         if self.result.is_none() && self.tried.len() >= TRIALS_MAX {
@@ -287,13 +289,13 @@ impl SettingsSearch {
         });
     }
 
-    fn take(&mut self, facts: &[CloseFacts]) -> Result<(), NoClaim> {
+    fn apply(&mut self, facts: &[CloseFacts]) -> Result<(), NoClaim> {
         // Checked first, since no contact is detectable in noise.
         self.check_noise(facts)?;
         if let Some(stopped) = self.stopped_in_air(facts) {
             return self.stop_later(stopped);
         }
-        let slips = self.look(facts)?;
+        let slips = self.inspect(facts)?;
         let at = self.at(self.speed());
         let goal = &self.goal;
         for (joint, facts) in self.joints.iter_mut().zip(facts) {
@@ -308,7 +310,7 @@ impl SettingsSearch {
         let over = self.tried.last().is_some_and(|own| own.over_limit);
         if over || slips {
             let threshold_g = if slips { 0.0 } else { at.threshold_g };
-            self.bar(Contact { threshold_g, ..at });
+            self.bar(ContactSetting { threshold_g, ..at });
             return self.narrow(facts, slips);
         }
         if let Some(unseen) = facts.iter().find(|joint| joint.is_uncertain) {
@@ -368,18 +370,18 @@ impl SettingsSearch {
         self.again(NoClaim::Offset { dof, offset_g })
     }
 
-    fn bar(&mut self, at: Contact) {
+    fn bar(&mut self, at: ContactSetting) {
         self.barred.push(at);
     }
 
-    fn is_barred(&self, at: Contact) -> bool {
+    fn is_barred(&self, at: ContactSetting) -> bool {
         self.barred.iter().any(|own| {
             at.speed >= BARRED_FROM * own.speed && at.threshold_g >= own.threshold_g - 1.0
         })
     }
 
     /// Checks the facts: `Err` ends the search; otherwise true if the object slipped.
-    fn look(&mut self, facts: &[CloseFacts]) -> Result<bool, NoClaim> {
+    fn inspect(&mut self, facts: &[CloseFacts]) -> Result<bool, NoClaim> {
         let mut slips = false;
         let is_first = self.phase == SearchPhase::First;
         for joint in facts {
@@ -403,7 +405,7 @@ impl SettingsSearch {
                 return Err(NoClaim::NoStop { dof });
             }
             slips |= joint.slips.is_some_and(|count| count > 0);
-            self.note_untold(joint);
+            self.note_open_questions(joint);
         }
         if facts.len() < self.joints.len() {
             let dof = self.joints.first().map_or(Dof::Index, |own| own.dof);
@@ -412,18 +414,19 @@ impl SettingsSearch {
         Ok(slips)
     }
 
-    fn note_untold(&mut self, joint: &CloseFacts) {
+    fn note_open_questions(&mut self, joint: &CloseFacts) {
         let dof = joint.dof;
         let gap = joint.longest_gap_s.filter(|gap| *gap > GAP_S);
-        let is_known = |untold: &Untold| self.untold.iter().any(|own| own.is_of_same(untold));
-        let slips = joint.slips.is_none().then_some(Untold::Slips { dof });
-        let gaps = gap.map(|gap_s| Untold::Gaps { dof, gap_s });
-        let new: Vec<Untold> = slips
+        let is_known =
+            |one: &OpenQuestion| self.open_questions.iter().any(|own| own.is_of_same(one));
+        let slips = joint.slips.is_none().then_some(OpenQuestion::Slips { dof });
+        let gaps = gap.map(|gap_s| OpenQuestion::Gaps { dof, gap_s });
+        let new: Vec<OpenQuestion> = slips
             .into_iter()
             .chain(gaps)
-            .filter(|untold| !is_known(untold))
+            .filter(|one| !is_known(one))
             .collect();
-        self.untold.extend(new);
+        self.open_questions.extend(new);
     }
 
     fn check_noise(&self, facts: &[CloseFacts]) -> Result<(), NoClaim> {
@@ -451,8 +454,8 @@ impl SettingsSearch {
         f64::from(self.choice.setting.speed.get())
     }
 
-    fn at(&self, speed: f64) -> Contact {
-        Contact {
+    fn at(&self, speed: f64) -> ContactSetting {
+        ContactSetting {
             speed,
             threshold_g: self.threshold_g,
         }
@@ -472,9 +475,9 @@ impl SettingsSearch {
         let under = self
             .thresholds()
             .into_iter()
-            .map(|threshold_g| Contact { speed, threshold_g });
+            .map(|threshold_g| ContactSetting { speed, threshold_g });
         let under = under.take_while(|at| self.is_under(*at, &Self::safe));
-        let under: Vec<Contact> = under.collect();
+        let under: Vec<ContactSetting> = under.collect();
         let holds = under.iter().find(|at| self.holds_enough(**at));
         let found = holds.or(under.last()).map(|at| at.threshold_g);
         self.threshold_g = found.unwrap_or(self.threshold_g);
@@ -486,13 +489,13 @@ impl SettingsSearch {
         Ok(())
     }
 
-    fn choose_at(&mut self, at: Contact) {
+    fn choose_at(&mut self, at: ContactSetting) {
         self.threshold_g = at.threshold_g;
         self.choose(at.speed, self.approach(at));
     }
 
     fn choose(&mut self, speed: f64, approach: FoundApproach) {
-        self.choice = Choice {
+        self.choice = Candidate {
             setting: TrialSetting {
                 speed: Speed::nearest(whole(speed)),
                 force: Force::nearest(whole(self.threshold_g)),
@@ -502,7 +505,7 @@ impl SettingsSearch {
     }
 
     /// The quicker approach at this speed; one stage if there is no room for two.
-    fn approach(&self, at: Contact) -> FoundApproach {
+    fn approach(&self, at: ContactSetting) -> FoundApproach {
         let margins = self.joints.iter().map(JointModel::margin);
         let margin = margins.fold(0.0, f64::max).ceil();
         let two = FoundApproach::TwoStage {
@@ -510,7 +513,9 @@ impl SettingsSearch {
             margin: whole(margin).clamp(1, 500),
         };
         let one = FoundApproach::OneStage;
-        if self.room() <= margin + 1.0 || self.takes(one, at) <= self.takes(two, at) {
+        if self.room() <= margin + 1.0
+            || self.estimated_close_s(one, at) <= self.estimated_close_s(two, at)
+        {
             one
         } else {
             two
@@ -527,7 +532,7 @@ impl SettingsSearch {
     }
 
     /// Estimated time of a close after the dead time, s.
-    fn takes(&self, approach: FoundApproach, at: Contact) -> f64 {
+    fn estimated_close_s(&self, approach: FoundApproach, at: ContactSetting) -> f64 {
         let rate = self.joints.first().map_or(1.5, JointModel::rate).max(0.01);
         let pressed = self.joints.iter().filter_map(|joint| {
             let stops_at = joint.growth.stops_at(at.threshold_g);
@@ -546,12 +551,12 @@ impl SettingsSearch {
     }
 
     /// The highest mean peak that is still possible, plus the scatter of single closes.
-    fn safe(&self, joint: &JointModel, at: Contact) -> Option<f64> {
+    fn safe(&self, joint: &JointModel, at: ContactSetting) -> Option<f64> {
         Some(joint.growth.upper(at)? + 2.0 * joint.growth.scatter(at))
     }
 
     /// The bound that will probably be confirmed.
-    fn expected(&self, joint: &JointModel, at: Contact) -> Option<f64> {
+    fn expected(&self, joint: &JointModel, at: ContactSetting) -> Option<f64> {
         let bound = self.expected_at_last(joint, at)?;
         if !self.is_early(joint, at) {
             return Some(bound);
@@ -561,7 +566,7 @@ impl SettingsSearch {
     }
 
     /// The same once enough closes show how late stops are.
-    fn expected_at_last(&self, joint: &JointModel, at: Contact) -> Option<f64> {
+    fn expected_at_last(&self, joint: &JointModel, at: ContactSetting) -> Option<f64> {
         let factor = if self.is_free() {
             LARGEST_SIGMAS
         } else {
@@ -588,27 +593,27 @@ impl SettingsSearch {
     }
 
     /// True while too few closes show how late stops are.
-    fn is_early(&self, joint: &JointModel, at: Contact) -> bool {
+    fn is_early(&self, joint: &JointModel, at: ContactSetting) -> bool {
         self.is_free() && joint.growth.carried(at).certain + HERE_LEAST < self.needed()
     }
 
     /// Number of closes relevant to this setting.
-    fn told(&self, at: Contact) -> usize {
-        let told = self.joints.iter().map(|own| own.growth.carried(at).certain);
-        told.min().unwrap_or_default()
+    fn relevant_closes(&self, at: ContactSetting) -> usize {
+        let counts = self.joints.iter().map(|own| own.growth.carried(at).certain);
+        counts.min().unwrap_or_default()
     }
 
     fn is_under(
         &self,
-        at: Contact,
-        bound: &impl Fn(&Self, &JointModel, Contact) -> Option<f64>,
+        at: ContactSetting,
+        bound: &impl Fn(&Self, &JointModel, ContactSetting) -> Option<f64>,
     ) -> bool {
         let under =
             |joint: &JointModel| bound(self, joint, at).is_some_and(|peak| peak <= self.limit());
         !self.is_barred(at) && self.joints.iter().all(under)
     }
 
-    fn holds_enough(&self, at: Contact) -> bool {
+    fn holds_enough(&self, at: ContactSetting) -> bool {
         let hold = f64::from(self.goal.hold_g).max(self.hold_more_g);
         let holds = |joint: &JointModel| joint.holds(at).is_some_and(|own| own >= hold);
         self.joints.iter().all(holds)
@@ -658,11 +663,11 @@ impl SettingsSearch {
     fn quickest(
         &self,
         most: f64,
-        bound: impl Fn(&Self, &JointModel, Contact) -> Option<f64>,
-    ) -> Option<Contact> {
-        let mut best: Option<(f64, Contact)> = None;
+        bound: impl Fn(&Self, &JointModel, ContactSetting) -> Option<f64>,
+    ) -> Option<ContactSetting> {
+        let mut best: Option<(f64, ContactSetting)> = None;
         for threshold_g in self.thresholds() {
-            let at = |speed| Contact { speed, threshold_g };
+            let at = |speed| ContactSetting { speed, threshold_g };
             let (mut low, mut high) = (f64::from(SLOWEST), most.floor() + 1.0);
             if low >= high || !self.is_under(at(low), &bound) {
                 continue;
@@ -680,7 +685,7 @@ impl SettingsSearch {
             if !self.holds_enough(at) {
                 continue;
             }
-            let takes = self.takes(self.approach(at), at);
+            let takes = self.estimated_close_s(self.approach(at), at);
             if best.is_none_or(|(least, _)| takes < least) {
                 best = Some((takes, at));
             }
@@ -689,15 +694,15 @@ impl SettingsSearch {
     }
 
     /// The quickest close that no result so far rules out.
-    fn quickest_safe(&self) -> Option<Contact> {
-        let both = |own: &Self, joint: &JointModel, at: Contact| {
+    fn quickest_safe(&self) -> Option<ContactSetting> {
+        let both = |own: &Self, joint: &JointModel, at: ContactSetting| {
             Some(own.safe(joint, at)?.max(own.expected(joint, at)?))
         };
         self.quickest(self.fastest_step(), both)
     }
 
     /// The quickest close that will probably be confirmed, no faster than any close so far.
-    fn quickest_likely(&self) -> Option<Contact> {
+    fn quickest_likely(&self) -> Option<ContactSetting> {
         self.quickest(self.fastest(), Self::expected)
     }
 
@@ -724,10 +729,10 @@ impl SettingsSearch {
 
     /// The highest threshold that stays under the limit, if it is more informative than those before. For when no setting is certain
     /// both to hold and to stay under the limit.
-    fn harder(&self) -> Option<Contact> {
+    fn harder(&self) -> Option<ContactSetting> {
         let thresholds = self.thresholds().into_iter().rev();
         let mut speeds = thresholds.filter_map(|threshold_g| {
-            let slower = |n: f64| Contact {
+            let slower = |n: f64| ContactSetting {
                 speed: (self.fastest() / n).max(SLOWEST.into()).floor(),
                 threshold_g,
             };
@@ -735,7 +740,7 @@ impl SettingsSearch {
             let mut safe = speeds.filter(|at| self.is_under(*at, &Self::safe));
             safe.next()
         });
-        let stops_at = |at: Contact| {
+        let stops_at = |at: ContactSetting| {
             let joints = self.joints.iter();
             let stops = joints.map(|joint| joint.growth.stops_at(at.threshold_g));
             stops.fold(f64::INFINITY, f64::min)
@@ -746,15 +751,15 @@ impl SettingsSearch {
     }
 
     /// Saving by this setting with its best approach, as a share of the last close.
-    fn gain(&self, at: Contact) -> f64 {
+    fn gain(&self, at: ContactSetting) -> f64 {
         let Some(close) = self.tried.last().and_then(|own| own.close_s) else {
             return 1.0;
         };
-        let now = self.takes(self.choice.approach, self.at(self.speed()));
-        (now - self.takes(self.approach(at), at)) / close.max(0.05)
+        let now = self.estimated_close_s(self.choice.approach, self.at(self.speed()));
+        (now - self.estimated_close_s(self.approach(at), at)) / close.max(0.05)
     }
 
-    fn confirm(&mut self, at: Contact) -> Result<(), NoClaim> {
+    fn confirm(&mut self, at: ContactSetting) -> Result<(), NoClaim> {
         self.confirmations += 1;
         if self.confirmations > CONFIRMATIONS_MAX {
             let trials = self.tried.len();
@@ -802,7 +807,7 @@ impl SettingsSearch {
 
     /// The reason why nothing fits, from the joint furthest over the limit at the lowest threshold that holds.
     fn too_strong(&self) -> NoClaim {
-        let slowest = |threshold_g| Contact {
+        let slowest = |threshold_g| ContactSetting {
             speed: SLOWEST.into(),
             threshold_g,
         };
@@ -871,7 +876,7 @@ impl SettingsSearch {
         let better = self.better(now, bound);
         match better.filter(|at| self.gain(*at) > WORTH_TEN) {
             Some(at) => self.confirm(at),
-            None if self.told(now) >= self.needed() || !self.is_free() => {
+            None if self.relevant_closes(now) >= self.needed() || !self.is_free() => {
                 self.claim();
                 Ok(())
             }
@@ -880,7 +885,7 @@ impl SettingsSearch {
     }
 
     /// Bound of future peaks, g: the highest of all joints.
-    fn bound(&self, now: Contact) -> f64 {
+    fn bound(&self, now: ContactSetting) -> f64 {
         let bounds = self
             .joints
             .iter()
@@ -903,8 +908,8 @@ impl SettingsSearch {
     }
 
     /// Another setting worth confirming, given the bound of the current one.
-    fn better(&self, now: Contact, bound: f64) -> Option<Contact> {
-        let safe = |own: &Self, joint: &JointModel, at: Contact| {
+    fn better(&self, now: ContactSetting, bound: f64) -> Option<ContactSetting> {
+        let safe = |own: &Self, joint: &JointModel, at: ContactSetting| {
             let is_known = at.speed <= now.speed && at.threshold_g <= now.threshold_g;
             let safe = own.safe(joint, at).filter(|_| !is_known);
             safe.unwrap_or_default()
@@ -929,7 +934,8 @@ impl SettingsSearch {
             let last = self.quickest(self.fastest_step(), |own, joint, at| {
                 Some((own.expected_at_last(joint, at)? / AIM).max(safe(own, joint, at)))
             });
-            let is_early = |at: &Contact| self.joints.iter().any(|own| self.is_early(own, *at));
+            let is_early =
+                |at: &ContactSetting| self.joints.iter().any(|own| self.is_early(own, *at));
             if let Some(at) = last.filter(|at| !is_early(at)) {
                 return Some(at);
             }
@@ -956,13 +962,18 @@ impl SettingsSearch {
             own.confirms = true;
         }
         for joint in joints.iter().filter(|joint| joint.stiffness_g.is_none()) {
-            self.untold.push(Untold::Stiffness { dof: joint.dof });
+            self.open_questions
+                .push(OpenQuestion::Stiffness { dof: joint.dof });
         }
-        let closes = if is_free { self.told(now) } else { here };
-        self.untold.extend(match closes - here.min(closes) {
-            _ if !is_free => Some(Untold::Distribution),
+        let closes = if is_free {
+            self.relevant_closes(now)
+        } else {
+            here
+        };
+        self.open_questions.extend(match closes - here.min(closes) {
+            _ if !is_free => Some(OpenQuestion::Distribution),
             0 => None,
-            slower => Some(Untold::OtherSpeeds { closes: slower }),
+            slower => Some(OpenQuestion::OtherSpeeds { closes: slower }),
         });
         let assurance = if self.goal.distribution_free {
             self.goal.assurance()
@@ -994,7 +1005,7 @@ fn gentle(goal: &SearchGoal, setting: TrialSetting) -> Speed {
 }
 
 /// Duration of a trial.
-fn took(trial: &Trial) -> Option<Duration> {
+fn duration_of(trial: &Trial) -> Option<Duration> {
     let rows = trial.recording.rows();
     let (first, last) = (rows.first()?, rows.last()?);
     Duration::try_from_secs_f64(seconds(first.at, last.at)).ok()

@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::checkup::ShownCheckup;
 use crate::app::files::export::Export;
 use crate::app::recordings::RecordingAction;
-use crate::checkup::subject::Light;
+use crate::checkup::subject::Grade;
 use crate::checkup::trend::day;
 use crate::ui::checkup::table;
 use crate::ui::kit::{self, Button, Label, Pane};
@@ -59,11 +59,11 @@ impl ReportView {
             let show = Button::said(look, checkup::REPORT).disabled(none);
             show.on_click(ui, pane, Action::Recording(reveal));
         });
-        let lights = [Light::Fine, Light::Watch, Light::Act, Light::Unknown];
+        let lights = [Grade::Fine, Grade::Watch, Grade::Act, Grade::Unknown];
         let [fine, watch, act, unknown] = lights.map(|light| report.count(light));
         let words = look.fill(checkup::LIGHTS, &[&fine, &watch, &act, &unknown]);
         let worst = report.checks.iter().map(|own| own.light).max();
-        let color = table::color(pane, worst.unwrap_or(Light::Unknown));
+        let color = table::color(pane, worst.unwrap_or(Grade::Unknown));
         Label::new(&words, color).named(&title).ui(ui);
         if let Some(why) = report.aborted {
             let words = look.fill(checkup::PARTIAL, &[&tune::abort(look, why)]);

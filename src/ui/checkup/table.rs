@@ -3,7 +3,7 @@
 use crate::checkup::check::Check;
 use crate::checkup::report::CheckupReport;
 use crate::checkup::report::line::past_words;
-use crate::checkup::subject::Light;
+use crate::checkup::subject::Grade;
 use crate::ui::kit::{self, Label, Pane, format};
 use crate::ui::text::{Text, checkup};
 use crate::ui::theme;
@@ -20,20 +20,20 @@ const TREND: f32 = 72.0;
 const ADVICE: f32 = 160.0;
 
 /// Colour of a grade.
-pub(super) const fn color(pane: &Pane<'_>, light: Light) -> Color32 {
+pub(super) const fn color(pane: &Pane<'_>, light: Grade) -> Color32 {
     let palette = pane.look.palette;
     match light {
-        Light::Fine => palette.ok,
-        Light::Unknown => palette.muted,
-        Light::Watch => palette.warn,
-        Light::Act => palette.bad,
+        Grade::Fine => palette.ok,
+        Grade::Unknown => palette.muted,
+        Grade::Watch => palette.warn,
+        Grade::Act => palette.bad,
     }
 }
 
 /// Draws the values, or only those that are not fine.
 pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, report: &CheckupReport, only: bool) {
     let look = pane.look;
-    let is_told = |own: &&Check| !only || own.light != Light::Fine || own.drift().is_some();
+    let is_told = |own: &&Check| !only || own.light != Grade::Fine || own.drift().is_some();
     let shown: Vec<&Check> = report.checks.iter().filter(is_told).collect();
     if shown.is_empty() {
         kit::say_ui(ui, look.say(checkup::ALL_FINE), look.palette.ok);

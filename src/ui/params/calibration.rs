@@ -4,7 +4,9 @@ use crate::app::procedures::{CalibrateProcedure, ProcedureAction, ProcedureStage
 use crate::app::state::State;
 use crate::hand::{Dof, ForceReading};
 use crate::record::Calibrated;
-use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Check, Checks, Offsets, TAKES};
+use crate::tasks::calibrate::{
+    CalibrateReport, CalibrateStep, CalibrationCondition, Checks, Offsets, TAKES,
+};
 use crate::ui::kit::{ButtonRole, Card, Look, format};
 use crate::ui::params::choices::{asking, close, step};
 use crate::ui::text::{Text, cards, errors, words};
@@ -26,7 +28,7 @@ fn ask(state: &State, card: Card, run: &Checks) -> Card {
     let (hand, now) = (state.hand(), state.now);
     let (sample, link) = (&hand.readings.sample, &hand.connection.status);
     let mut card = card.words(cards::CALIBRATE_WORDS);
-    for check in Check::ALL {
+    for check in CalibrationCondition::ALL {
         card = card.check(run.check(check, sample, link, now), cards::check(check));
     }
     let force = sample.force.map(|force| force.value.map(ForceReading::raw));

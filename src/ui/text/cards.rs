@@ -1,6 +1,6 @@
 //! Sentences of the cards over the window. No layout, no numbers.
 
-use crate::tasks::calibrate::Check;
+use crate::tasks::calibrate::CalibrationCondition;
 use crate::ui::style::phrase::texts;
 
 texts! {
@@ -80,12 +80,12 @@ texts! {
     OFFSET_AFTER: "After, g", "校准后 g";
 
     /// Precondition of a calibration.
-    fn check(Check) {
-        Check::Open => "Fingers and thumb are open", "手指和拇指已张开";
-        Check::Still => "No joint moves", "各关节静止";
-        Check::Untouched => "Nothing is touched", "没有接触物体";
-        Check::Steady => "The force is steady for 2 s", "力稳定 2 秒";
-        Check::NoFault => "No drive has a fault", "驱动器没有故障";
-        Check::Disarmed => "The hand is not armed", "灵巧手未使能";
+    fn check(CalibrationCondition) {
+        CalibrationCondition::Open => "Fingers and thumb are open", "手指和拇指已张开";
+        CalibrationCondition::Still => "No joint moves", "各关节静止";
+        CalibrationCondition::Untouched => "Nothing is touched", "没有接触物体";
+        CalibrationCondition::Steady => "The force is steady for 2 s", "力稳定 2 秒";
+        CalibrationCondition::NoFault => "No drive has a fault", "驱动器没有故障";
+        CalibrationCondition::Disarmed => "The hand is not armed", "灵巧手未使能";
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::checkup::check::Check;
 use crate::checkup::report::{CheckupReport, Keeping};
-use crate::checkup::subject::{Light, Part, Subject};
+use crate::checkup::subject::{Grade, HandPart, Subject};
 use crate::store::calendar::day;
 use crate::ui::style::Look;
 use crate::ui::style::phrase::{Text, texts};
@@ -58,11 +58,11 @@ texts! {
     HAND: "Hand", "整手";
 
     /// Name of a grade.
-    fn light(Light) {
-        Light::Fine => "fine", "正常";
-        Light::Unknown => "unknown", "未知";
-        Light::Watch => "watch", "关注";
-        Light::Act => "act", "处理";
+    fn light(Grade) {
+        Grade::Fine => "fine", "正常";
+        Grade::Unknown => "unknown", "未知";
+        Grade::Watch => "watch", "关注";
+        Grade::Act => "act", "处理";
     }
 }
 
@@ -123,18 +123,18 @@ pub(crate) const fn advice(what: Subject) -> Text {
 }
 
 /// Part of the hand that a value belongs to.
-pub(crate) const fn part(of: Part) -> Text {
+pub(crate) const fn part(of: HandPart) -> Text {
     match of {
-        Part::Joint(dof) => words::dof(dof),
-        Part::Fingertip(finger) => words::finger(finger),
-        Part::Hand => HAND,
+        HandPart::Joint(dof) => words::dof(dof),
+        HandPart::Fingertip(finger) => words::finger(finger),
+        HandPart::Hand => HAND,
     }
 }
 
 /// Advice about a value, and its drift.
 pub(crate) fn to_do(look: Look, check: &Check) -> String {
     let what = check.measured.what;
-    let advice = (check.light >= Light::Watch).then(|| look.say(advice(what)).to_owned());
+    let advice = (check.light >= Grade::Watch).then(|| look.say(advice(what)).to_owned());
     let drift = check.drift().map(|drift| {
         let row = what.row();
         let [from, to] = [drift.from, drift.to].map(|value| row.text(value));

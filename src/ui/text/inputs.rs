@@ -2,7 +2,7 @@
 
 use crate::inputs::dds::ctrl::CtrlFault;
 use crate::inputs::follow::FollowPhase;
-use crate::inputs::line::LineFault;
+use crate::inputs::line::StreamLineFault;
 use crate::inputs::pad::{PadAction, PadControl};
 use crate::ui::style::phrase::texts;
 
@@ -89,20 +89,20 @@ texts! {
     }
 
     /// Reason why a line was refused.
-    fn fault(LineFault) {
-        LineFault::TooLong => "Refused: too long", "拒绝：过长";
-        LineFault::NotFinite => "Refused: NaN or infinite", "拒绝：NaN 或无穷大";
-        LineFault::Malformed => "Refused: not such a line", "拒绝：格式错误";
-        LineFault::Type => "Refused: a field of another type", "拒绝：字段类型错误";
-        LineFault::Twice => "Refused: a field twice", "拒绝：字段重复";
-        LineFault::Version => "Refused: another version", "拒绝：版本不同";
-        LineFault::OtherSide => "Refused: other side", "拒绝：另一侧的手";
-        LineFault::Length => "Refused: not six values", "拒绝：不是六个数值";
-        LineFault::Range => "Refused: not 0 to 1", "拒绝：超出 0 至 1";
-        LineFault::Gap => "Refused: gap not 3 to 120 mm", "拒绝：间距超出 3 至 120 mm";
-        LineFault::Both => "Refused: gap and values", "拒绝：同时给出间距与数值";
-        LineFault::Late => "Refused: late", "拒绝：迟到";
-        LineFault::OtherSender => "Refused: another sender", "拒绝：其他来源";
+    fn fault(StreamLineFault) {
+        StreamLineFault::TooLong => "Refused: too long", "拒绝：过长";
+        StreamLineFault::NotFinite => "Refused: NaN or infinite", "拒绝：NaN 或无穷大";
+        StreamLineFault::Malformed => "Refused: not such a line", "拒绝：格式错误";
+        StreamLineFault::Type => "Refused: a field of another type", "拒绝：字段类型错误";
+        StreamLineFault::Twice => "Refused: a field twice", "拒绝：字段重复";
+        StreamLineFault::Version => "Refused: another version", "拒绝：版本不同";
+        StreamLineFault::OtherSide => "Refused: other side", "拒绝：另一侧的手";
+        StreamLineFault::Length => "Refused: not six values", "拒绝：不是六个数值";
+        StreamLineFault::Range => "Refused: not 0 to 1", "拒绝：超出 0 至 1";
+        StreamLineFault::Gap => "Refused: gap not 3 to 120 mm", "拒绝：间距超出 3 至 120 mm";
+        StreamLineFault::Both => "Refused: gap and values", "拒绝：同时给出间距与数值";
+        StreamLineFault::Late => "Refused: late", "拒绝：迟到";
+        StreamLineFault::OtherSender => "Refused: another sender", "拒绝：其他来源";
     }
 
     /// Reason why a command over DDS was refused.

@@ -109,8 +109,8 @@ fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
                     kit::say_ui(ui, &words, palette.muted);
                 }
             }
-            if !finding.untold.is_empty() {
-                let untold = finding.untold.iter();
+            if !finding.open_questions.is_empty() {
+                let untold = finding.open_questions.iter();
                 let untold = untold.map(|what| search::untold(look, *what));
                 let untold: Vec<String> = untold.collect();
                 let words = look.fill(search::UNTOLD, &[&look.list(&untold)]);

@@ -3,7 +3,7 @@
 use handscope::hand::Dof;
 use handscope::hand::gap::Gap;
 use handscope::hand::kinematics::Side;
-use handscope::inputs::line::LineFault;
+use handscope::inputs::line::StreamLineFault;
 use handscope::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
 use handscope::link::Clock;
 use std::collections::BTreeMap;
@@ -63,12 +63,12 @@ async fn datagrams_are_counted_by_what_is_wrong_and_followed_when_a_person_lets_
     let view = until(&source, |view| view.intake.refused.len() == 4).await;
     assert_eq!((view.intake.taken, view.not_granted), (2, 1));
     assert_eq!(stops.load(Ordering::Relaxed), 1);
-    let faults: Vec<LineFault> = view.intake.refused.keys().copied().collect();
+    let faults: Vec<StreamLineFault> = view.intake.refused.keys().copied().collect();
     for fault in [
-        LineFault::Late,
-        LineFault::NotFinite,
-        LineFault::Range,
-        LineFault::TooLong,
+        StreamLineFault::Late,
+        StreamLineFault::NotFinite,
+        StreamLineFault::Range,
+        StreamLineFault::TooLong,
     ] {
         assert!(faults.contains(&fault), "{fault:?}: {faults:?}");
     }
@@ -83,8 +83,8 @@ async fn datagrams_are_counted_by_what_is_wrong_and_followed_when_a_person_lets_
     send(r#"{"seq":11,"grip_mm":30,"right":[1,1,1,0.5,null,1]}"#);
     send(r#"{"seq":12,"grip_mm":130}"#);
     let view = until(&source, |view| view.intake.refused.len() == 6).await;
-    assert_eq!(view.intake.refused[&LineFault::Both], 1);
-    assert_eq!(view.intake.refused[&LineFault::Gap], 1);
+    assert_eq!(view.intake.refused[&StreamLineFault::Both], 1);
+    assert_eq!(view.intake.refused[&StreamLineFault::Gap], 1);
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 1)]
@@ -93,7 +93,7 @@ async fn connections_that_send_too_much_or_are_too_many_do_not_keep_others_out()
     let mut bad = TcpStream::connect(source.local()).unwrap();
     bad.write_all(&[b'{'; 70_000]).unwrap();
     until(&source, |view| {
-        view.intake.refused.contains_key(&LineFault::TooLong)
+        view.intake.refused.contains_key(&StreamLineFault::TooLong)
     })
     .await;
     let mut good = TcpStream::connect(source.local()).unwrap();
@@ -146,18 +146,26 @@ async fn a_connection_ends_with_its_first_line_that_is_no_message_and_a_wrong_va
         ("\r\n", None, 1),
         (
             r#"{"right":[1,1,1,NaN,1,1]}"#,
-            Some(LineFault::NotFinite),
+            Some(StreamLineFault::NotFinite),
             1,
         ),
-        (r#"{"right":[1,1,1,7,1,1]}"#, Some(LineFault::Range), 1),
-        (r#"{"left":[1,1,1,1,1,1]}"#, Some(LineFault::OtherSide), 1),
-        ("hello", Some(LineFault::Malformed), 0),
-        (r#"{"right":"fist"}"#, Some(LineFault::Type), 1),
-        (r#"{"right":["fist""#, Some(LineFault::Malformed), 0),
-        ("POST /NaN HTTP/1.1", Some(LineFault::Malformed), 0),
+        (
+            r#"{"right":[1,1,1,7,1,1]}"#,
+            Some(StreamLineFault::Range),
+            1,
+        ),
+        (
+            r#"{"left":[1,1,1,1,1,1]}"#,
+            Some(StreamLineFault::OtherSide),
+            1,
+        ),
+        ("hello", Some(StreamLineFault::Malformed), 0),
+        (r#"{"right":"fist"}"#, Some(StreamLineFault::Type), 1),
+        (r#"{"right":["fist""#, Some(StreamLineFault::Malformed), 0),
+        ("POST /NaN HTTP/1.1", Some(StreamLineFault::Malformed), 0),
         (
             "GET / HTTP/1.1\r\nUpgrade: websocket\r\n",
-            Some(LineFault::Malformed),
+            Some(StreamLineFault::Malformed),
             0,
         ),
     ] {

@@ -493,7 +493,7 @@ async fn schedule(seed: u64) -> &'static str {
     let folder = tempfile::tempdir().unwrap();
     let backups = Backups::new(folder.path(), &wire.parse().unwrap());
     let mut params = Params::default();
-    params.take(row.span, &row.wanted);
+    params.apply(row.span, &row.wanted);
     backups
         .note_attempt(&params, Duration::from_secs(1))
         .unwrap();

@@ -158,7 +158,7 @@ fn no_schedule_of_events_moves_a_hand_without_the_dead_man_or_loses_a_stop() {
             let report = PadReport { at, news };
             let was_down = input.state().is_held(PadControl::East);
             let followed = input.pad();
-            let event = input.take(&report);
+            let event = input.receive(&report);
             witness.take(&report);
             // Of whichever pad: it lets go.
             witness.is_fresh &= event != Some(PadEvent::Stop);

@@ -111,7 +111,7 @@ impl Played {
 
     pub(crate) fn news(&mut self, news: PadNews) -> Option<PadEvent> {
         let at = self.now;
-        self.input.take(&PadReport { at, news })
+        self.input.receive(&PadReport { at, news })
     }
 
     /// The kernel says this.

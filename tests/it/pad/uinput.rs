@@ -89,7 +89,7 @@ impl Followed {
                 if matches!(&report.news, PadNews::Found { facts, .. } if facts.name != NAME) {
                     continue;
                 }
-                let event = self.input.take(&report);
+                let event = self.input.receive(&report);
                 if wanted(&self.input, event) {
                     return report.at;
                 }

@@ -5,7 +5,7 @@ use crate::trials::worn::{JOINT, WEARS, checked, checked_with, finds, started, t
 use handscope::checkup::check::{checks, stopped_early};
 use handscope::checkup::free_file;
 use handscope::checkup::report::{CheckupReport, Keeping};
-use handscope::checkup::{Checkup, CheckupPlan, Light, Part, Subject};
+use handscope::checkup::{Checkup, CheckupPlan, Grade, HandPart, Subject};
 use handscope::hand::register::FORCE_ACT;
 use handscope::hand::{ArmEpoch, Dof, Fault, Finger, Moment, Span};
 use handscope::motion::checkup::{CheckupFiles, EndedCheckup};
@@ -78,7 +78,7 @@ fn what_changed_since_the_first_is_told_though_it_is_still_good() {
     body.joints[JOINT].friction_ma = 180.0;
     let later = told(&checked(body, 4, &first));
     let whats: Vec<_> = later.iter().map(|(what, of, _)| (*what, *of)).collect();
-    assert_eq!(whats, [(Subject::ClosingCurrent, Part::Joint(JOINT))]);
+    assert_eq!(whats, [(Subject::ClosingCurrent, HandPart::Joint(JOINT))]);
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_ends_it() {
     let supply = checks
         .iter()
         .find(|check| check.measured.what == Subject::SlowerTogether);
-    assert_eq!(supply.unwrap().light, Light::Unknown);
+    assert_eq!(supply.unwrap().light, Grade::Unknown);
 }
 
 #[test]
@@ -267,20 +267,20 @@ fn a_joint_whose_zero_is_far_off_is_left_alone_and_told() {
     };
     assert_eq!(dof, JOINT);
     let all = checks(checkup.measured(), "", &[]);
-    let of = |what: Subject, of: Part| {
+    let of = |what: Subject, of: HandPart| {
         let own = all
             .iter()
             .find(|own| (own.measured.what, own.measured.of) == (what, of));
         own.unwrap().light
     };
-    assert_eq!(of(Subject::ForceZero, Part::Joint(JOINT)), Light::Act);
+    assert_eq!(of(Subject::ForceZero, HandPart::Joint(JOINT)), Grade::Act);
     assert_eq!(
-        of(Subject::ClosingSpeed, Part::Joint(JOINT)),
-        Light::Unknown
+        of(Subject::ClosingSpeed, HandPart::Joint(JOINT)),
+        Grade::Unknown
     );
     assert_eq!(
-        of(Subject::ClosingSpeed, Part::Joint(Dof::Index)),
-        Light::Fine
+        of(Subject::ClosingSpeed, HandPart::Joint(Dof::Index)),
+        Grade::Fine
     );
 }
 
@@ -331,13 +331,13 @@ fn pressed_fingertips_answer_and_a_dead_channel_is_named() {
             .iter()
             .filter(|own| own.measured.what == Subject::SilentChannels);
         let own = own
-            .find(|own| own.measured.of == Part::Fingertip(finger))
+            .find(|own| own.measured.of == HandPart::Fingertip(finger))
             .unwrap();
         (own.light, own.measured.channels.to_string())
     };
-    assert_eq!(silent(Finger::Ring), (Light::Act, "4".to_owned()));
-    assert_eq!(silent(Finger::Thumb), (Light::Fine, String::new()));
-    assert_eq!(silent(Finger::Little), (Light::Unknown, String::new()));
+    assert_eq!(silent(Finger::Ring), (Grade::Act, "4".to_owned()));
+    assert_eq!(silent(Finger::Thumb), (Grade::Fine, String::new()));
+    assert_eq!(silent(Finger::Little), (Grade::Unknown, String::new()));
 }
 
 /// Checks a body up, and makes of it what the program does.
@@ -404,7 +404,7 @@ fn what_is_kept_makes_a_birth_record_of_a_whole_hand_and_a_trend_of_later_ones()
     }
     let (last, page) = files.last().unwrap().unwrap();
     assert_eq!(page, files.report);
-    let of = Part::Joint(JOINT);
+    let of = HandPart::Joint(JOINT);
     let mut own = last.checks.iter();
     let own = own.find(|own| (own.measured.what, own.measured.of) == (Subject::Backlash, of));
     let own = own.unwrap();

@@ -16,7 +16,7 @@ use handscope::sim::body_params::random::random;
 use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
 use handscope::trials::TrialSeries;
 use handscope::trials::search::{
-    Compared, Finding, NoClaim, SearchGoal, SearchStage, SettingsSearch,
+    Finding, NoClaim, SearchGoal, SearchStage, SettingsSearch, ThresholdReference,
 };
 use std::time::Duration;
 use tokio::sync::oneshot;
@@ -109,9 +109,9 @@ fn other_bodies() -> Vec<OtherBody> {
 /// finding says what the drive compares.
 fn is_tuned_whatever_its_offset(counts_offset: bool) {
     let right = if counts_offset {
-        Compared::AsRead
+        ThresholdReference::AsRead
     } else {
-        Compared::AboveRest
+        ThresholdReference::AboveRest
     };
     let (mut claims, mut told) = (0, 0);
     for (seed, body) in (0..).zip(other_bodies()) {
@@ -176,7 +176,10 @@ fn a_drive_that_stops_in_the_air_by_its_offset_gets_a_higher_threshold() {
     assert!(search.highest < 1.1, "{}", search.highest);
     let finding = search.finding.unwrap();
     assert!(finding.result.is_ok(), "{:?}", finding.result);
-    assert_eq!(finding.compared[0].compared, Some(Compared::AsRead));
+    assert_eq!(
+        finding.compared[0].compared,
+        Some(ThresholdReference::AsRead)
+    );
     let words = finding.compared[0].to_string();
     assert!(
         words.contains("FORCE_ACT as read") && words.contains("g at rest"),

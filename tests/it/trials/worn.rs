@@ -3,8 +3,8 @@
 
 use super::virtual_hand::VirtualHand;
 use handscope::checkup::check::checks;
-use handscope::checkup::kept::Kept;
-use handscope::checkup::{Check, Checkup, CheckupPlan, Light, Part, Subject};
+use handscope::checkup::kept::StoredCheckup;
+use handscope::checkup::{Check, Checkup, CheckupPlan, Grade, HandPart, Subject};
 use handscope::hand::{ArmEpoch, Dof, Finger};
 use handscope::sim::body_params::JointBody;
 use handscope::sim::body_params::random::random;
@@ -36,8 +36,8 @@ pub(crate) fn started() -> Checkup {
     Checkup::start(ArmEpoch(1), CheckupPlan::default())
 }
 
-fn kept(first: &[Check]) -> Kept {
-    Kept {
+fn kept(first: &[Check]) -> StoredCheckup {
+    StoredCheckup {
         at: String::new(),
         hand: String::new(),
         figures: first.iter().map(|check| check.measured).collect(),
@@ -46,8 +46,8 @@ fn kept(first: &[Check]) -> Kept {
 }
 
 /// What is not as it should be.
-pub(crate) fn told(checks: &[Check]) -> Vec<(Subject, Part, Option<f64>)> {
-    let told = checks.iter().filter(|check| check.light != Light::Fine);
+pub(crate) fn told(checks: &[Check]) -> Vec<(Subject, HandPart, Option<f64>)> {
+    let told = checks.iter().filter(|check| check.light != Grade::Fine);
     let told = told.map(|check| (check.measured.what, check.measured.of, check.measured.value));
     told.collect()
 }
@@ -137,9 +137,9 @@ pub(crate) fn finds((_, wear, subject): Wear, seed: u64) -> bool {
     let mut body = random(seed);
     wear(&mut body);
     let of = match subject {
-        Subject::DeadChannels | Subject::ChannelDrift => Part::Fingertip(TIP),
-        Subject::SlowerTogether => Part::Hand,
-        _ => Part::Joint(JOINT),
+        Subject::DeadChannels | Subject::ChannelDrift => HandPart::Fingertip(TIP),
+        Subject::SlowerTogether => HandPart::Hand,
+        _ => HandPart::Joint(JOINT),
     };
     let told = told(&checked(body, seed, &[]));
     told.iter().any(|own| (own.0, own.1) == (subject, of))

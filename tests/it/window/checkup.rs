@@ -5,7 +5,7 @@ use egui::Key;
 use handscope::app::checkup::ShownCheckup;
 use handscope::checkup::report::Keeping;
 use handscope::checkup::usage::Usage;
-use handscope::checkup::{Light, Part, Subject};
+use handscope::checkup::{Grade, HandPart, Subject};
 use handscope::hand::{Dof, Finger};
 use handscope::record::Abort;
 use handscope::sim::{BodyParams, Object, Scenario, SimConfig};
@@ -99,7 +99,7 @@ fn a_check_up_is_told_joint_by_joint_and_its_figures_report_and_recording_stay()
     let shown = finish(&mut bench, 120_000);
     assert_eq!(shown.report.aborted, None);
     assert_eq!(shown.report.keeping, Keeping::BuiltIn);
-    assert!(shown.report.count(Light::Watch) >= 1);
+    assert!(shown.report.count(Grade::Watch) >= 1);
     let names = ["report.html", "check.json", "check.mcap"];
     for name in names {
         assert!(folder(&shown).join(name).is_file(), "{name}");
@@ -186,11 +186,11 @@ fn each_fingertip_is_asked_for_and_a_dead_channel_is_named() {
     assert_eq!(asked.len(), 5);
     let shown = finish(&mut bench, 5000);
     let mut checks = shown.report.checks.iter();
-    let of = Part::Fingertip(Finger::Index);
+    let of = HandPart::Fingertip(Finger::Index);
     let silent = checks
         .find(|own| (own.measured.what, own.measured.of) == (Subject::SilentChannels, of))
         .unwrap();
-    assert_eq!(silent.light, Light::Act);
+    assert_eq!(silent.light, Grade::Act);
     assert_eq!(silent.measured.channels.to_string(), "2");
     bench.click("Only what is not fine");
     bench.run(60);

@@ -1,16 +1,16 @@
 //! `share --stdio`: the parent program moves and watches the hand by lines of JSON on standard input and output. The hand is
 //! stopped when standard input ends, for whatever reason that program ends.
 
-mod ask;
 mod pipe;
 mod refused;
+mod request;
 
-use crate::cli::out::{Out, say};
+use crate::cli::out::{Out, notify};
 use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
-use crate::cli::share::stdio::ask::{Ask, Asked, LimitsAsk, MoveAsk};
-use crate::cli::share::stdio::pipe::{NobodyReads, Told};
-use crate::cli::share::stdio::refused::{RefusalKind, Refused};
+use crate::cli::share::stdio::pipe::{NobodyReads, ReplyWriter};
+use crate::cli::share::stdio::refused::{RefusalKind, StdioRefusal};
+use crate::cli::share::stdio::request::{LimitsRequest, MoveRequest, StdioLine, StdioRequest};
 use crate::cli::watch::telemetry::{grip_json, sample_json};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::kinematics::Side;
@@ -54,25 +54,25 @@ pub(crate) struct StdioHand<'a> {
 }
 
 /// Result of a task.
-enum Done {
-    Armed(Result<Right, Refused>),
-    Moved(Result<Box<MoveReport>, Refused>),
-    Followed(Result<Ended<FollowEnd>, Refused>),
+enum TaskResult {
+    Armed(Result<Right, StdioRefusal>),
+    Moved(Result<Box<MoveReport>, StdioRefusal>),
+    Followed(Result<Ended<FollowEnd>, StdioRefusal>),
     /// The hand was stopped; fails unless feedback shows that it rests.
     Stopped(anyhow::Result<()>),
-    Cleared(Result<(), Refused>),
+    Cleared(Result<(), StdioRefusal>),
 }
 
 /// A task on the hand. There is one at a time.
 struct Task {
     /// ID for the reply; `null` for no reply.
     id: Value,
-    done: BoxFuture<'static, Done>,
+    done: BoxFuture<'static, TaskResult>,
     kind: TaskKind,
 }
 
 impl Task {
-    fn of(id: Value, done: impl Future<Output = Done> + Send + 'static) -> Self {
+    fn of(id: Value, done: impl Future<Output = TaskResult> + Send + 'static) -> Self {
         Self {
             id,
             done: done.boxed(),
@@ -99,9 +99,9 @@ struct Right {
     limits: ArmRequest,
 }
 
-struct Script<'a> {
+struct StdioSession<'a> {
     hand: StdioHand<'a>,
-    told: Told<'a>,
+    replies: ReplyWriter<'a>,
     seen: HandSample,
     grip: GripEstimator,
     /// Number of missed records reported so far.
@@ -125,8 +125,8 @@ pub(crate) async fn serve<'a>(
         stopper.stop_if_moved();
     });
     let mut records = hand.link.records();
-    let mut script = Script {
-        told: Told::to(out),
+    let mut session = StdioSession {
+        replies: ReplyWriter::to(out),
         seen: HandSample::default(),
         grip: session::grip_estimator(hand.endpoint),
         missed: 0,
@@ -140,18 +140,18 @@ pub(crate) async fn serve<'a>(
     tokio::select! {
         biased;
         () = interrupted => {}
-        _nobody_reads = script.run(&mut lines, &mut records) => {}
+        _nobody_reads = session.run(&mut lines, &mut records) => {}
     }
-    script.leave().await
+    session.leave().await
 }
 
-impl Script<'_> {
+impl StdioSession<'_> {
     async fn run(
         &mut self,
         lines: &mut mpsc::Receiver<Vec<u8>>,
         records: &mut Records,
     ) -> Result<(), NobodyReads> {
-        self.told.tell(&json!({"ready": {
+        self.replies.send(&json!({"ready": {
             "v": VERSION,
             "program": env!("CARGO_PKG_VERSION"),
             "hand": self.hand.endpoint.to_string(),
@@ -165,16 +165,16 @@ impl Script<'_> {
             tokio::select! {
                 // Polled in turn: a continuous stream of lines must not block the other sources.
                 line = lines.recv() => match line {
-                    Some(line) => self.obey(Asked::parse(&line, self.hand.side))?,
+                    Some(line) => self.handle_request(StdioLine::parse(&line, self.hand.side))?,
                     None => return Ok(()),
                 },
                 Some(done) = task => self.finish(done)?,
                 Some(whole) = ending => self.ended(whole)?,
                 record = records.next() => match record {
-                    Some(record) => self.take(record, records)?,
+                    Some(record) => self.apply(record, records)?,
                     None => return Ok(()),
                 },
-                _ = tick.tick() => self.look()?,
+                _ = tick.tick() => self.poll()?,
             }
         }
     }
@@ -183,8 +183,8 @@ impl Script<'_> {
     async fn leave(mut self) -> anyhow::Result<()> {
         let link = self.hand.link;
         // The reader of the output may be gone.
-        let _told = self.end_task(LeaseRefusal::Ended(Disarmed::Stop).into());
-        let _told = self.look();
+        let _sent = self.end_task(LeaseRefusal::Ended(Disarmed::Stop).into());
+        let _sent = self.poll();
         if link.status().owes_stop() {
             let back = async {
                 while !link.status().state.is_live() {
@@ -233,7 +233,7 @@ impl Script<'_> {
     }
 
     /// Applies a record; a state is published in the format of `watch`.
-    fn take(&mut self, record: Record, records: &Records) -> Result<(), NobodyReads> {
+    fn apply(&mut self, record: Record, records: &Records) -> Result<(), NobodyReads> {
         let Record::Reading { sample, fresh } = record else {
             return Ok(());
         };
@@ -249,23 +249,23 @@ impl Script<'_> {
         let missed = records.lost() - self.missed;
         self.missed = records.lost();
         let state = || json!({"state": sample_json(&sample, &grip, angle.received)});
-        self.told.state(state, missed)
+        self.replies.state(state, missed)
     }
 
     /// Publishes changes of the link and of the control of the hand; stops the hand if the output is stuck.
-    fn look(&mut self) -> Result<(), NobodyReads> {
+    fn poll(&mut self) -> Result<(), NobodyReads> {
         let status = self.hand.link.status();
         if status.state.is_live() != self.is_live {
             self.is_live = status.state.is_live();
             let why = session::trouble(&status).map(ToString::to_string);
             let state = if self.is_live { "live" } else { "lost" };
-            self.told
-                .tell(&json!({"link": {"state": state, "why": why}}))?;
+            self.replies
+                .send(&json!({"link": {"state": state, "why": why}}))?;
         }
-        if self.told.is_stuck()
+        if self.replies.is_stuck()
             && let Some(right) = self.holds()
         {
-            say("nobody takes the output for a second: the hand is stopped");
+            notify("nobody takes the output for a second: the hand is stopped");
             let _done = self.hand.link.give_back(right.lease, Disarmed::Silent);
         }
         if self.task.is_none()
@@ -278,81 +278,87 @@ impl Script<'_> {
     }
 
     /// Handles the unrequested loss of control of the hand.
-    fn lose(&mut self, why: &Refused) -> Result<(), NobodyReads> {
+    fn lose(&mut self, why: &StdioRefusal) -> Result<(), NobodyReads> {
         self.right = None;
         if why.kind == LINK_LOST {
             // The hand continues to its last target: a stop is queued until the link is back.
             drop(self.hand.link.stop());
         }
-        self.told
-            .tell(&json!({"disarmed": {"kind": why.kind, "why": why.why}}))
+        self.replies
+            .send(&json!({"disarmed": {"kind": why.kind, "why": why.why}}))
     }
 
-    fn reply(&mut self, id: &Value, done: Result<Value, Refused>) -> Result<(), NobodyReads> {
+    fn reply(&mut self, id: &Value, done: Result<Value, StdioRefusal>) -> Result<(), NobodyReads> {
         if id.is_null() {
             // Success without an ID is not reported; an error is reported in any case.
             return match done {
                 Ok(_) => Ok(()),
                 Err(no) => self
-                    .told
-                    .tell(&json!({"refused": {"kind": no.kind, "why": no.why}})),
+                    .replies
+                    .send(&json!({"refused": {"kind": no.kind, "why": no.why}})),
             };
         }
-        self.told.tell(&match done {
+        self.replies.send(&match done {
             Ok(done) => json!({"reply": {"id": id, "ok": done}}),
             Err(no) => json!({"reply": {"id": id, "kind": no.kind, "error": no.why}}),
         })
     }
 
     /// Handles a request. An error in a line that ends a motion is reported once the end is under way.
-    fn obey(&mut self, asked: Asked) -> Result<(), NobodyReads> {
-        let odd = asked
+    fn handle_request(&mut self, line: StdioLine) -> Result<(), NobodyReads> {
+        let odd = line
             .odd
-            .map(|why| json!({"odd": {"id": &asked.id, "why": why}}));
-        self.begin_asked(asked.id, asked.what)?;
-        odd.map_or(Ok(()), |odd| self.told.tell(&odd))
+            .map(|why| json!({"odd": {"id": &line.id, "why": why}}));
+        self.begin_request(line.id, line.what)?;
+        odd.map_or(Ok(()), |odd| self.replies.send(&odd))
     }
 
-    fn begin_asked(&mut self, id: Value, what: Result<Ask, String>) -> Result<(), NobodyReads> {
+    fn begin_request(
+        &mut self,
+        id: Value,
+        what: Result<StdioRequest, String>,
+    ) -> Result<(), NobodyReads> {
         let done = match what {
-            Err(why) => Err(Refused::new(RefusalKind::Wrong, why)),
-            Ok(Ask::Rate(rates)) => {
+            Err(why) => Err(StdioRefusal::new(RefusalKind::Wrong, why)),
+            Ok(StdioRequest::Rate(rates)) => {
                 self.hand.link.read_at(rates);
                 Ok(())
             }
-            Ok(Ask::Record(path)) => return self.record(id, path.as_deref()),
-            Ok(Ask::Stop) => return self.stop(id),
-            Ok(Ask::Release) if self.is_to_stop() => return self.stop(id),
-            Ok(Ask::Disarm) if self.is_to_stop() && !self.is_at_rest() => return self.stop(id),
-            Ok(Ask::Release | Ask::Disarm)
+            Ok(StdioRequest::Record(path)) => return self.record(id, path.as_deref()),
+            Ok(StdioRequest::Stop) => return self.stop(id),
+            Ok(StdioRequest::Release) if self.is_to_stop() => return self.stop(id),
+            Ok(StdioRequest::Disarm) if self.is_to_stop() && !self.is_at_rest() => {
+                return self.stop(id);
+            }
+            Ok(StdioRequest::Release | StdioRequest::Disarm)
                 if self.hand.link.status().owes_stop() && !self.is_live =>
             {
-                Err(Refused::new(LINK_LOST, STOP_LOST))
+                Err(StdioRefusal::new(LINK_LOST, STOP_LOST))
             }
-            Ok(Ask::Release | Ask::Disarm) => {
-                self.end_task(Refused::replaced())?;
+            Ok(StdioRequest::Release | StdioRequest::Disarm) => {
+                self.end_task(StdioRefusal::replaced())?;
                 if self.holds().is_some() {
                     self.hand.link.disarm();
                 }
                 self.right = None;
                 Ok(())
             }
-            Ok(Ask::Arm(limits)) => return self.arm(id, limits),
-            Ok(Ask::Move(ask)) => match self.right() {
-                Ok(right) => return self.move_hand(id, right, ask),
+            Ok(StdioRequest::Arm(limits)) => return self.arm(id, limits),
+            Ok(StdioRequest::Move(request)) => match self.right() {
+                Ok(right) => return self.move_hand(id, right, request),
                 Err(no) => Err(no),
             },
-            Ok(Ask::Follow(line)) => match self.right() {
+            Ok(StdioRequest::Follow(line)) => match self.right() {
                 Ok(right) => return self.follow(id, right, line),
                 Err(no) => Err(no),
             },
-            Ok(Ask::Clear) => {
+            Ok(StdioRequest::Clear) => {
                 let link = self.hand.link.clone();
                 let clearing = async move {
                     let done = link.write(HandCommand::ClearErrors).await;
-                    Done::Cleared(
-                        done.map_err(|error| Refused::new(RefusalKind::Refused, error.to_string())),
-                    )
+                    TaskResult::Cleared(done.map_err(|error| {
+                        StdioRefusal::new(RefusalKind::Refused, error.to_string())
+                    }))
                 };
                 return self.begin(Task::of(id, clearing));
             }
@@ -361,9 +367,9 @@ impl Script<'_> {
     }
 
     /// The control of the hand, or the reason why it is missing.
-    fn right(&mut self) -> Result<Right, Refused> {
+    fn right(&mut self) -> Result<Right, StdioRefusal> {
         let right = self.right.ok_or_else(|| {
-            Refused::new(
+            StdioRefusal::new(
                 RefusalKind::NotArmed,
                 "nothing was moved: arm the hand first",
             )
@@ -373,7 +379,7 @@ impl Script<'_> {
     }
 
     /// Ends the current task, without sending anything to the hand.
-    fn end_task(&mut self, why: Refused) -> Result<(), NobodyReads> {
+    fn end_task(&mut self, why: StdioRefusal) -> Result<(), NobodyReads> {
         let Some(task) = self.task.take() else {
             return Ok(());
         };
@@ -390,7 +396,7 @@ impl Script<'_> {
 
     /// Starts a task in place of the current one.
     fn begin(&mut self, task: Task) -> Result<(), NobodyReads> {
-        self.end_task(Refused::replaced())?;
+        self.end_task(StdioRefusal::replaced())?;
         self.task = Some(task);
         Ok(())
     }
@@ -400,23 +406,23 @@ impl Script<'_> {
         self.hand.link.stop();
         self.right = None;
         let link = self.hand.link.clone();
-        let stopping = async move { Done::Stopped(session::stopped(&link).await) };
+        let stopping = async move { TaskResult::Stopped(session::stopped(&link).await) };
         self.end_task(LeaseRefusal::Ended(Disarmed::Stop).into())?;
         self.begin(Task::of(id, stopping))
     }
 
     /// Acquires control of the hand, unless another controller has it. If the hand is armed already, only its limits change,
     /// immediately, and its motion continues.
-    fn arm(&mut self, id: Value, limits: LimitsAsk) -> Result<(), NobodyReads> {
+    fn arm(&mut self, id: Value, limits: LimitsRequest) -> Result<(), NobodyReads> {
         let held = self.holds();
         let limits = limits.over(held.map_or(ArmRequest::GENTLE, |right| right.limits));
         if let (Some(right), Some(epoch)) = (held, self.hand.link.status().armed) {
             let set = self.hand.link.set(right.lease, &limits.setpoints(epoch));
             self.right = Some(Right { limits, ..right });
-            return self.reply(&id, set.map(|()| json!({})).map_err(Refused::from));
+            return self.reply(&id, set.map(|()| json!({})).map_err(StdioRefusal::from));
         }
         let link = self.hand.link.clone();
-        let arming = async move { Done::Armed(granted(&link, held, limits).await) };
+        let arming = async move { TaskResult::Armed(granted(&link, held, limits).await) };
         self.begin(Task {
             id,
             done: arming.boxed(),
@@ -424,18 +430,23 @@ impl Script<'_> {
         })
     }
 
-    fn move_hand(&mut self, id: Value, right: Right, ask: MoveAsk) -> Result<(), NobodyReads> {
+    fn move_hand(
+        &mut self,
+        id: Value,
+        right: Right,
+        request: MoveRequest,
+    ) -> Result<(), NobodyReads> {
         let link = self.hand.link.clone();
         let (seen, grip) = (self.seen, self.grip.clone());
         let moving = async move {
             let epoch = match armed(&link, right).await {
                 Ok(epoch) => epoch,
-                Err(no) => return Done::Moved(Err(no)),
+                Err(no) => return TaskResult::Moved(Err(no)),
             };
             let start = MoveStart {
-                targets: ask.targets,
-                limits: ask.limits.over(right.limits),
-                settles: ask.settles,
+                targets: request.targets,
+                limits: request.limits.over(right.limits),
+                settles: request.settles,
                 grip,
             };
             let armed = Armed {
@@ -444,7 +455,7 @@ impl Script<'_> {
                 seen,
                 clock: link.clock(),
             };
-            Done::Moved(Ok(Box::new(move_to(&link, armed, start).await)))
+            TaskResult::Moved(Ok(Box::new(move_to(&link, armed, start).await)))
         };
         self.begin(Task {
             id,
@@ -459,7 +470,7 @@ impl Script<'_> {
             // Nothing is followed; any other motion of the hand is ended nevertheless.
             self.end_task(LeaseRefusal::Ended(Disarmed::Released).into())?;
             let done = self.hand.link.halt(right.lease);
-            return self.reply(&id, done.map(|()| json!({})).map_err(Refused::from));
+            return self.reply(&id, done.map(|()| json!({})).map_err(StdioRefusal::from));
         }
         let offer = Offer {
             at: self.hand.link.clock().now(),
@@ -486,8 +497,10 @@ impl Script<'_> {
             };
             let following = async move {
                 match armed(&link, right).await {
-                    Ok(_epoch) => Done::Followed(Ok(follow(&link, start, followed, |_| ()).await)),
-                    Err(no) => Done::Followed(Err(no)),
+                    Ok(_epoch) => {
+                        TaskResult::Followed(Ok(follow(&link, start, followed, |_| ()).await))
+                    }
+                    Err(no) => TaskResult::Followed(Err(no)),
                 }
             };
             self.begin(Task {
@@ -543,13 +556,14 @@ impl Script<'_> {
         };
         self.reply(
             &id,
-            done.map_err(|why| Refused::new(RefusalKind::Refused, why)),
+            done.map_err(|why| StdioRefusal::new(RefusalKind::Refused, why)),
         )
     }
 
     /// Reports the end of a recording; an error if the file is incomplete.
     fn ended(&mut self, whole: anyhow::Result<()>) -> Result<(), NobodyReads> {
-        let whole = whole.map_err(|why| Refused::new(RefusalKind::Refused, format!("{why:#}")));
+        let whole =
+            whole.map_err(|why| StdioRefusal::new(RefusalKind::Refused, format!("{why:#}")));
         match self.ending.take() {
             Some((id, _)) => self.reply(&id, whole.map(|()| json!({}))),
             None => Ok(()),
@@ -557,39 +571,39 @@ impl Script<'_> {
     }
 
     /// Handles the result of a task.
-    fn finish(&mut self, done: Done) -> Result<(), NobodyReads> {
+    fn finish(&mut self, done: TaskResult) -> Result<(), NobodyReads> {
         let Some(Task { id, .. }) = self.task.take() else {
             return Ok(());
         };
         match done {
-            Done::Armed(Ok(right)) => {
+            TaskResult::Armed(Ok(right)) => {
                 self.right = Some(right);
                 self.reply(&id, Ok(json!({})))
             }
             // The previous control may still be valid, or have ended meanwhile.
-            Done::Armed(Err(no)) => {
+            TaskResult::Armed(Err(no)) => {
                 let lost = self.right.is_some() && self.holds().is_none();
                 self.reply(&id, Err(no.clone()))?;
                 if lost { self.lose(&no) } else { Ok(()) }
             }
-            Done::Moved(moved) => {
+            TaskResult::Moved(moved) => {
                 let done = moved.and_then(|report| self.moved(&report));
                 let lost = done.clone().err().filter(|_| self.holds().is_none());
                 self.reply(&id, done)?;
                 lost.map_or(Ok(()), |why| self.lose(&why))
             }
-            Done::Followed(followed) => self.followed(followed),
-            Done::Stopped(stopped) => {
-                let done =
-                    stopped.map_err(|not| Refused::new(RefusalKind::NotConfirmed, not.to_string()));
+            TaskResult::Followed(followed) => self.followed(followed),
+            TaskResult::Stopped(stopped) => {
+                let done = stopped
+                    .map_err(|not| StdioRefusal::new(RefusalKind::NotConfirmed, not.to_string()));
                 self.reply(&id, done.map(|()| json!({})))
             }
-            Done::Cleared(cleared) => self.reply(&id, cleared.map(|()| json!({}))),
+            TaskResult::Cleared(cleared) => self.reply(&id, cleared.map(|()| json!({}))),
         }
     }
 
     /// Result of a motion. A hand that took too long is stopped.
-    fn moved(&mut self, report: &MoveReport) -> Result<Value, Refused> {
+    fn moved(&mut self, report: &MoveReport) -> Result<Value, StdioRefusal> {
         let link = self.hand.link;
         let end = match report.end {
             Ok(MoveEnd::Reached) => "reached",
@@ -604,7 +618,7 @@ impl Script<'_> {
                 self.right()?;
                 // The control is still valid, but the arming has ended.
                 let why = link.status().disarmed.map(|why| why.to_string());
-                return Err(Refused::new(
+                return Err(StdioRefusal::new(
                     RefusalKind::Disarmed,
                     why.unwrap_or_else(|| "the hand was disarmed".into()),
                 ));
@@ -614,7 +628,10 @@ impl Script<'_> {
     }
 
     /// Handles the end of following. A script that fell silent may continue; the hand was stopped.
-    fn followed(&mut self, followed: Result<Ended<FollowEnd>, Refused>) -> Result<(), NobodyReads> {
+    fn followed(
+        &mut self,
+        followed: Result<Ended<FollowEnd>, StdioRefusal>,
+    ) -> Result<(), NobodyReads> {
         let lost = match followed {
             Err(no) => no,
             Ok(Ok(FollowEnd::Silent | FollowEnd::Gone)) => {
@@ -626,7 +643,7 @@ impl Script<'_> {
             }
             Ok(Err(why)) => match self.right() {
                 Err(no) => no,
-                Ok(_right) => Refused::new(RefusalKind::Disarmed, why.to_string()),
+                Ok(_right) => StdioRefusal::new(RefusalKind::Disarmed, why.to_string()),
             },
         };
         self.lose(&lost)
@@ -638,7 +655,7 @@ async fn granted(
     link: &LinkHandle,
     held: Option<Right>,
     limits: ArmRequest,
-) -> Result<Right, Refused> {
+) -> Result<Right, StdioRefusal> {
     let until = Instant::now() + ARM_TIMEOUT;
     loop {
         let LinkStatus { state, holder, .. } = link.status();
@@ -649,7 +666,7 @@ async fn granted(
                     Owner::Gateway(at) => format!("{at} may move the hand, until it disconnects"),
                     _ => "another may move the hand now".into(),
                 };
-                return Err(Refused::new(RefusalKind::Taken, who));
+                return Err(StdioRefusal::new(RefusalKind::Taken, who));
             }
             (None, None) if !state.is_live() && Instant::now() < until => {
                 sleep(POLL_INTERVAL).await;
@@ -670,7 +687,7 @@ async fn granted(
 }
 
 /// Arms the hand under an existing lease, once an earlier stop has completed.
-async fn armed(link: &LinkHandle, right: Right) -> Result<ArmEpoch, Refused> {
+async fn armed(link: &LinkHandle, right: Right) -> Result<ArmEpoch, StdioRefusal> {
     let until = Instant::now() + ARM_TIMEOUT;
     while link.status().state == LinkState::Holding && Instant::now() < until {
         sleep(POLL_INTERVAL).await;
@@ -681,7 +698,7 @@ async fn armed(link: &LinkHandle, right: Right) -> Result<ArmEpoch, Refused> {
     };
     link.check(right.lease)?;
     link.disarm();
-    Err(Refused::new(
+    Err(StdioRefusal::new(
         RefusalKind::Refused,
         format!("the hand cannot be armed: {why}"),
     ))

@@ -2,7 +2,7 @@
 //! read in time are dropped and counted.
 
 use crate::cli::out::Out;
-use crate::inputs::lines::{Cut, LONGEST, LineCutter};
+use crate::inputs::lines::{LONGEST, LineCutter, LineEvent};
 use crate::inputs::scan::unmarked;
 use serde_json::Value;
 use std::io::{self, BufRead as _};
@@ -11,23 +11,23 @@ use tokio::sync::mpsc;
 use tokio::time::Instant;
 
 /// Capacity of the queue of input lines.
-const ASKED_MAX: usize = 64;
+const LINES_MAX: usize = 64;
 /// A program that reads nothing for this time no longer monitors the hand.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Lines of standard input. The channel closes with it. `stop` is called for a stop in an incomplete or overlong line.
 pub(crate) fn lines(stop: impl Fn() + Send + 'static) -> mpsc::Receiver<Vec<u8>> {
-    let (asked, lines) = mpsc::channel(ASKED_MAX);
+    let (sender, lines) = mpsc::channel(LINES_MAX);
     std::thread::spawn(move || {
         let mut input = io::stdin().lock();
         let mut cutter = LineCutter::new(LONGEST);
-        let hand_on = |cut: Cut| match cut {
-            Cut::Stop => {
+        let hand_on = |cut: LineEvent| match cut {
+            LineEvent::Stop => {
                 stop();
                 true
             }
-            Cut::Line { text, .. } if unmarked(&text).is_empty() => true,
-            Cut::Line { text, .. } => asked.blocking_send(text).is_ok(),
+            LineEvent::Line { text, .. } if unmarked(&text).is_empty() => true,
+            LineEvent::Line { text, .. } => sender.blocking_send(text).is_ok(),
         };
         loop {
             let bytes = match input.fill_buf() {
@@ -56,24 +56,24 @@ pub(crate) fn lines(stop: impl Fn() + Send + 'static) -> mpsc::Receiver<Vec<u8>>
 pub(crate) struct NobodyReads;
 
 /// Standard output.
-pub(crate) struct Told<'a> {
+pub(crate) struct ReplyWriter<'a> {
     out: &'a mut Out,
     /// Bytes read at the last progress, and its time.
-    stood: (u64, Instant),
+    progress: (u64, Instant),
 }
 
-impl<'a> Told<'a> {
+impl<'a> ReplyWriter<'a> {
     pub(crate) fn to(out: &'a mut Out) -> Self {
         // At the end the program may be gone; the hand has been stopped by then.
         out.end_without_reader();
         Self {
             out,
-            stood: (0, Instant::now()),
+            progress: (0, Instant::now()),
         }
     }
 
     /// Writes a message that must not be lost.
-    pub(crate) fn tell(&mut self, what: &Value) -> Result<(), NobodyReads> {
+    pub(crate) fn send(&mut self, what: &Value) -> Result<(), NobodyReads> {
         self.out.object(what).map_err(|_full_or_closed| NobodyReads)
     }
 
@@ -84,16 +84,16 @@ impl<'a> Told<'a> {
         missed: u64,
     ) -> Result<(), NobodyReads> {
         self.out.missed(missed);
-        let told = self.out.stream_object(&state());
-        told.map_err(|_closed| NobodyReads)
+        let written = self.out.stream_object(&state());
+        written.map_err(|_closed| NobodyReads)
     }
 
     /// True if queued lines have not been read for too long.
     pub(crate) fn is_stuck(&mut self) -> bool {
         let (waiting, read) = self.out.progress();
-        if waiting == 0 || read != self.stood.0 {
-            self.stood = (read, Instant::now());
+        if waiting == 0 || read != self.progress.0 {
+            self.progress = (read, Instant::now());
         }
-        self.stood.1.elapsed() > WRITE_TIMEOUT
+        self.progress.1.elapsed() > WRITE_TIMEOUT
     }
 }

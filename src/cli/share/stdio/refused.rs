@@ -23,12 +23,12 @@ pub(crate) enum RefusalKind {
 
 /// Kind and text of a refusal.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Refused {
+pub(crate) struct StdioRefusal {
     pub(crate) kind: RefusalKind,
     pub(crate) why: String,
 }
 
-impl Refused {
+impl StdioRefusal {
     pub(crate) fn new(kind: RefusalKind, why: impl Into<String>) -> Self {
         let why = why.into();
         Self { kind, why }
@@ -40,7 +40,7 @@ impl Refused {
     }
 }
 
-impl From<LeaseRefusal> for Refused {
+impl From<LeaseRefusal> for StdioRefusal {
     fn from(end: LeaseRefusal) -> Self {
         let (kind, why) = match end {
             LeaseRefusal::Taken(Owner::Gateway(at)) => {

@@ -2,7 +2,7 @@
 
 use crate::hand::Dof;
 use crate::trials::search::{
-    Claim, Compared, ComparedThreshold, GoalError, NoClaim, SearchStage, Untold,
+    Claim, ComparedThreshold, GoalError, NoClaim, OpenQuestion, SearchStage, ThresholdReference,
 };
 use crate::ui::style::Look;
 use crate::ui::style::phrase::texts;
@@ -158,30 +158,30 @@ pub(crate) fn no_claim(look: Look, why: NoClaim) -> String {
 }
 
 /// Question that the measurements left open.
-pub(crate) fn untold(look: Look, what: Untold) -> String {
+pub(crate) fn untold(look: Look, what: OpenQuestion) -> String {
     let joint = |dof: Dof| look.say(words::dof(dof));
     match what {
-        Untold::Slips { dof } => look.fill(UNTOLD_SLIPS, &[&joint(dof)]),
-        Untold::Stiffness { dof } => look.fill(UNTOLD_STIFFNESS, &[&joint(dof)]),
-        Untold::Gaps { dof, gap_s } => {
+        OpenQuestion::Slips { dof } => look.fill(UNTOLD_SLIPS, &[&joint(dof)]),
+        OpenQuestion::Stiffness { dof } => look.fill(UNTOLD_STIFFNESS, &[&joint(dof)]),
+        OpenQuestion::Gaps { dof, gap_s } => {
             let gap_ms = format!("{:.0}", gap_s * 1000.0);
             look.fill(UNTOLD_GAPS, &[&joint(dof), &gap_ms])
         }
-        Untold::Offset { dof, offset_g } => {
+        OpenQuestion::Offset { dof, offset_g } => {
             let grams = format!("{offset_g:.0}");
             look.fill(UNTOLD_OFFSET, &[&joint(dof), &grams])
         }
-        Untold::Distribution => look.say(UNTOLD_DISTRIBUTION).into(),
-        Untold::OtherSpeeds { closes } => look.fill(UNTOLD_SPEEDS, &[&closes]),
+        OpenQuestion::Distribution => look.say(UNTOLD_DISTRIBUTION).into(),
+        OpenQuestion::OtherSpeeds { closes } => look.fill(UNTOLD_SPEEDS, &[&closes]),
     }
 }
 
 /// Value that a drive compares its threshold with; `None` if that makes no difference or is not known.
 pub(crate) fn compared(look: Look, own: &ComparedThreshold) -> Option<String> {
     let sentence = match own.compared.filter(|_| own.is_notable())? {
-        Compared::AsRead => AS_READ,
-        Compared::AboveRest => ABOVE_REST,
-        Compared::Unknown => return None,
+        ThresholdReference::AsRead => AS_READ,
+        ThresholdReference::AboveRest => ABOVE_REST,
+        ThresholdReference::Unknown => return None,
     };
     let grams = format!("{:.0}", own.offset_g);
     Some(look.fill(sentence, &[&look.say(words::dof(own.dof)), &grams]))

@@ -16,20 +16,20 @@ use std::path::PathBuf;
 
 /// One parsed line.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Asked {
+pub(crate) struct StdioLine {
     /// ID for the reply; `null` if the line has none.
     pub(crate) id: Value,
-    pub(crate) what: Result<Ask, String>,
+    pub(crate) what: Result<StdioRequest, String>,
     /// Error in a line that ends a motion and is obeyed nevertheless.
     pub(crate) odd: Option<String>,
 }
 
 /// A request.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Ask {
+pub(crate) enum StdioRequest {
     /// Arm the hand within these limits.
-    Arm(LimitsAsk),
-    Move(MoveAsk),
+    Arm(LimitsRequest),
+    Move(MoveRequest),
     /// A target to follow, in the line format of `follow`.
     Follow(StreamLine),
     /// Stop and disarm the hand, whichever controller moves it.
@@ -48,21 +48,21 @@ pub(crate) enum Ask {
 
 /// A motion to targets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct MoveAsk {
+pub(crate) struct MoveRequest {
     pub(crate) targets: Targets,
-    pub(crate) limits: LimitsAsk,
+    pub(crate) limits: LimitsRequest,
     pub(crate) settles: bool,
 }
 
 /// Speed and force threshold for all joints; `None` = not specified.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct LimitsAsk {
+pub(crate) struct LimitsRequest {
     pub(crate) speed: Option<Speed>,
     pub(crate) force: Option<Force>,
 }
 
-impl LimitsAsk {
-    fn take(fields: &mut Fields) -> Result<Self, String> {
+impl LimitsRequest {
+    fn read(fields: &mut Fields) -> Result<Self, String> {
         Ok(Self {
             speed: moving_speed(fields)?,
             force: rated_force(fields)?,
@@ -78,14 +78,14 @@ impl LimitsAsk {
     }
 }
 
-impl Asked {
+impl StdioLine {
     /// Handles a line without an end word; a released dead-man switch counts despite errors in the line.
-    fn of(id: Value, read: Result<Ask, String>, line: &[u8], side: Side) -> Self {
+    fn of(id: Value, read: Result<StdioRequest, String>, line: &[u8], side: Side) -> Self {
         let let_go = StreamLine::parse(line, side).ok().filter(|_| lets_go(line));
         match (read, let_go) {
             (Err(odd), Some(let_go)) => Self {
                 id,
-                what: Ok(Ask::Follow(let_go)),
+                what: Ok(StdioRequest::Follow(let_go)),
                 odd: Some(odd),
             },
             (what, _) => Self {
@@ -99,27 +99,27 @@ impl Asked {
     /// Parses one line for the hand of this side. A line that ends a motion is obeyed, whatever else it contains.
     pub(crate) fn parse(line: &[u8], side: Side) -> Self {
         let (id, read) = read(line, side);
-        let ask = match end_word(line, TextEnd::Whole) {
+        let request = match end_word(line, TextEnd::Whole) {
             None => return Self::of(id, read, line, side),
-            Some(EndWord::Stop) => Ask::Stop,
-            Some(EndWord::Release) => Ask::Release,
-            Some(EndWord::Disarm) => Ask::Disarm,
+            Some(EndWord::Stop) => StdioRequest::Stop,
+            Some(EndWord::Release) => StdioRequest::Release,
+            Some(EndWord::Disarm) => StdioRequest::Disarm,
         };
         let odd = match read {
             Err(why) => Some(why),
-            Ok(Ask::Follow(line)) => line.odd.map(|odd| odd.to_string()),
-            Ok(read) if read == ask => None,
+            Ok(StdioRequest::Follow(line)) => line.odd.map(|odd| odd.to_string()),
+            Ok(read) if read == request => None,
             Ok(_other) => Some("it asks for something else as well".into()),
         };
         Self {
             id,
-            what: Ok(ask),
+            what: Ok(request),
             odd,
         }
     }
 }
 
-fn read(line: &[u8], side: Side) -> (Value, Result<Ask, String>) {
+fn read(line: &[u8], side: Side) -> (Value, Result<StdioRequest, String>) {
     if line.len() > LONGEST {
         let why = format!("a line has at most {LONGEST} bytes");
         return (value_at(line, "id"), Err(why));
@@ -132,52 +132,53 @@ fn read(line: &[u8], side: Side) -> (Value, Result<Ask, String>) {
         }
     };
     let id = fields.take("id").ok().flatten().unwrap_or_default();
-    let ask = if fields.has("do") {
-        ask(&mut fields)
+    let request = if fields.has("do") {
+        request(&mut fields)
             .map_err(|why| format!("{why}; 'handscope help share' tells what can be asked"))
     } else {
         let line = StreamLine::parse(line, side);
-        line.map(Ask::Follow).map_err(|refusal| refusal.to_string())
+        line.map(StdioRequest::Follow)
+            .map_err(|refusal| refusal.to_string())
     };
-    (id, ask)
+    (id, request)
 }
 
-fn ask(fields: &mut Fields) -> Result<Ask, String> {
-    let version = take(fields, "v", fields::whole)?;
+fn request(fields: &mut Fields) -> Result<StdioRequest, String> {
+    let version = field(fields, "v", fields::whole)?;
     if version.is_some_and(|version| version != LINE_VERSION) {
         return Err(format!("v: its version is not {LINE_VERSION}"));
     }
-    let what = take(fields, "do", text)?.unwrap_or_default();
-    let ask = match what.as_str() {
-        "arm" => Ask::Arm(LimitsAsk::take(fields)?),
-        "move" => Ask::Move(MoveAsk {
+    let what = field(fields, "do", text)?.unwrap_or_default();
+    let request = match what.as_str() {
+        "arm" => StdioRequest::Arm(LimitsRequest::read(fields)?),
+        "move" => StdioRequest::Move(MoveRequest {
             targets: targets(fields)?,
-            limits: LimitsAsk::take(fields)?,
-            settles: take(fields, "settle", flag)?.unwrap_or(false),
+            limits: LimitsRequest::read(fields)?,
+            settles: field(fields, "settle", flag)?.unwrap_or(false),
         }),
-        "stop" => Ask::Stop,
-        "release" => Ask::Release,
-        "disarm" => Ask::Disarm,
-        "clear" => Ask::Clear,
-        "rate" => Ask::Rate(rates(fields)?),
-        "record" => Ask::Record(take(fields, "path", text)?.map(PathBuf::from)),
+        "stop" => StdioRequest::Stop,
+        "release" => StdioRequest::Release,
+        "disarm" => StdioRequest::Disarm,
+        "clear" => StdioRequest::Clear,
+        "rate" => StdioRequest::Rate(rates(fields)?),
+        "record" => StdioRequest::Record(field(fields, "path", text)?.map(PathBuf::from)),
         other => return Err(format!("do: there is no {other:?}")),
     };
     match fields.other() {
         Some(other) => Err(format!("{other}: not a field of {what}")),
-        None => Ok(ask),
+        None => Ok(request),
     }
 }
 
 /// Removes and reads a field; the error names it.
-fn take<T>(
+fn field<T>(
     fields: &mut Fields,
     name: &str,
     read: fn(&Value) -> Result<T, FieldFault>,
 ) -> Result<Option<T>, String> {
-    let told = |fault: FieldFault| format!("{name}: {fault}");
-    let value = fields.take(name).map_err(told)?;
-    value.as_ref().map(read).transpose().map_err(told)
+    let wrong = |fault: FieldFault| format!("{name}: {fault}");
+    let value = fields.take(name).map_err(wrong)?;
+    value.as_ref().map(read).transpose().map_err(wrong)
 }
 
 fn text(value: &Value) -> Result<String, FieldFault> {
@@ -193,7 +194,7 @@ fn list(value: &Value) -> Result<Vec<Value>, FieldFault> {
 }
 
 fn rates(fields: &mut Fields) -> Result<PollRates, String> {
-    let state_hz = take(fields, "state_hz", fields::number)?;
+    let state_hz = field(fields, "state_hz", fields::number)?;
     let state_hz = state_hz.filter(|hz| (1.0..=1000.0).contains(hz));
     let state_hz = state_hz.ok_or("state_hz: not a rate of 1 to 1000 states a second")?;
     Ok(PollRates {
@@ -204,7 +205,7 @@ fn rates(fields: &mut Fields) -> Result<PollRates, String> {
 }
 
 fn targets(fields: &mut Fields) -> Result<Targets, String> {
-    let angles = take(fields, "angle", list)?.unwrap_or_default();
+    let angles = field(fields, "angle", list)?.unwrap_or_default();
     if angles.len() != Dof::ALL.len() {
         return Err(
             "angle: a hand has six joints: give each an angle, or null to leave it alone".into(),
@@ -227,14 +228,14 @@ fn targets(fields: &mut Fields) -> Result<Targets, String> {
 }
 
 fn moving_speed(fields: &mut Fields) -> Result<Option<Speed>, String> {
-    let speed = take(fields, "speed", fields::whole)?.map(Speed::new);
+    let speed = field(fields, "speed", fields::whole)?.map(Speed::new);
     let speed = speed.transpose().map_err(|error| error.to_string());
     let speed = speed.and_then(|speed| speed.map(moving).transpose());
     speed.map_err(|why| format!("speed: {why}"))
 }
 
 fn rated_force(fields: &mut Fields) -> Result<Option<Force>, String> {
-    let force = take(fields, "force_g", fields::whole)?.map(Force::new);
+    let force = field(fields, "force_g", fields::whole)?.map(Force::new);
     let force = force.transpose().map_err(|error| error.to_string());
     let force = force.and_then(|force| force.map(rated).transpose());
     force.map_err(|why| format!("force_g: {why}"))
@@ -246,29 +247,29 @@ mod tests {
 
     include!("../../../../tests/odd_stops.rs");
 
-    fn parse(line: &str) -> Result<Ask, String> {
-        Asked::parse(line.as_bytes(), Side::Right).what
+    fn parse(line: &str) -> Result<StdioRequest, String> {
+        StdioLine::parse(line.as_bytes(), Side::Right).what
     }
 
     #[test]
     fn what_is_not_said_is_as_armed_and_null_leaves_a_joint_alone() {
-        let asked = Asked::parse(
+        let parsed = StdioLine::parse(
             br#"{"id":7,"do":"move","angle":[0,null,null,400.0,null,1e3]}"#,
             Side::Right,
         );
-        assert_eq!(asked.id, 7);
-        let Ok(Ask::Move(ask)) = asked.what else {
-            panic!("{asked:?}")
+        assert_eq!(parsed.id, 7);
+        let Ok(StdioRequest::Move(request)) = parsed.what else {
+            panic!("{parsed:?}")
         };
-        let counts = ask.targets.map(|to| to.map(Angle::get));
+        let counts = request.targets.map(|to| to.map(Angle::get));
         let want = [Some(0), None, None, Some(400), None, Some(1000)];
         assert_eq!(Dof::ALL.map(|dof| counts[dof]), want);
         assert_eq!(
-            (ask.limits.speed, ask.limits.force, ask.settles),
+            (request.limits.speed, request.limits.force, request.settles),
             (None, None, false)
         );
         let armed = parse(r#"{"do":"arm","speed":50}"#);
-        let Ok(Ask::Arm(limits)) = armed else {
+        let Ok(StdioRequest::Arm(limits)) = armed else {
             panic!("{armed:?}")
         };
         let before = ArmRequest {
@@ -280,11 +281,11 @@ mod tests {
         assert_eq!(limits.force, before.force, "not named");
         assert!(matches!(
             parse(r#"{"right":[1,1,1,1,1,1],"seq":1}"#),
-            Ok(Ask::Follow(_))
+            Ok(StdioRequest::Follow(_))
         ));
         assert_eq!(
             parse(r#"{"do":"record","path":null}"#),
-            Ok(Ask::Record(None))
+            Ok(StdioRequest::Record(None))
         );
     }
 
@@ -338,10 +339,10 @@ mod tests {
             ),
             (r#"{"id":1,"right":[2,1,1,1,1,1]}"#, "0 (bent) to 1 (open)"),
         ] {
-            let asked = Asked::parse(line.as_bytes(), Side::Right);
-            assert_eq!(asked.id, 1, "{line}");
-            let told = asked.what.unwrap_err();
-            assert!(told.contains(why), "{line}: {told}");
+            let parsed = StdioLine::parse(line.as_bytes(), Side::Right);
+            assert_eq!(parsed.id, 1, "{line}");
+            let why_not = parsed.what.unwrap_err();
+            assert!(why_not.contains(why), "{line}: {why_not}");
         }
         assert!(parse("[1]").unwrap_err().contains("not a JSON object"));
     }
@@ -354,12 +355,12 @@ mod tests {
             r#"{"id":1,"held":false,"x":}"#,
             r#"{"id":1,"do":"move","held":false}"#,
         ] {
-            let asked = Asked::parse(line.as_bytes(), Side::Right);
-            let Ok(Ask::Follow(follow)) = asked.what else {
-                panic!("{line}: {asked:?}");
+            let parsed = StdioLine::parse(line.as_bytes(), Side::Right);
+            let Ok(StdioRequest::Follow(follow)) = parsed.what else {
+                panic!("{line}: {parsed:?}");
             };
             assert_eq!(
-                (follow.held, asked.id),
+                (follow.held, parsed.id),
                 (Some(false), Value::from(1)),
                 "{line}"
             );
@@ -369,59 +370,67 @@ mod tests {
     #[test]
     fn what_ends_a_motion_is_obeyed_whatever_else_is_in_its_line() {
         for text in odd_stops() {
-            let asked = Asked::parse(&text, Side::Right);
+            let parsed = StdioLine::parse(&text, Side::Right);
             let shown = String::from_utf8_lossy(&text);
-            assert_eq!(asked.what, Ok(Ask::Stop), "{shown}");
+            assert_eq!(parsed.what, Ok(StdioRequest::Stop), "{shown}");
         }
-        for (line, ask, odd) in [
-            (r#"{"id":1,"do":"stop"}"#, Ask::Stop, None),
-            (r#"{"id":1,"stop":true}"#, Ask::Stop, None),
-            (r#"{"id":1,"do":"stop","v":1}"#, Ask::Stop, None),
+        for (line, request, odd) in [
+            (r#"{"id":1,"do":"stop"}"#, StdioRequest::Stop, None),
+            (r#"{"id":1,"stop":true}"#, StdioRequest::Stop, None),
+            (r#"{"id":1,"do":"stop","v":1}"#, StdioRequest::Stop, None),
             (
                 r#"{"id":1,"do":"stop","why":"operator"}"#,
-                Ask::Stop,
+                StdioRequest::Stop,
                 Some("why"),
             ),
-            (r#"{"id":1,"do":"stop","v":2}"#, Ask::Stop, Some("v: ")),
+            (
+                r#"{"id":1,"do":"stop","v":2}"#,
+                StdioRequest::Stop,
+                Some("v: "),
+            ),
             (
                 r#"{"id":1,"do":"stop","t":NaN}"#,
-                Ask::Stop,
+                StdioRequest::Stop,
                 Some("not a JSON"),
             ),
-            (r#"{"id":1,"do":"STOP"}"#, Ask::Stop, Some("STOP")),
+            (r#"{"id":1,"do":"STOP"}"#, StdioRequest::Stop, Some("STOP")),
             (
                 r#"{"id":1,"do":"move","do":"stop"}"#,
-                Ask::Stop,
+                StdioRequest::Stop,
                 Some("do: is there twice"),
             ),
             (
                 r#"{"id":1,"do":"arm","stop":true}"#,
-                Ask::Stop,
+                StdioRequest::Stop,
                 Some("stop"),
             ),
             (
                 r#"{"id":1,"stop":true,"right":[NaN]}"#,
-                Ask::Stop,
+                StdioRequest::Stop,
                 Some("not a JSON"),
             ),
             (
                 r#"{"id":1,"do":"release","t":NaN}"#,
-                Ask::Release,
+                StdioRequest::Release,
                 Some("not a JSON"),
             ),
             (
                 r#"{"id":1,"do":"disarm","by":"me"}"#,
-                Ask::Disarm,
+                StdioRequest::Disarm,
                 Some("by"),
             ),
         ] {
-            let asked = Asked::parse(line.as_bytes(), Side::Right);
-            assert_eq!((&asked.what, &asked.id), (&Ok(ask), &1.into()), "{line}");
-            let is_told = match (&asked.odd, odd) {
-                (Some(told), Some(odd)) => told.contains(odd),
-                (told, odd) => told.is_none() && odd.is_none(),
+            let parsed = StdioLine::parse(line.as_bytes(), Side::Right);
+            assert_eq!(
+                (&parsed.what, &parsed.id),
+                (&Ok(request), &1.into()),
+                "{line}"
+            );
+            let is_same = match (&parsed.odd, odd) {
+                (Some(own), Some(odd)) => own.contains(odd),
+                (own, odd) => own.is_none() && odd.is_none(),
             };
-            assert!(is_told, "{line}: {:?}", asked.odd);
+            assert!(is_same, "{line}: {:?}", parsed.odd);
         }
     }
 }
