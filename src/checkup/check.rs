@@ -13,7 +13,7 @@ pub struct Check {
     /// The value at the first check-up of this hand, and at the last one before this.
     pub first: Option<f64>,
     pub last: Option<f64>,
-    pub light: Grade,
+    pub grade: Grade,
     /// Over the most recent check-ups; this one is the last point.
     pub trend: Trend,
 }
@@ -32,7 +32,7 @@ impl Check {
             .iter()
             .filter_map(|kept| point(&kept.at, find(kept)));
         Self {
-            light: measured.what.light(measured.value, first),
+            grade: measured.what.grade(measured.value, first),
             first,
             last: earlier.last().and_then(find),
             trend: Trend::of(before.chain(point(at, measured.value))),
@@ -56,6 +56,6 @@ pub fn checks(measured: Vec<Measured>, at: &str, earlier: &[StoredCheckup]) -> V
 pub fn stopped_early(checks: &[Check]) -> Option<Dof> {
     let is_end = |what: Subject| matches!(what, Subject::OpenEnd | Subject::BentEnd);
     let ends = checks.iter().filter(|own| is_end(own.measured.what));
-    let mut early = ends.filter(|own| matches!(own.light, Grade::Act | Grade::Unknown));
+    let mut early = ends.filter(|own| matches!(own.grade, Grade::Act | Grade::Unknown));
     early.find_map(|own| own.measured.of.joint())
 }

@@ -37,17 +37,17 @@ pub fn file_of(folder: &Path, hand: &Endpoint) -> PathBuf {
 pub fn read(file: &Path) -> io::Result<Vec<StoredCheckup>> {
     let text = read_text(file, FILE_MAX)?.unwrap_or_default();
     let lines = text.lines().filter(|line| !line.trim().is_empty());
-    let kept: Result<Vec<StoredCheckup>, _> = lines.map(serde_json::from_str).collect();
-    kept.map_err(io::Error::from)
+    let stored: Result<Vec<StoredCheckup>, _> = lines.map(serde_json::from_str).collect();
+    stored.map_err(io::Error::from)
 }
 
 /// Appends a check-up to a file, atomically; drops the oldest but the first beyond [`KEPT_MAX`].
 ///
 /// # Errors
 /// As [`read`], or a write error.
-pub fn add(file: &Path, kept: StoredCheckup) -> io::Result<()> {
+pub fn add(file: &Path, stored: StoredCheckup) -> io::Result<()> {
     let mut all = read(file)?;
-    all.push(kept);
+    all.push(stored);
     let old = 1..all.len().saturating_sub(KEPT_MAX - 1).max(1);
     all.drain(old);
     let lines: Result<Vec<String>, _> = all.iter().map(serde_json::to_string).collect();
@@ -61,7 +61,7 @@ mod tests {
     use crate::checkup::subject::{HandPart, Subject};
     use crate::hand::{Dof, Finger};
 
-    fn kept(nth: usize) -> StoredCheckup {
+    fn stored(nth: usize) -> StoredCheckup {
         let of = [
             HandPart::Joint(Dof::ThumbBend),
             HandPart::Fingertip(Finger::Ring),
@@ -87,12 +87,12 @@ mod tests {
             file_of(folder.path(), &right)
         );
         for nth in 0..KEPT_MAX + 3 {
-            add(&file, kept(nth)).unwrap();
+            add(&file, stored(nth)).unwrap();
         }
         let all = read(&file).unwrap();
         assert_eq!(all.len(), KEPT_MAX);
-        assert_eq!((&all[0], all[1].at.as_str()), (&kept(0), "4"));
-        assert_eq!(all[KEPT_MAX - 1], kept(KEPT_MAX + 2));
+        assert_eq!((&all[0], all[1].at.as_str()), (&stored(0), "4"));
+        assert_eq!(all[KEPT_MAX - 1], stored(KEPT_MAX + 2));
         std::fs::write(&file, "no JSON\n").unwrap();
         read(&file).unwrap_err();
         // A folder, a pipe and an endless file are rejected.

@@ -72,7 +72,7 @@ pub struct SubjectRow {
 
 impl Subject {
     /// Grades a value by the ranges, and by its change since the first check-up of this hand.
-    pub fn light(self, value: Option<f64>, first: Option<f64>) -> Grade {
+    pub fn grade(self, value: Option<f64>, first: Option<f64>) -> Grade {
         let row = self.row();
         let Some(value) = value else {
             return Grade::Unknown;

@@ -67,7 +67,7 @@ fn the_first_target_is_the_actual_pose_and_the_next_are_within_rate_and_lead() {
 fn to_gap(mm: f32, from: PerDof<i16>, limits: FollowLimits) -> Vec<PerDof<i16>> {
     let gap = Gap::nearest(mm);
     let mut follow = Follow::new(limits, ms(0));
-    let mut told = vec![from; 6];
+    let mut commanded = vec![from; 6];
     let mut places = Vec::new();
     for n in 0..700 {
         let now = ms(n * 10);
@@ -77,13 +77,13 @@ fn to_gap(mm: f32, from: PerDof<i16>, limits: FollowLimits) -> Vec<PerDof<i16>> 
             mark: None,
             ..offer(n * 10, 0)
         });
-        let hand = told[told.len() - 6];
+        let hand = commanded[commanded.len() - 6];
         places.push(hand);
         let seen = FollowInput {
             pose: hand.map(|at| Some(Angle::nearest(at))),
             ..at(0)
         };
-        let mut next = told[told.len() - 1];
+        let mut next = commanded[commanded.len() - 1];
         match follow.tick(seen, now) {
             Some(FollowOrder::Aim(aims)) => {
                 for (dof, to) in aims.iter() {
@@ -96,7 +96,7 @@ fn to_gap(mm: f32, from: PerDof<i16>, limits: FollowLimits) -> Vec<PerDof<i16>> 
             }
             other => assert_eq!(other, None),
         }
-        told.push(next);
+        commanded.push(next);
     }
     places
 }
@@ -323,15 +323,15 @@ fn a_joint_that_is_not_aimed_at_or_not_known_is_left_alone() {
 /// A hand that goes where it was told at its own speed, late, and is pushed now and then.
 struct Joints {
     at: PerDof<f32>,
-    told: PerDof<f32>,
+    commanded: PerDof<f32>,
     state: LinkState,
 }
 
 impl Joints {
-    fn go_on(&mut self, elapsed: Duration, rng: &mut Rng) {
+    fn advance(&mut self, elapsed: Duration, rng: &mut Rng) {
         for dof in Dof::ALL {
             let reach = 1667.0 * elapsed.as_secs_f32();
-            self.at[dof] += (self.told[dof] - self.at[dof]).clamp(-reach, reach);
+            self.at[dof] += (self.commanded[dof] - self.at[dof]).clamp(-reach, reach);
             if rng.f32() < 0.002 {
                 self.at[dof] = rng.f32() * 1000.0;
             }
@@ -393,7 +393,7 @@ fn no_schedule_moves_a_hand_beyond_its_limits_or_after_the_end() {
         let start = rng.f32() * 1000.0;
         let mut hand = Joints {
             at: PerDof::splat(start),
-            told: PerDof::splat(start),
+            commanded: PerDof::splat(start),
             state: LinkState::Monitoring,
         };
         let mut offered: Option<Offer> = None;
@@ -403,7 +403,7 @@ fn no_schedule_moves_a_hand_beyond_its_limits_or_after_the_end() {
         for _ in 0..120 {
             let elapsed = Duration::from_micros(rng.u64(200..30_000));
             now = now.plus(elapsed);
-            hand.go_on(elapsed, &mut rng);
+            hand.advance(elapsed, &mut rng);
             if silence > 0 {
                 silence -= 1;
             } else if rng.f32() < 0.03 {
@@ -425,7 +425,7 @@ fn no_schedule_moves_a_hand_beyond_its_limits_or_after_the_end() {
                 }
                 Some(FollowOrder::Halt) => {
                     halts += 1;
-                    hand.told = hand.at;
+                    hand.commanded = hand.at;
                     hand.state = LinkState::Monitoring;
                     sent = PerDof::splat(None);
                 }
@@ -458,7 +458,7 @@ fn no_schedule_moves_a_hand_beyond_its_limits_or_after_the_end() {
                             assert!(is_entry, "seed {seed}: entered with a jump of {ahead}");
                         }
                         sent[dof] = Some((to, now));
-                        hand.told[dof] = to.get().into();
+                        hand.commanded[dof] = to.get().into();
                     }
                     for dof in Dof::ALL {
                         if offer.aims[dof].is_none() {

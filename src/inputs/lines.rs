@@ -33,7 +33,7 @@ pub struct LineCutter {
     rest: Vec<u8>,
     has_stopped: bool,
     /// Number of bytes scanned so far.
-    looked: usize,
+    scanned: usize,
     /// Skips the rest of a line that was too long.
     skips: bool,
 }
@@ -45,7 +45,7 @@ impl LineCutter {
             longest,
             rest: Vec::new(),
             has_stopped: false,
-            looked: 0,
+            scanned: 0,
             skips: false,
         }
     }
@@ -81,9 +81,9 @@ impl LineCutter {
             }
         }
         let is_short = self.rest.len() <= SHORT;
-        let is_due = is_short || self.rest.len() >= self.looked + KEPT;
+        let is_due = is_short || self.rest.len() >= self.scanned + KEPT;
         if !self.skips && is_due && begins_message(&self.rest) {
-            self.looked = self.rest.len();
+            self.scanned = self.rest.len();
             self.find_stop(TextEnd::MayGoOn, &mut cuts);
         }
         cuts
@@ -108,7 +108,7 @@ impl LineCutter {
 
     fn cut(&mut self) -> LineEvent {
         let mut text = std::mem::take(&mut self.rest);
-        self.looked = 0;
+        self.scanned = 0;
         if text.ends_with(b"\n") {
             text.pop();
         }
@@ -223,14 +223,14 @@ mod tests {
     #[test]
     fn a_long_line_that_comes_byte_by_byte_is_seldom_looked_through_again() {
         let mut cutter = LineCutter::new(LONGEST);
-        let (mut looks, mut looked) = (0, 0);
+        let (mut scans, mut scanned) = (0, 0);
         let text = format!("{{\"x\":\"{}", "y".repeat(LONGEST - 1000));
         for byte in text.bytes() {
             assert_eq!(cutter.push(&[byte]), []);
-            looks += usize::from(cutter.looked != looked);
-            looked = cutter.looked;
+            scans += usize::from(cutter.scanned != scanned);
+            scanned = cutter.scanned;
         }
-        assert!(looks <= SHORT + LONGEST / KEPT, "{looks}");
+        assert!(scans <= SHORT + LONGEST / KEPT, "{scans}");
         assert_eq!(cutter.push(b"\",\"stop\":true"), []);
         assert_eq!(cutter.push(&[b' '; KEPT]), [LineEvent::Stop]);
         // An object on several lines is not waited for without end.

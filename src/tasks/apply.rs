@@ -70,10 +70,10 @@ impl Applied {
 pub async fn apply(
     hand: &LinkHandle,
     task: &Apply,
-    mut tell: impl FnMut(ParamStep),
+    mut notify: impl FnMut(ParamStep),
 ) -> Result<Applied, TaskError> {
-    let took = |span, bytes: &[u8]| tell(ParamStep::Read(span, bytes.to_vec()));
-    let rows = read::rows(hand, took).await;
+    let on_read = |span, bytes: &[u8]| notify(ParamStep::Read(span, bytes.to_vec()));
+    let rows = read::rows(hand, on_read).await;
     let is_needed = |id| task.backups.is_some() || task.wanted.get(id).is_some();
     let before = rows.with(is_needed)?;
     let plan = changes::plan_writes(&task.wanted, &before);
@@ -82,7 +82,7 @@ pub async fn apply(
         places: plan.rows.only(ParamId::is_place),
     };
     task.consent.check(&risks)?;
-    tell(ParamStep::Meant(risks));
+    notify(ParamStep::Meant(risks));
     let mut applied = Applied {
         backup: None,
         rows: changes::held_already(&task.wanted, &plan, &before),
@@ -96,10 +96,10 @@ pub async fn apply(
     if let Some(backups) = &task.backups {
         applied.backup = Some(back_up(backups, &applied.before, "before apply").await?);
     }
-    tell(ParamStep::Writing);
+    notify(ParamStep::Writing);
     let (written, broken_off) = write(hand, &plan, &applied.before).await;
     for row in &written {
-        tell(ParamStep::Row(row.clone()));
+        notify(ParamStep::Row(row.clone()));
     }
     applied.rows.extend(written);
     applied.broken_off = broken_off;

@@ -177,13 +177,13 @@ pub struct CalibrateReport {
 pub async fn calibrate(
     hand: &LinkHandle,
     clock: Clock,
-    mut tell: impl FnMut(CalibrateStep),
+    mut notify: impl FnMut(CalibrateStep),
 ) -> CalibrateReport {
-    tell(CalibrateStep::Calibrating);
+    notify(CalibrateStep::Calibrating);
     let end = hand.calibrate().await;
     let mut after = None;
     if matches!(end, Ok(Calibrated::Finished | Calibrated::Quiet)) {
-        tell(CalibrateStep::Measuring);
+        notify(CalibrateStep::Measuring);
         let since = clock.now();
         let mut records = hand.records();
         let mut checks = Checks::default();

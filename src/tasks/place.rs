@@ -130,9 +130,9 @@ pub async fn change_place<R: Reach>(
     change: &PlaceChange,
     backups: &Backups,
     decisions: Decisions,
-    mut tell: impl FnMut(PlaceStep),
+    mut notify: impl FnMut(PlaceStep),
 ) -> Result<PlaceReport, TaskError> {
-    tell(PlaceStep::BackingUp);
+    notify(PlaceStep::BackingUp);
     let hand = reach.reach(&change.places.old).await;
     let hand = hand.ok_or(TaskError::NotReached)?;
     let params = read::rows(&hand, |_, _| ()).await.with(|_| true)?;
@@ -143,12 +143,12 @@ pub async fn change_place<R: Reach>(
         ..change.clone()
     };
     let backup = back_up(backups, &params, "before apply").await?;
-    tell(PlaceStep::BackedUp(backup.clone(), params.clone()));
+    notify(PlaceStep::BackedUp(backup.clone(), params.clone()));
     let mut run = ChangeRun {
         reach,
         change,
         backups,
-        tell: &mut tell,
+        notify: &mut notify,
         seen: None,
         not_noted: None,
     };
@@ -179,7 +179,7 @@ struct ChangeRun<'a, R, T> {
     reach: &'a mut R,
     change: &'a PlaceChange,
     backups: &'a Backups,
-    tell: &'a mut T,
+    notify: &'a mut T,
     /// What the hand held where it was looked for last, if it answered.
     seen: Option<Value>,
     not_noted: Option<String>,
@@ -188,7 +188,7 @@ struct ChangeRun<'a, R, T> {
 impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     /// What a hand that answers there holds in the row; `None` if nobody does.
     async fn holds(&mut self, at: WhichPlace) -> Option<Value> {
-        (self.tell)(PlaceStep::Looking(at));
+        (self.notify)(PlaceStep::Looking(at));
         self.seen = None;
         let hand = self.reach.reach(self.change.places.endpoint(at)).await?;
         let span = span_of(self.change.id);
@@ -207,7 +207,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         if may_be_taken && self.holds(from.other()).await.is_some() {
             return Some(Moved::Occupied);
         }
-        (self.tell)(PlaceStep::Writing(from));
+        (self.notify)(PlaceStep::Writing(from));
         let hand = self.reach.reach(self.change.places.endpoint(from)).await?;
         if !rests(&hand).await {
             return None;
@@ -240,16 +240,16 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
 
     /// The hand answers: the user keeps the change, or it is taken back.
     async fn decide(&mut self, at: WhichPlace, params: Params, decisions: Decisions) -> PlaceEnd {
-        (self.tell)(PlaceStep::Keeping(at));
+        (self.notify)(PlaceStep::Keeping(at));
         let keeps = timeout(CONFIRM_TIMEOUT, decisions.keeps).await;
         if !keeps.unwrap_or(false) {
-            (self.tell)(PlaceStep::Returning);
-            return self.take_back(at).await;
+            (self.notify)(PlaceStep::Returning);
+            return self.revert(at).await;
         }
         if at == WhichPlace::New {
             self.adopt(WhichPlace::New, WhichPlace::Old).await;
         }
-        (self.tell)(PlaceStep::Offering(at));
+        (self.notify)(PlaceStep::Offering(at));
         if decisions.saves.await {
             self.save(at, params).await
         } else {
@@ -268,7 +268,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     }
 
     /// Finds the hand and gives it back what it held.
-    async fn take_back(&mut self, last: WhichPlace) -> PlaceEnd {
+    async fn revert(&mut self, last: WhichPlace) -> PlaceEnd {
         let mut end = PlaceEnd::Nowhere;
         for _round in 0..ROUNDS {
             end = PlaceEnd::Nowhere;
@@ -307,8 +307,8 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         };
         params.put(self.change.id, self.change.wanted);
         let there = self.backups.beside(place);
-        let tell = &mut self.tell;
-        let ended = save_noted(&hand, &there, &params, || tell(PlaceStep::Saving(at))).await;
+        let notify = &mut self.notify;
+        let ended = save_noted(&hand, &there, &params, || notify(PlaceStep::Saving(at))).await;
         drop(hand);
         let (saved, not_noted) = match ended {
             Ok(ended) => ended,

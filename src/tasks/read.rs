@@ -41,14 +41,14 @@ impl ReadRows {
     }
 }
 
-/// Reads all rows, group by group; `took` is told each group as it comes.
-pub async fn rows(hand: &LinkHandle, mut took: impl FnMut(Span, &[u8])) -> ReadRows {
+/// Reads all rows, group by group; `on_read` is told each group as it comes.
+pub async fn rows(hand: &LinkHandle, mut on_read: impl FnMut(Span, &[u8])) -> ReadRows {
     let mut rows = ReadRows::default();
     for span in SPANS {
         match group(hand, span).await {
             Ok(bytes) => {
                 rows.params.apply(span, &bytes);
-                took(span, &bytes);
+                on_read(span, &bytes);
             }
             Err(error) => rows.troubles.push(error),
         }

@@ -110,14 +110,14 @@ pub async fn reset<R: Reach>(
     reach: &mut R,
     places: &PlacePair,
     backups: &Backups,
-    mut tell: impl FnMut(ResetStep),
+    mut notify: impl FnMut(ResetStep),
 ) -> Result<ResetReport, TaskError> {
-    tell(ResetStep::BackingUp);
+    notify(ResetStep::BackingUp);
     let hand = reach.reach(&places.old).await;
     let hand = hand.ok_or(TaskError::NotReached)?;
     let before = read::rows(&hand, |_, _| ()).await.with(|_| true)?;
     let backup = back_up(backups, &before, "before reset").await?;
-    tell(ResetStep::Sending);
+    notify(ResetStep::Sending);
     let not_sent = |reset: &Reset| match reset {
         Reset::NotSent(why) => Some(*why),
         _ => None,
@@ -138,7 +138,7 @@ pub async fn reset<R: Reach>(
             // Whatever the answer was: what is in flash now is not what was saved.
             let noting = backups.clone();
             let forgotten = on_thread(move || noting.forget_saved()).await;
-            report.end = find(reach, places, &before, &mut tell).await;
+            report.end = find(reach, places, &before, &mut notify).await;
             let adopted = adopt(backups, places, &report.end).await;
             report.not_noted = forgotten.and(adopted).err().map(SystemError::from);
         }
@@ -152,7 +152,7 @@ async fn find<R: Reach>(
     reach: &mut R,
     places: &PlacePair,
     before: &Params,
-    tell: &mut impl FnMut(ResetStep),
+    notify: &mut impl FnMut(ResetStep),
 ) -> ResetEnd {
     let mut answered = None;
     for _round in 0..ROUNDS {
@@ -160,7 +160,7 @@ async fn find<R: Reach>(
             if at == WhichPlace::Old && places.old == places.new {
                 continue;
             }
-            tell(ResetStep::Looking(at));
+            notify(ResetStep::Looking(at));
             let Some(hand) = reach.reach(places.endpoint(at)).await else {
                 continue;
             };

@@ -54,23 +54,23 @@ pub struct SaveReport {
 pub async fn save(
     hand: &LinkHandle,
     task: &Save,
-    mut tell: impl FnMut(ParamStep),
+    mut notify: impl FnMut(ParamStep),
 ) -> Result<SaveReport, TaskError> {
-    let took = |span, bytes: &[u8]| tell(ParamStep::Read(span, bytes.to_vec()));
-    let params = read::rows(hand, took).await.with(|_| true)?;
+    let on_read = |span, bytes: &[u8]| notify(ParamStep::Read(span, bytes.to_vec()));
+    let params = read::rows(hand, on_read).await.with(|_| true)?;
     let risks = Risks {
         dangers: worse(&task.before, &params, &task.overshoot),
         ..Risks::default()
     };
     task.consent.check(&risks)?;
-    tell(ParamStep::Meant(risks));
-    tell(ParamStep::BackingUp);
+    notify(ParamStep::Meant(risks));
+    notify(ParamStep::BackingUp);
     let backup = back_up(&task.backups, &params, "before save").await?;
     if let Some(ago) = task.backups.since_attempt(SystemTime::now()) {
         sleep(APART.saturating_sub(ago)).await;
     }
     let (saved, not_noted) = save_noted(hand, &task.backups, &params, || {
-        tell(ParamStep::Saving);
+        notify(ParamStep::Saving);
     })
     .await?;
     Ok(SaveReport {

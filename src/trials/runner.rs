@@ -441,8 +441,8 @@ impl ClosingJoint {
         };
         let seen = angle.value[self.dof].raw();
         let status = sample.status.filter(|status| status.asked >= since);
-        let says = status.map(|status| status.value[self.dof]);
-        self.moved |= says == Some(Status::Grasping)
+        let status = status.map(|status| status.value[self.dof]);
+        self.moved |= status == Some(Status::Grasping)
             || seen.abs_diff(self.from) > STILL_COUNTS.unsigned_abs() + 1;
         match self.still {
             Some((_, at)) if seen.abs_diff(at) <= STILL_COUNTS.unsigned_abs() => {}
@@ -462,8 +462,8 @@ impl ClosingJoint {
 
     /// True if it has moved and its drive reports a stop.
     fn reports_stop(&self, sample: &HandSample) -> bool {
-        let says = sample.status.map(|status| status.value[self.dof]);
-        self.moved && says.is_some_and(Status::is_stopped)
+        let status = sample.status.map(|status| status.value[self.dof]);
+        self.moved && status.is_some_and(Status::is_stopped)
     }
 
     /// True once it has finally stopped: at its target, at its force, or at an obstacle.

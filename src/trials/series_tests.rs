@@ -58,7 +58,7 @@ impl Hand {
         }
     }
 
-    fn obey(&mut self, setpoints: &Setpoints) {
+    fn apply(&mut self, setpoints: &Setpoints) {
         for dof in Dof::ALL {
             if let Some(Target::Go(angle)) = setpoints.angle[dof] {
                 self.target[dof] = angle.get();
@@ -171,7 +171,7 @@ fn run(plan: TrialPlan, mut meanwhile: impl FnMut(&mut Hand)) -> Ran {
             assert_eq!(series.aborted(), None, "nothing is sent after its end");
             sent.push((hand.now, setpoints));
             assert_eq!(setpoints.epoch, EPOCH);
-            hand.obey(&setpoints);
+            hand.apply(&setpoints);
         }
     }
     assert!(series.is_over());
@@ -312,7 +312,7 @@ fn the_longest_stall_of_a_trial_is_kept_with_it() {
             });
         }
         if let Some(set) = series.tick(&hand.sample(), hand.stall, hand.now) {
-            hand.obey(&set);
+            hand.apply(&set);
         }
     }
     let stalls = std::iter::from_fn(|| series.finished()).map(|trial| trial.summary.stall_s);

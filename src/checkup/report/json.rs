@@ -52,7 +52,7 @@ fn check(check: &Check) -> Value {
         "last": check.last,
         "past": past.collect::<Vec<_>>(),
         "drift": drift,
-        "light": check.light,
-        "advice": (check.light >= Grade::Watch).then_some(row.advice),
+        "light": check.grade,
+        "advice": (check.grade >= Grade::Watch).then_some(row.advice),
     })
 }

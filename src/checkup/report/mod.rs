@@ -70,15 +70,15 @@ impl CheckupReport {
         CheckupReportPage { report: self }.render()
     }
 
-    /// The number of figures with this light.
-    pub fn count(&self, light: Grade) -> usize {
-        self.checks.iter().filter(|own| own.light == light).count()
+    /// The number of figures with this grade.
+    pub fn count(&self, grade: Grade) -> usize {
+        self.checks.iter().filter(|own| own.grade == grade).count()
     }
 
-    /// The number of figures with each light, as a sentence.
+    /// The number of figures with each grade, as a sentence.
     pub fn summary(&self) -> String {
         let [fine, watch, act, unknown] =
-            [Grade::Fine, Grade::Watch, Grade::Act, Grade::Unknown].map(|light| self.count(light));
+            [Grade::Fine, Grade::Watch, Grade::Act, Grade::Unknown].map(|grade| self.count(grade));
         let all = self.checks.len();
         format!(
             "{all} figures: {fine} as they should be, {watch} to watch, {act} to act on, {unknown} not measured"
@@ -170,7 +170,7 @@ mod tests {
         }
     }
 
-    fn kept(day: u32, backlash: f64) -> StoredCheckup {
+    fn stored(day: u32, backlash: f64) -> StoredCheckup {
         let of = HandPart::Joint(Dof::Index);
         StoredCheckup {
             at: format!("2026-11-{day:02}T10:00:00Z"),
@@ -187,7 +187,7 @@ mod tests {
             aborted_words: Some("ended by a person".into()),
             left_alone: vec![(Dof::Ring, -600.0)],
             keeping: Keeping::NotAsFirst { dof: Dof::Index },
-            ..report([Some(48.0), None, Some(1000.0)], &[kept(1, 4.0)])
+            ..report([Some(48.0), None, Some(1000.0)], &[stored(1, 4.0)])
         };
         let page = report.html().unwrap();
         for wanted in [
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn a_figure_that_drifts_is_drawn_over_the_days_and_told_with_them() {
         let earlier: Vec<StoredCheckup> = (1..=5_u32)
-            .map(|day| kept(day, f64::from(day) + 1.0))
+            .map(|day| stored(day, f64::from(day) + 1.0))
             .collect();
         let usage = Usage {
             recordings: 3,

@@ -10,7 +10,7 @@ use crate::cli::out::notify;
 /// Findings with advice, and the summary.
 pub(crate) fn lines(report: &CheckupReport) -> Vec<String> {
     // Figures missing from a partial check-up are not reported.
-    let is_reported = |check: &&Check| match check.light {
+    let is_reported = |check: &&Check| match check.grade {
         Grade::Fine => check.drift().is_some(),
         Grade::Unknown => report.aborted.is_none(),
         Grade::Watch | Grade::Act => true,
@@ -25,17 +25,17 @@ pub(crate) fn lines(report: &CheckupReport) -> Vec<String> {
 
 fn line(check: &Check) -> String {
     let row = check.measured.what.row();
-    let (of, light) = (check.measured.of.name(), check.light.name());
+    let (of, grade) = (check.measured.of.name(), check.grade.name());
     if check.measured.value.is_none() {
-        return format!("{light}: {of}: {} was not measured", row.name);
+        return format!("{grade}: {of}: {} was not measured", row.name);
     }
     let first = check
         .first
         .map(|first| format!(", {} at first", row.text(first)));
-    let advice = (check.light != Grade::Fine).then(|| row.advice.to_owned());
+    let advice = (check.grade != Grade::Fine).then(|| row.advice.to_owned());
     let advice: Vec<String> = advice.into_iter().chain(drift_words(check)).collect();
     format!(
-        "{light}: {of}: {} is {} (good: {}{}): {}",
+        "{grade}: {of}: {} is {} (good: {}{}): {}",
         row.name,
         value_words(check),
         row.range(),

@@ -9,9 +9,9 @@ use tokio::runtime::Builder;
 
 /// Set once the user interrupts a command that checks it.
 #[derive(Debug, Clone)]
-pub(crate) struct EndWished(Arc<AtomicBool>);
+pub(crate) struct EndFlag(Arc<AtomicBool>);
 
-impl EndWished {
+impl EndFlag {
     /// Starts listening for signals. From then on the command must end by itself.
     pub(crate) fn listen() -> anyhow::Result<Self> {
         let runtime = Builder::new_current_thread().enable_all().build();

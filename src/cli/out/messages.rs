@@ -1,6 +1,6 @@
 //! Messages on standard error, and the wait for a reader at the end of the program.
 
-use crate::cli::out::ending::EndWished;
+use crate::cli::out::ending::EndFlag;
 use crate::cli::out::writer::{LineClass, LineWriter, WriteEnd};
 use crate::printable;
 use crate::shell::interrupt;
@@ -64,7 +64,7 @@ pub(crate) fn drained(writer: &LineWriter, waits: bool) -> Result<usize, WriteEn
     if left == 0 {
         return Ok(0);
     }
-    match EndWished::listen() {
+    match EndFlag::listen() {
         Ok(end) if waits && !interrupt::came() => writer.drained(|_| end.flow().is_continue()),
         _ => writer.drained(|stalled| stalled < UNREAD_TIMEOUT),
     }

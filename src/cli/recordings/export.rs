@@ -1,6 +1,6 @@
 //! `export`: writes recordings, or a time range of each, in another format; `recover`: repairs a damaged one.
 
-use crate::cli::out::ending::EndWished;
+use crate::cli::out::ending::EndFlag;
 use crate::cli::out::progress::Progress;
 use crate::cli::out::{Out, ReaderGone, WrongUsage, notify};
 use crate::cli::recordings::picture;
@@ -168,9 +168,9 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
     let to_stdout = is_standard(&args.out);
     // Standard output leaves no partial file, and its reader may stop reading.
     let wished = if to_stdout {
-        EndWished::never()
+        EndFlag::never()
     } else {
-        EndWished::listen()?
+        EndFlag::listen()?
     };
     let work = ExportJob {
         files: &files,
@@ -247,7 +247,7 @@ struct ExportJob<'a> {
     files: &'a [RecordingFile],
     stretches: &'a [Stretch],
     form: Form,
-    wished: EndWished,
+    wished: EndFlag,
     progress: Progress,
 }
 
@@ -439,7 +439,7 @@ pub(crate) fn recover(out: &mut Out, args: &RecoverArgs) -> anyhow::Result<()> {
     let file = recording_file::open(path)?;
     report_remarks(&file);
     let to = args.out.clone().unwrap_or_else(|| beside(path));
-    let wished = EndWished::listen()?;
+    let wished = EndFlag::listen()?;
     let progress = Progress::new();
     let watch = |share: f64| {
         progress.report(share);

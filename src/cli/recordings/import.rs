@@ -1,6 +1,6 @@
 //! `import`: creates a recording file from values that `export --csv` wrote.
 
-use crate::cli::out::ending::EndWished;
+use crate::cli::out::ending::EndFlag;
 use crate::cli::out::progress::Progress;
 use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::recordings::export::explained;
@@ -127,8 +127,8 @@ fn values(mut from: File, to: &Destination) -> Result<Imported, ImportError> {
         from.rewind().map_err(unreadable)?;
     }
     let wished = match to {
-        Destination::Stdout => EndWished::never(),
-        Destination::Path(_) => EndWished::listen().map_err(unlistened)?,
+        Destination::Stdout => EndFlag::never(),
+        Destination::Path(_) => EndFlag::listen().map_err(unlistened)?,
     };
     let length = from.metadata().map_or(0, |data| data.len());
     let (progress, read) = (Progress::new(), Cell::new(0));

@@ -1,7 +1,7 @@
 //! `export --png`: a picture of the window replaying a recording, with its plots over a time range.
 
 use crate::app::settings::{Language, Theme};
-use crate::cli::out::ending::EndWished;
+use crate::cli::out::ending::EndFlag;
 use crate::hand::Moment;
 use crate::record::export::ExportError;
 use crate::record::file::RecordingFile;
@@ -62,6 +62,6 @@ pub(crate) fn draw(file: &RecordingFile, stretch: Stretch, out: &Path) -> anyhow
     driver.replay(file.path().to_owned(), (from, to))?;
     let picture = driver.picture(View::Live);
     // From here on, a signal leaves either a complete file or none.
-    let _wished = EndWished::listen()?;
+    let _wished = EndFlag::listen()?;
     Ok(png::save(out, &picture.rgb, picture.size)?)
 }

@@ -73,7 +73,7 @@ impl PadDevice for SystemPad {
             Err(error) if error.kind() == io::ErrorKind::WouldBlock => return Ok(Vec::new()),
             events => events?,
         };
-        let said = events.filter_map(|event| match event.destructure() {
+        let events = events.filter_map(|event| match event.destructure() {
             EventSummary::Key(_, key, value) => Some(DeviceSays::Event(KernelEvent::Key {
                 code: key.code(),
                 is_down: value != 0,
@@ -90,7 +90,7 @@ impl PadDevice for SystemPad {
             }
             _ => None,
         });
-        Ok(said.collect())
+        Ok(events.collect())
     }
 }
 

@@ -87,7 +87,7 @@ pub struct PadInput {
     state: PadState,
     /// Gamepads that are not followed: their STOP counts. Limited by the number that is read at once.
     others: BTreeMap<PadId, PadState>,
-    heard: Option<Moment>,
+    last_report: Option<Moment>,
     /// The dead-man was seen released since the gamepad was found, events were lost, or STOP was pressed.
     may_hold: bool,
     pose: Option<PadControl>,
@@ -113,7 +113,7 @@ impl PadInput {
             pad: None,
             state: PadState::default(),
             others: BTreeMap::new(),
-            heard: None,
+            last_report: None,
             may_hold: false,
             pose: None,
             fingers: FingerChoice::All,
@@ -229,23 +229,23 @@ impl PadInput {
         match &report.news {
             PadNews::Found { pad, facts, now } if self.pad.is_none() => {
                 self.pad = Some(*pad);
-                self.heard = Some(report.at);
+                self.last_report = Some(report.at);
                 self.state = PadState::of(facts);
                 self.read_anew(now);
                 Some(PadEvent::Found)
             }
             PadNews::Lost { pad, now } if of_ours(pad) => {
-                self.heard = Some(report.at);
+                self.last_report = Some(report.at);
                 self.read_anew(now);
                 Some(PadEvent::Lost)
             }
             PadNews::Moved { pad, event } if of_ours(pad) => {
-                self.heard = Some(report.at);
+                self.last_report = Some(report.at);
                 self.moved(*event);
                 None
             }
             PadNews::Alive(pad) if of_ours(pad) => {
-                self.heard = Some(report.at);
+                self.last_report = Some(report.at);
                 None
             }
             PadNews::Gone(pad) if of_ours(pad) => {
@@ -260,13 +260,13 @@ impl PadInput {
 
     /// True if the dead-man is held at this time.
     pub fn is_held(&self, now: Moment) -> bool {
-        let is_near = |heard: Moment| now.since(heard) <= HEARD_TIMEOUT;
-        self.may_hold && self.is_dead_man_down() && self.heard.is_some_and(is_near)
+        let is_near = |last_report: Moment| now.since(last_report) <= HEARD_TIMEOUT;
+        self.may_hold && self.is_dead_man_down() && self.last_report.is_some_and(is_near)
     }
 
     /// Target of the gamepad at this time; `None` before the first gamepad. Empty while the dead-man is not held.
     pub fn offer(&mut self, now: Moment) -> Option<Offer> {
-        let at = self.heard?;
+        let at = self.last_report?;
         let is_held = self.is_held(now);
         let aim = if is_held {
             self.aim(now)

@@ -87,7 +87,7 @@ struct World {
     losses: usize,
     lost: usize,
     cuts: usize,
-    looks: Vec<(WhichPlace, bool)>,
+    attempts: Vec<(WhichPlace, bool)>,
     writes: usize,
     steps: usize,
 }
@@ -125,7 +125,7 @@ impl World {
         way
     }
 
-    fn look(&mut self, at: &Endpoint) -> bool {
+    fn reach(&mut self, at: &Endpoint) -> bool {
         self.step();
         let is_new = *at == self.places.new && self.places.old != self.places.new;
         let at = if is_new {
@@ -134,7 +134,7 @@ impl World {
             WhichPlace::Old
         };
         let is_seen = self.place() == at && self.loss(1) == 0;
-        self.looks.push((at, is_seen));
+        self.attempts.push((at, is_seen));
         is_seen
     }
 
@@ -217,10 +217,10 @@ async fn run(
     let hand = world.lock().unwrap().hand.clone();
     let script = Arc::clone(world);
     hand.script(move |asked| script.lock().unwrap().fate(asked));
-    let looks = Arc::clone(world);
+    let shared = Arc::clone(world);
     let mut reach = FakeReach {
         hand,
-        is_there: move |place: &Endpoint| looks.lock().unwrap().look(place),
+        is_there: move |place: &Endpoint| shared.lock().unwrap().reach(place),
     };
     let person = {
         let choices = &mut world.lock().unwrap().choices;
@@ -235,14 +235,14 @@ async fn run(
 
 fn check(world: &World, end: &PlaceEnd) {
     let holds = world.hand.holds(world.id).unwrap();
-    let last = world.looks.last().unwrap().1;
+    let last = world.attempts.last().unwrap().1;
     match end {
         PlaceEnd::NotWritten | PlaceEnd::Occupied => assert_eq!((world.writes, holds), (0, OLD)),
         // What is said was seen, or power took it back meanwhile.
         PlaceEnd::NotTaken { .. } | PlaceEnd::Back => assert_eq!(holds, OLD),
-        PlaceEnd::NotBack(at) => assert!(world.looks.contains(&(*at, true))),
+        PlaceEnd::NotBack(at) => assert!(world.attempts.contains(&(*at, true))),
         PlaceEnd::Kept { at, saved } => {
-            assert!(world.looks.contains(&(*at, true)));
+            assert!(world.attempts.contains(&(*at, true)));
             if *saved == Some(Saved::Confirmed) {
                 assert_eq!(world.hand.in_flash(world.id), Some(holds));
             }
@@ -290,7 +290,7 @@ fn however_answers_and_power_are_lost_the_end_is_true() {
                     losses,
                     lost: 0,
                     cuts,
-                    looks: Vec::new(),
+                    attempts: Vec::new(),
                     writes: 0,
                     steps: 0,
                 };
@@ -331,7 +331,7 @@ fn however_answers_and_power_are_lost_the_end_is_true() {
 const LOSSES: [(usize, usize, usize); 3] = [(0, 1, 1000), (1, 0, 40), (7, 1, 250)];
 
 /// A change without any trouble but this script, and the user who wants this.
-async fn told(
+async fn run_change(
     change: &PlaceChange,
     hand: &FakeHand,
     is_there: impl FnMut(&Endpoint) -> bool + Send,
@@ -370,7 +370,7 @@ async fn without_an_answer_it_goes_back_after_fifteen_seconds_and_not_before() {
         keeps: None,
         saves: true,
     };
-    let (report, steps) = told(&change, &hand, there, nobody).await;
+    let (report, steps) = run_change(&change, &hand, there, nobody).await;
     assert_eq!(
         (report.moved, report.end),
         (Some(Moved::There), PlaceEnd::Back)
@@ -403,7 +403,7 @@ async fn an_id_that_another_hand_has_is_not_written_over_it_on_the_way_there_or_
         saves: true,
     };
     let (change, hand) = (change(Follows::Wire), FakeHand::new());
-    let (report, _) = told(&change, &hand, |_| true, keeper()).await;
+    let (report, _) = run_change(&change, &hand, |_| true, keeper()).await;
     assert_eq!(report.end, PlaceEnd::Occupied);
     assert!(!hand.asked().iter().any(is_write));
 
@@ -416,7 +416,7 @@ async fn an_id_that_another_hand_has_is_not_written_over_it_on_the_way_there_or_
         keeps: Some(false),
         saves: false,
     };
-    let (report, _) = told(&change, &hand, there, leaver).await;
+    let (report, _) = run_change(&change, &hand, there, leaver).await;
     assert_eq!(report.end, PlaceEnd::NotBack(WhichPlace::New));
     let writes = hand.asked().into_iter().filter(is_write);
     assert!(writes.eq([place_write(ParamId::HandId, NEW)]));
@@ -454,7 +454,7 @@ async fn a_third_value_is_put_back_before_anybody_can_save_it() {
             keeps: Some(true),
             saves: true,
         };
-        let (report, steps) = told(&change, &hand, |_| true, keeper).await;
+        let (report, steps) = run_change(&change, &hand, |_| true, keeper).await;
         assert_eq!(report.end, expected);
         let asks = |step: &PlaceStep| matches!(step, PlaceStep::Keeping(_) | PlaceStep::Saving(_));
         assert!(!steps.iter().any(|(step, _)| asks(step)));
@@ -517,7 +517,7 @@ async fn moved(
         keeps: Some(true),
         saves: false,
     };
-    let (report, _) = told(&change, &hand, is_there, keeper).await;
+    let (report, _) = run_change(&change, &hand, is_there, keeper).await;
     let writes = hand.asked().into_iter().filter(is_write).count();
     (report.moved.unwrap(), writes)
 }
@@ -630,7 +630,7 @@ async fn what_is_taken_back_is_what_the_hand_held_and_not_what_a_person_was_show
         keeps: Some(false),
         saves: false,
     };
-    let (report, _) = told(&shown, &hand, there, leaver).await;
+    let (report, _) = run_change(&shown, &hand, there, leaver).await;
     assert_eq!(report.end, PlaceEnd::Back);
     assert_eq!(hand.holds(ParamId::HandId), Some(OLD));
 }

@@ -338,7 +338,7 @@ async fn reset_of(
     (end, steps)
 }
 
-fn looked(steps: &[ResetStep]) -> Vec<WhichPlace> {
+fn places_tried(steps: &[ResetStep]) -> Vec<WhichPlace> {
     let looks = steps.iter().filter_map(|step| match step {
         ResetStep::Looking(place) => Some(*place),
         _ => None,
@@ -350,10 +350,13 @@ fn looked(steps: &[ResetStep]) -> Vec<WhichPlace> {
 async fn the_hand_is_looked_for_at_the_factorys_place_first_and_in_rounds() {
     let (end, steps) = reset_of("rs485:/dev/x?id=7", Fate::AnswerLost, |_| false).await;
     assert_eq!(end.unwrap().end, ResetEnd::Nowhere);
-    assert_eq!(looked(&steps), [WhichPlace::New, WhichPlace::Old].repeat(3));
+    assert_eq!(
+        places_tried(&steps),
+        [WhichPlace::New, WhichPlace::Old].repeat(3)
+    );
 
     let (end, steps) = reset_of("rs485:/dev/x?id=1", Fate::Answered, |look| look == 1).await;
-    assert_eq!(looked(&steps), [WhichPlace::New; 2]);
+    assert_eq!(places_tried(&steps), [WhichPlace::New; 2]);
     let report = end.unwrap();
     assert!(report.is_acknowledged);
     let ResetEnd::Found { at, left, .. } = report.end else {
@@ -367,7 +370,7 @@ async fn what_was_not_taken_is_told_as_it_is() {
     let why = NotSent::Armed;
     let (end, steps) = reset_of("rs485:/dev/x?id=7", Fate::NotSent(why), |_| true).await;
     assert_eq!(end.unwrap().end, ResetEnd::NotSent(Some(why)));
-    assert_eq!(looked(&steps), []);
+    assert_eq!(places_tried(&steps), []);
 
     let (end, _) = reset_of("rs485:/dev/x?id=7", Fate::Unheard, |look| look == 1).await;
     let ResetEnd::Found { at, left, .. } = end.unwrap().end else {

@@ -298,9 +298,9 @@ fn contact(force: &TimeSeries, rest: RestLevel, end: f64) -> Option<f64> {
 /// Time at which the drive first reports a stop after motion; without status readings, at which the angle is still.
 fn stop(curves: &JointCurves, from: f64, end: f64) -> Option<f64> {
     let stopped = |point: &CurvePoint| status(point.v).is_some_and(Status::is_stopped);
-    let mut said = curves.status.between(0.0, end).skip_while(stopped);
-    if said.next().is_some() {
-        return said.find(stopped).map(|point| point.t);
+    let mut later = curves.status.between(0.0, end).skip_while(stopped);
+    if later.next().is_some() {
+        return later.find(stopped).map(|point| point.t);
     }
     let still = rest(&curves.angle, -REST_S, 0.0)?.level;
     let angles: Vec<CurvePoint> = curves.angle.between(from, end).collect();

@@ -145,8 +145,8 @@ impl PeakGrowth {
                 fitted += fit.over_g(own);
             }
             // Overshoots no larger than noise carry no information.
-            let tells = fitted > 5.0 * self.noise_g && over > 0.0;
-            tells.then(|| (nearest, over / fitted))
+            let is_significant = fitted > 5.0 * self.noise_g && over > 0.0;
+            is_significant.then(|| (nearest, over / fitted))
         };
         let below = side(&|own| own <= speed, &|a, b| a >= b);
         let above = side(&|own| own >= speed, &|a, b| a <= b);
@@ -314,12 +314,12 @@ impl PeakGrowth {
     ) -> Option<GrowthFit> {
         let noise = self.noise_g + 1.0;
         let (mut xy, mut xx) = (0.0, 0.0);
-        let tells = |own: &&SeenPeak| !compared.is_contradicted_by(own, self.noise_g);
+        let is_consistent = |own: &&SeenPeak| !compared.is_contradicted_by(own, self.noise_g);
         let points: Vec<(f64, (f64, f64, f64))> = self
             .seen
             .iter()
             .zip(repeats)
-            .filter(|(own, _)| tells(own))
+            .filter(|(own, _)| is_consistent(own))
             .map(|(own, repeats)| {
                 let over = compared.over_g(own);
                 let error = noise.hypot(SHAPE_ERROR * over).hypot(own.missed_g / 2.0);

@@ -59,10 +59,10 @@ impl ReportView {
             let show = Button::said(look, checkup::REPORT).disabled(none);
             show.on_click(ui, pane, Action::Recording(reveal));
         });
-        let lights = [Grade::Fine, Grade::Watch, Grade::Act, Grade::Unknown];
-        let [fine, watch, act, unknown] = lights.map(|light| report.count(light));
+        let grades = [Grade::Fine, Grade::Watch, Grade::Act, Grade::Unknown];
+        let [fine, watch, act, unknown] = grades.map(|grade| report.count(grade));
         let words = look.fill(checkup::LIGHTS, &[&fine, &watch, &act, &unknown]);
-        let worst = report.checks.iter().map(|own| own.light).max();
+        let worst = report.checks.iter().map(|own| own.grade).max();
         let color = table::color(pane, worst.unwrap_or(Grade::Unknown));
         Label::new(&words, color).named(&title).ui(ui);
         if let Some(why) = report.aborted {

@@ -20,9 +20,9 @@ const TREND: f32 = 72.0;
 const ADVICE: f32 = 160.0;
 
 /// Colour of a grade.
-pub(super) const fn color(pane: &Pane<'_>, light: Grade) -> Color32 {
+pub(super) const fn color(pane: &Pane<'_>, grade: Grade) -> Color32 {
     let palette = pane.look.palette;
-    match light {
+    match grade {
         Grade::Fine => palette.ok,
         Grade::Unknown => palette.muted,
         Grade::Watch => palette.warn,
@@ -33,7 +33,7 @@ pub(super) const fn color(pane: &Pane<'_>, light: Grade) -> Color32 {
 /// Draws the values, or only those that are not fine.
 pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, report: &CheckupReport, only: bool) {
     let look = pane.look;
-    let is_told = |own: &&Check| !only || own.light != Grade::Fine || own.drift().is_some();
+    let is_told = |own: &&Check| !only || own.grade != Grade::Fine || own.drift().is_some();
     let shown: Vec<&Check> = report.checks.iter().filter(is_told).collect();
     if shown.is_empty() {
         kit::say_ui(ui, look.say(checkup::ALL_FINE), look.palette.ok);
@@ -84,14 +84,14 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, check: &Check) {
     let channels = &check.measured.channels;
     let channels = (!channels.is_empty()).then(|| look.fill(checkup::CHANNELS, &[channels]));
     row.col(|ui| {
-        let color = color(pane, check.light);
+        let color = color(pane, check.grade);
         kit::lamp_ui(ui, Some(color));
         let value = check.measured.value.map(|value| unit.text(value));
         let value = value.unwrap_or_else(|| format::UNKNOWN.into());
         let label = Label::new(&value, palette.text).number();
         let shown = label.named(&name(checkup::COLUMN_MEASURED)).ui(ui);
-        let light = look.say(checkup::light(check.light));
-        let words = [light.to_owned()].into_iter();
+        let grade = look.say(checkup::grade(check.grade));
+        let words = [grade.to_owned()].into_iter();
         let words: Vec<String> = words.chain(channels.clone()).collect();
         shown.on_hover_text(words.join(", "));
     });

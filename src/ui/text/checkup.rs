@@ -58,7 +58,7 @@ texts! {
     HAND: "Hand", "整手";
 
     /// Name of a grade.
-    fn light(Grade) {
+    fn grade(Grade) {
         Grade::Fine => "fine", "正常";
         Grade::Unknown => "unknown", "未知";
         Grade::Watch => "watch", "关注";
@@ -134,7 +134,7 @@ pub(crate) const fn part(of: HandPart) -> Text {
 /// Advice about a value, and its drift.
 pub(crate) fn to_do(look: Look, check: &Check) -> String {
     let what = check.measured.what;
-    let advice = (check.light >= Grade::Watch).then(|| look.say(advice(what)).to_owned());
+    let advice = (check.grade >= Grade::Watch).then(|| look.say(advice(what)).to_owned());
     let drift = check.drift().map(|drift| {
         let row = what.row();
         let [from, to] = [drift.from, drift.to].map(|value| row.text(value));

@@ -118,7 +118,7 @@ fn nothing_goes_beyond_its_limits_and_a_fault_ends_it() {
     let supply = checks
         .iter()
         .find(|check| check.measured.what == Subject::SlowerTogether);
-    assert_eq!(supply.unwrap().light, Grade::Unknown);
+    assert_eq!(supply.unwrap().grade, Grade::Unknown);
 }
 
 #[test]
@@ -271,7 +271,7 @@ fn a_joint_whose_zero_is_far_off_is_left_alone_and_told() {
         let own = all
             .iter()
             .find(|own| (own.measured.what, own.measured.of) == (what, of));
-        own.unwrap().light
+        own.unwrap().grade
     };
     assert_eq!(of(Subject::ForceZero, HandPart::Joint(JOINT)), Grade::Act);
     assert_eq!(
@@ -333,7 +333,7 @@ fn pressed_fingertips_answer_and_a_dead_channel_is_named() {
         let own = own
             .find(|own| own.measured.of == HandPart::Fingertip(finger))
             .unwrap();
-        (own.light, own.measured.channels.to_string())
+        (own.grade, own.measured.channels.to_string())
     };
     assert_eq!(silent(Finger::Ring), (Grade::Act, "4".to_owned()));
     assert_eq!(silent(Finger::Thumb), (Grade::Fine, String::new()));

@@ -47,7 +47,7 @@ fn kept(first: &[Check]) -> StoredCheckup {
 
 /// What is not as it should be.
 pub(crate) fn told(checks: &[Check]) -> Vec<(Subject, HandPart, Option<f64>)> {
-    let told = checks.iter().filter(|check| check.light != Grade::Fine);
+    let told = checks.iter().filter(|check| check.grade != Grade::Fine);
     let told = told.map(|check| (check.measured.what, check.measured.of, check.measured.value));
     told.collect()
 }

@@ -190,7 +190,7 @@ fn each_fingertip_is_asked_for_and_a_dead_channel_is_named() {
     let silent = checks
         .find(|own| (own.measured.what, own.measured.of) == (Subject::SilentChannels, of))
         .unwrap();
-    assert_eq!(silent.light, Grade::Act);
+    assert_eq!(silent.grade, Grade::Act);
     assert_eq!(silent.measured.channels.to_string(), "2");
     bench.click("Only what is not fine");
     bench.run(60);
