@@ -58,26 +58,25 @@ impl SimDial {
 impl BuiltHands {
     /// Returns the hand of this seed, scenario and body, creating it if needed. A body file is read only for a new hand, on a
     /// blocking thread.
-    async fn hand(&self, wanted: Wanted) -> Result<SharedHand, TransportError> {
+    async fn hand(&self, spec: SimHandSpec) -> Result<SharedHand, TransportError> {
         let scenario: Scenario =
-            wanted
-                .scenario
+            spec.scenario
                 .parse()
                 .map_err(|error: crate::sim::UnknownScenario| {
                     failed(WireFailure::NoScenario(error.to_string()))
                 })?;
-        if let Some(hand) = self.known(&wanted, scenario) {
+        if let Some(hand) = self.known(&spec, scenario) {
             return Ok(hand);
         }
-        let body = match wanted.body.clone() {
+        let body = match spec.body.clone() {
             None => BodyParams::default(),
             Some(path) => read_body(path).await?,
         };
-        if let Some(hand) = self.known(&wanted, scenario) {
+        if let Some(hand) = self.known(&spec, scenario) {
             return Ok(hand);
         }
         let config = SimConfig {
-            seed: wanted.seed,
+            seed: spec.seed,
             scenario,
             body,
             ..SimConfig::default()
@@ -88,25 +87,25 @@ impl BuiltHands {
         // Disconnected hands make room.
         all.retain(|built| built.hand.is_shared());
         all.push(Built {
-            seed: wanted.seed,
+            seed: spec.seed,
             scenario,
-            body: wanted.body,
+            body: spec.body,
             hand: hand.clone(),
         });
         Ok(hand)
     }
 
-    fn known(&self, wanted: &Wanted, scenario: Scenario) -> Option<SharedHand> {
+    fn known(&self, spec: &SimHandSpec, scenario: Scenario) -> Option<SharedHand> {
         let all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
         let is_it = |built: &&Built| {
-            built.seed == wanted.seed && built.scenario == scenario && built.body == wanted.body
+            built.seed == spec.seed && built.scenario == scenario && built.body == spec.body
         };
         all.iter().find(is_it).map(|built| built.hand.clone())
     }
 }
 
 /// Parameters of a built-in hand, as named by an endpoint.
-struct Wanted {
+struct SimHandSpec {
     seed: u64,
     scenario: String,
     body: Option<String>,
@@ -142,14 +141,14 @@ impl Dial for SimDial {
         else {
             return self.system.dial(endpoint);
         };
-        let wanted = Wanted {
+        let spec = SimHandSpec {
             seed: *seed,
             scenario: scenario.clone(),
             body: body.clone(),
         };
         let built = self.built.clone();
         Box::pin(async move {
-            let hand = built.hand(wanted).await?;
+            let hand = built.hand(spec).await?;
             let (ours, its) = pair();
             // The task ends when our end of the wire is dropped.
             tokio::spawn(rs485::serve(hand, its));
@@ -173,12 +172,12 @@ mod tests {
     use crate::hand::register;
 
     async fn hand_of(dial: &SimDial, seed: u64) -> SharedHand {
-        let wanted = Wanted {
+        let spec = SimHandSpec {
             seed,
             scenario: "idle".into(),
             body: None,
         };
-        dial.built.hand(wanted).await.unwrap()
+        dial.built.hand(spec).await.unwrap()
     }
 
     #[tokio::test(start_paused = true)]

@@ -80,7 +80,7 @@ impl ScanState {
         self.stage == ScanStage::Running
     }
 
-    fn take(&mut self, event: ScanEvent) {
+    fn apply(&mut self, event: ScanEvent) {
         match event {
             ScanEvent::Begun { places, .. } => self.places = places,
             ScanEvent::Found(found) if self.found.len() < FOUND_MAX => self.found.push(found),
@@ -144,7 +144,7 @@ impl ScanState {
         };
         self.progress = handle.progress();
         for event in std::iter::from_fn(|| handle.try_event()).take(EVENTS_PER_FRAME) {
-            self.take(event);
+            self.apply(event);
         }
         if self.is_running() {
             self.handle = Some(handle);
@@ -174,11 +174,11 @@ mod tests {
     fn what_has_no_room_is_counted() {
         let mut scan = ScanState::default();
         for _ in 0..=FOUND_MAX {
-            scan.take(found(1));
+            scan.apply(found(1));
         }
         for _ in 0..=REMARKS_MAX {
             let place = "/dev/x".to_owned();
-            scan.take(ScanEvent::Held { place });
+            scan.apply(ScanEvent::Held { place });
         }
         assert_eq!(
             (scan.found.len(), scan.remarks.len()),

@@ -429,7 +429,7 @@ impl Settings {
 
     /// Sets the day of the last connection to a hand by the user.
     pub(crate) fn used_on(&mut self, endpoint: &Endpoint, day: String) {
-        self.know_hand(endpoint, |known| known.last_day = day);
+        self.update_hand(endpoint, |known| known.last_day = day);
     }
 
     /// Side of this hand; if not set for it, the default side.
@@ -446,12 +446,12 @@ impl Settings {
 
     /// Sets the side of a hand.
     pub(crate) fn set_side_of(&mut self, endpoint: &Endpoint, side: Side) {
-        self.know_hand(endpoint, |known| known.side = Some(side));
+        self.update_hand(endpoint, |known| known.side = Some(side));
     }
 
     /// Sets the name of a hand, reduced to one line; an empty name removes it.
     pub(crate) fn name_hand(&mut self, endpoint: &Endpoint, name: &str) {
-        self.know_hand(endpoint, |known| known.name = clean(name));
+        self.update_hand(endpoint, |known| known.name = clean(name));
     }
 
     /// Blocks that were measured with this hand.
@@ -462,10 +462,10 @@ impl Settings {
 
     /// Stores the blocks that were measured with a hand.
     pub(crate) fn keep_size_blocks(&mut self, endpoint: &Endpoint, blocks: SizeBlocks) {
-        self.know_hand(endpoint, |known| known.size_blocks = blocks);
+        self.update_hand(endpoint, |known| known.size_blocks = blocks);
     }
 
-    fn know_hand(&mut self, endpoint: &Endpoint, change: impl FnOnce(&mut KnownHand)) {
+    fn update_hand(&mut self, endpoint: &Endpoint, change: impl FnOnce(&mut KnownHand)) {
         let text = endpoint.to_string();
         change(self.hands.entry(text.clone()).or_default());
         self.hands.retain(|_, known| *known != KnownHand::default());

@@ -4,7 +4,7 @@ use crate::ui::text::{Text, checkup, inputs, main, recordings, window};
 
 /// One of the five tabs that the header switches between.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Place {
+pub enum Tab {
     /// The hand, its joints and its plots.
     Live,
     /// Grasp trials: plan, series and results.
@@ -17,7 +17,7 @@ pub enum Place {
     Share,
 }
 
-impl Place {
+impl Tab {
     /// All tabs, in header order.
     pub const ALL: [Self; 5] = [
         Self::Live,
@@ -123,13 +123,13 @@ impl View {
     }
 
     /// Returns the tab that contains this view.
-    pub const fn place(self) -> Place {
+    pub const fn tab(self) -> Tab {
         match self {
-            Self::Live | Self::Touch | Self::Poses | Self::Faults => Place::Live,
-            Self::Tune | Self::Compare => Place::Tune,
-            Self::Recordings => Place::Recordings,
-            Self::Connection | Self::Device | Self::Checkup | Self::Traffic => Place::Hand,
-            Self::Inputs => Place::Share,
+            Self::Live | Self::Touch | Self::Poses | Self::Faults => Tab::Live,
+            Self::Tune | Self::Compare => Tab::Tune,
+            Self::Recordings => Tab::Recordings,
+            Self::Connection | Self::Device | Self::Checkup | Self::Traffic => Tab::Hand,
+            Self::Inputs => Tab::Share,
         }
     }
 
@@ -154,11 +154,11 @@ mod tests {
     }
 
     #[test]
-    fn every_view_is_in_its_place() {
+    fn every_view_is_in_its_tab() {
         for view in View::ALL {
-            for place in Place::ALL {
-                let is_there = place.views().contains(&view);
-                assert_eq!(is_there, view.place() == place, "{view:?} {place:?}");
+            for tab in Tab::ALL {
+                let is_there = tab.views().contains(&view);
+                assert_eq!(is_there, view.tab() == tab, "{view:?} {tab:?}");
             }
         }
     }

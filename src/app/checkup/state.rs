@@ -22,9 +22,9 @@ pub struct HandCheckup {
     pub last: Option<ShownCheckup>,
     /// Reason why the stored check-ups cannot be read.
     pub unread: Option<String>,
-    pub(crate) looking: Option<BackgroundJob<KeptCheckup>>,
+    pub(crate) reading: Option<BackgroundJob<KeptCheckup>>,
     /// True once stored check-ups have been requested.
-    pub(crate) is_looked: bool,
+    pub(crate) is_read: bool,
 }
 
 /// A finished check-up.
@@ -72,7 +72,7 @@ impl CheckupRun {
 impl HandCheckup {
     /// True while the stored check-ups are being read.
     pub const fn is_reading(&self) -> bool {
-        self.looking.is_some()
+        self.reading.is_some()
     }
 }
 

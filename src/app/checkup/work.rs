@@ -74,15 +74,15 @@ impl CheckupRun {
                     return Err(error);
                 }
             };
-            let mut told = None;
-            let tell = |checkup: &mut Checkup, _: Option<&Setpoints>| {
+            let mut last = None;
+            let report = |checkup: &mut Checkup, _: Option<&Setpoints>| {
                 let view = checkup.view();
-                if told.replace(view) != Some(view) {
-                    steps.tell(view);
+                if last.replace(view) != Some(view) {
+                    steps.send(view);
                 }
                 true
             };
-            let driven = drive(&link, armed, checkup, ends(ended), tell).await;
+            let driven = drive(&link, armed, checkup, ends(ended), report).await;
             let ended = EndedCheckup { driven, recording };
             on_thread(move || Ok(files.conclude(ended))).await
         });
@@ -120,7 +120,7 @@ impl HandCheckup {
         match end {
             Err(error) => vec![NoticeKind::not_saved(PathBuf::from("checks"), &error)],
             Ok(ConcludedCheckup { report, written }) => {
-                let mut told = vec![NoticeKind::CheckupEnded {
+                let mut notices = vec![NoticeKind::CheckupEnded {
                     act: report.count(Grade::Act),
                     watch: report.count(Grade::Watch),
                     aborted: report.aborted,
@@ -128,32 +128,32 @@ impl HandCheckup {
                 let folder = match written.transpose() {
                     Ok(folder) => folder,
                     Err(error) => {
-                        told.push(NoticeKind::not_saved(PathBuf::from("report.html"), &error));
+                        notices.push(NoticeKind::not_saved(PathBuf::from("report.html"), &error));
                         None
                     }
                 };
                 self.last = Some(ShownCheckup::of((report, folder)));
-                told
+                notices
             }
         }
     }
 
     /// Reads the stored check-ups when their view is shown, once.
-    pub(crate) fn look(&mut self, files: CheckupFiles, env: &Env) {
-        if std::mem::replace(&mut self.is_looked, true) {
+    pub(crate) fn read_last(&mut self, files: CheckupFiles, env: &Env) {
+        if std::mem::replace(&mut self.is_read, true) {
             return;
         }
         // Nothing is stored for the built-in hand.
         if files.kept.is_none() {
             return;
         }
-        let look = async move { on_thread(move || Ok(files.last())).await.flatten() };
-        self.looking = Some(BackgroundJob::start(&env.runtime, &env.wake, look));
+        let read = async move { on_thread(move || Ok(files.last())).await.flatten() };
+        self.reading = Some(BackgroundJob::start(&env.runtime, &env.wake, read));
     }
 
     /// Applies the result of the read.
     pub(crate) fn tick(&mut self) {
-        match BackgroundJob::take_from(&mut self.looking) {
+        match BackgroundJob::take_from(&mut self.reading) {
             None => {}
             Some(Ok(kept)) if self.last.is_none() => self.last = kept.map(ShownCheckup::of),
             Some(Ok(_)) => {}

@@ -21,14 +21,14 @@ pub(crate) struct Running<S, E> {
 
 /// Sender of a task's steps.
 pub(crate) struct Steps<S> {
-    told: broadcast::Sender<(Moment, S)>,
+    sender: broadcast::Sender<(Moment, S)>,
     env: Env,
 }
 
 impl<S> Steps<S> {
-    pub(crate) fn tell(&self, step: S) {
+    pub(crate) fn send(&self, step: S) {
         // A dropped receiver means that the window no longer needs the steps.
-        let _told = self.told.send((self.env.clock.now(), step)).is_ok();
+        let _sent = self.sender.send((self.env.clock.now(), step)).is_ok();
         (self.env.wake)();
     }
 }
@@ -39,10 +39,10 @@ impl<S: Clone + Send + 'static, E: Send + 'static> Running<S, E> {
     where
         F: Future<Output = E> + Send + 'static,
     {
-        let (told, steps) = broadcast::channel(STEPS_MAX);
+        let (sender, steps) = broadcast::channel(STEPS_MAX);
         let env = env.clone();
         let work = task(Steps {
-            told,
+            sender,
             env: env.clone(),
         });
         let task = env.runtime.spawn(work);
@@ -82,12 +82,12 @@ mod tests {
 
     #[test]
     fn a_window_that_does_not_look_gets_the_newest_steps_and_how_many_went() {
-        let (told, mut steps) = broadcast::channel(STEPS_MAX);
+        let (sender, mut steps) = broadcast::channel(STEPS_MAX);
         let lost = LostSteps::default();
         for step in 0..3000 {
-            told.send(step).unwrap();
+            sender.send(step).unwrap();
         }
-        drop(told);
+        drop(sender);
         let all = waiting(&mut steps, &lost);
         assert_eq!((all.len(), all.last()), (STEPS_MAX, Some(&2999)));
         assert_eq!(lost.take(), 3000 - STEPS_MAX as u64);

@@ -76,7 +76,7 @@ impl KeptReport {
 
     /// Records the state of the hand at this time since 1970; reads and writes files when due.
     pub(crate) fn tick(&mut self, hand: &Hand, since_1970: Duration, now: Moment) {
-        self.take_ended();
+        self.apply_ended();
         let day = calendar::day(since_1970);
         let is_over = self.today.day != day;
         if !is_over {
@@ -97,7 +97,7 @@ impl KeptReport {
 
     /// Writes unsaved changes. Returns true once everything is saved, or cannot be.
     pub(crate) fn flush(&mut self, now: Moment) -> bool {
-        self.take_ended();
+        self.apply_ended();
         if !self.is_busy() && self.today != self.kept {
             self.write(now);
         }
@@ -157,11 +157,11 @@ impl KeptReport {
         }
     }
 
-    fn take_ended(&mut self) {
-        if let Some((earlier, told)) = BackgroundJob::take_from(&mut self.reading) {
-            let is_aside = |told: &NoticeKind| matches!(told, NoticeKind::FileIgnored { kept_as, .. } if kept_as.is_some());
-            self.may_write = told.as_ref().is_none_or(is_aside);
-            self.unreadable = told.or(self.unreadable.take());
+    fn apply_ended(&mut self) {
+        if let Some((earlier, notice)) = BackgroundJob::take_from(&mut self.reading) {
+            let is_aside = |notice: &NoticeKind| matches!(notice, NoticeKind::FileIgnored { kept_as, .. } if kept_as.is_some());
+            self.may_write = notice.as_ref().is_none_or(is_aside);
+            self.unreadable = notice.or(self.unreadable.take());
             if let Some(earlier) = earlier {
                 self.today.add(&earlier);
                 self.kept = earlier;
@@ -175,7 +175,7 @@ impl KeptReport {
             Some(Ok(())) => {
                 // A successful write clears the failure of the same day.
                 let day = self.path();
-                self.not_saved.take_if(|told| match told {
+                self.not_saved.take_if(|notice| match notice {
                     NoticeKind::NotSaved { path, .. } => Some(path.with_extension("toml")) == day,
                     _ => false,
                 });

@@ -41,7 +41,7 @@ impl ExhibitState {
         let drawn = Arc::clone(&task_start.drawn);
         let (wishes, wanted) = mpsc::channel(WISHES_MAX);
         let task = Running::start(env, |steps| async move {
-            exhibit::exhibit(&link, task_start, wanted, |step| steps.tell(step)).await;
+            exhibit::exhibit(&link, task_start, wanted, |step| steps.send(step)).await;
         });
         let wrong_path = env.settings_path.as_deref().map(wrong_pins_file::beside);
         // Reads one line synchronously: it must be known before a PIN can be typed.
@@ -140,7 +140,7 @@ impl ExhibitState {
     /// Forwards a visitor's request to the task.
     pub(crate) fn wish(&mut self, wish: ExhibitWish) {
         // A full queue drops one of very many touches; a stop also reaches the hand by another path.
-        let _taken = self.wishes.try_send(wish);
+        let _queued = self.wishes.try_send(wish);
     }
 
     /// Asks for the PIN, or keeps asking.

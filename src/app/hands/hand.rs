@@ -14,7 +14,7 @@ use crate::app::inputs::HandInputs;
 use crate::app::notices::{HandNotices, NoticeKind, RequestKind};
 use crate::app::params::ParamsState;
 use crate::app::procedures::Procedures;
-use crate::app::readings::{Measured, Readings};
+use crate::app::readings::{Measurements, Readings};
 use crate::app::recordings::recording::HandRecording;
 use crate::app::settings::Settings;
 use crate::app::slot::{HandLabel, SlotId, place_name};
@@ -50,7 +50,7 @@ pub struct Hand {
     pub side: Side,
     pub connection: Connection,
     pub readings: Readings,
-    pub measured: Measured,
+    pub measured: Measurements,
     pub controls: Controls,
     /// The program that moves the hand.
     pub running: RunningMotion,
@@ -246,8 +246,8 @@ impl Hand {
         match record {
             Record::Reading { sample, fresh } => {
                 let at = sample.newest(*fresh).unwrap_or(now);
-                let faults = self.readings.take(sample, *fresh, at);
-                self.measured.take(sample, *fresh, at, &faults);
+                let faults = self.readings.apply(sample, *fresh, at);
+                self.measured.push(sample, *fresh, at, &faults);
                 for entry in faults {
                     let (dof, what) = (entry.dof, entry.what);
                     notices.push(at, NoticeKind::Fault { dof, what });
@@ -479,7 +479,7 @@ impl Hand {
         let (commands, wanted) = mpsc::channel(COMMANDS_MAX);
         let link = open.link.clone();
         let task = Running::start(env, |steps| async move {
-            play::play(&link, armed, start, wanted, |step| steps.tell(step)).await
+            play::play(&link, armed, start, wanted, |step| steps.send(step)).await
         });
         self.running.0 = Some(MotionRun::Sequence(SequenceRun {
             entry,

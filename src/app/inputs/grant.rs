@@ -68,7 +68,7 @@ impl FollowRun {
             leader,
         } = offered;
         let task = Running::start(env, |views| async move {
-            let end = follow(&link, start, offers, |view| views.tell(view)).await;
+            let end = follow(&link, start, offers, |view| views.send(view)).await;
             let leader = leader.filter(|_| stops_leader(end));
             FollowOutcome {
                 end,

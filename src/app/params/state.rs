@@ -31,7 +31,7 @@ pub const OUTDATED_AGE: Duration = Duration::from_secs(60);
 pub const REREAD_DELAY: Duration = Duration::from_secs(2);
 
 /// Opening the view after at least this long without it counts as a new visit.
-const LOOKED_AWAY: Duration = Duration::from_millis(500);
+const VIEW_GAP_MAX: Duration = Duration::from_millis(500);
 
 /// Current operation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -96,7 +96,7 @@ pub struct ParamsState {
     /// True once a read has been started since the hand was found.
     pub(crate) is_asked: bool,
     pub(crate) lost_at: Option<Moment>,
-    looked_at: Option<Moment>,
+    viewed_at: Option<Moment>,
     /// Current operation.
     pub doing: Doing,
     /// Reason why the last read is incomplete.
@@ -116,7 +116,7 @@ pub struct ParamsState {
     /// Backups, oldest first.
     pub backups: Vec<Backup>,
     /// File that is compared with the hand.
-    pub compared: Option<Compared>,
+    pub compared: Option<FileComparison>,
     /// Reason why the last file was not opened.
     pub file_refused: Option<NoticeKind>,
     /// Save to perform after the running apply, with the dangers that the user has accepted.
@@ -218,7 +218,7 @@ impl ParamsState {
     }
 
     /// Replaces the read values by those of a recording.
-    pub(crate) fn take_recorded(&mut self, params: &Params, at: Moment) {
+    pub(crate) fn set_recorded(&mut self, params: &Params, at: Moment) {
         let known = |id: ParamId| Some((id, (params.get(id)?, at)));
         self.live = ParamId::all().into_iter().filter_map(known).collect();
     }
@@ -294,9 +294,9 @@ impl ParamsState {
 
     /// Notes that the user is viewing the rows. Returns true if they should be read now: when the view is opened, and when a
     /// hand is found while it is open.
-    pub(crate) fn look(&mut self, now: Moment) -> bool {
-        let before = self.looked_at.replace(now);
-        let comes = before.is_none_or(|at| now.since(at) > LOOKED_AWAY);
+    pub(crate) fn note_viewed(&mut self, now: Moment) -> bool {
+        let before = self.viewed_at.replace(now);
+        let comes = before.is_none_or(|at| now.since(at) > VIEW_GAP_MAX);
         !self.is_asked || comes && self.is_due(now)
     }
 
@@ -323,7 +323,7 @@ impl ParamsState {
     }
 
     /// Applies a block of values that was read.
-    pub(crate) fn take(&mut self, span: Span, bytes: &[u8], at: Moment) {
+    pub(crate) fn apply_read(&mut self, span: Span, bytes: &[u8], at: Moment) {
         let mut read = Params::default();
         read.apply(span, bytes);
         for (id, value) in read.iter() {
@@ -445,14 +445,14 @@ pub const fn rest_refusal(link: &LinkStatus) -> Option<ParamRefusal> {
 
 /// File compared with the hand.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Compared {
+pub struct FileComparison {
     pub name: String,
     /// Contents of the file.
     pub file: ParamsFile,
     ticked: BTreeSet<ParamId>,
 }
 
-impl Compared {
+impl FileComparison {
     /// Selects the rows in which the hand differs. Address rows are specific to one hand, so only the user selects them.
     pub fn new(name: String, file: ParamsFile, live: &Params) -> Self {
         let differ = live.differences(&file.params).into_iter();

@@ -7,7 +7,7 @@ use crate::app::env::running::{Running, Steps};
 use crate::app::files::open::open;
 use crate::app::hand::Connection;
 use crate::app::params::state::{
-    Compared, Doing, FilesRead, ParamAction, ParamsEnd, ParamsState, SaveEnd, WriteQuestion,
+    Doing, FileComparison, FilesRead, ParamAction, ParamsEnd, ParamsState, SaveEnd, WriteQuestion,
     WriteRequest,
 };
 use crate::hand::overshoot::OvershootMap;
@@ -135,8 +135,8 @@ impl ParamsState {
     }
 
     /// Reads the rows when their view is shown, if due.
-    pub(crate) fn look_at(&mut self, hand: ParamsHand<'_>, now: Moment) {
-        if self.look(now) && self.read_refusal(&hand.connection.status).is_none() {
+    pub(crate) fn read_if_due(&mut self, hand: ParamsHand<'_>, now: Moment) {
+        if self.note_viewed(now) && self.read_refusal(&hand.connection.status).is_none() {
             self.read_rows(hand);
         }
     }
@@ -158,8 +158,8 @@ impl ParamsState {
 
     fn read_rows(&mut self, hand: ParamsHand<'_>) {
         self.start(Doing::Reading, hand, |link, steps| async move {
-            let took = |span, bytes: &[u8]| steps.tell(ParamStep::Read(span, bytes.to_vec()));
-            ParamsEnd::Read(rows(&link, took).await)
+            let report = |span, bytes: &[u8]| steps.send(ParamStep::Read(span, bytes.to_vec()));
+            ParamsEnd::Read(rows(&link, report).await)
         });
     }
 
@@ -172,7 +172,7 @@ impl ParamsState {
             overshoot: Arc::clone(hand.overshoot),
         };
         self.start(Doing::Applying, hand, |link, steps| async move {
-            let end = apply(&link, &task, |step| steps.tell(step)).await;
+            let end = apply(&link, &task, |step| steps.send(step)).await;
             ParamsEnd::Applied(task.wanted, end)
         });
     }
@@ -197,7 +197,7 @@ impl ParamsState {
             overshoot: Arc::clone(hand.overshoot),
         };
         self.start(Doing::BackingUp, hand, |link, steps| async move {
-            ParamsEnd::Saved(save(&link, &task, |step| steps.tell(step)).await)
+            ParamsEnd::Saved(save(&link, &task, |step| steps.send(step)).await)
         });
     }
 
@@ -213,7 +213,7 @@ impl ParamsState {
     pub(crate) fn tick(&mut self, hand: ParamsHand<'_>, ctx: &mut Ctx<'_>) {
         let connection = hand.connection;
         let (link, now) = (&connection.status, ctx.now);
-        self.take_task(now);
+        self.apply_task(now);
         if !self.is_busy()
             && let Some(agreed) = self.save_next.take()
             && self.question.is_none()
@@ -279,12 +279,12 @@ impl ParamsState {
         }
     }
 
-    fn take_task(&mut self, now: Moment) {
+    fn apply_task(&mut self, now: Moment) {
         let Some(task) = &mut self.task else { return };
         let (steps, end) = task.news();
         for (at, step) in steps {
             match step {
-                ParamStep::Read(span, bytes) => self.take(span, &bytes, at),
+                ParamStep::Read(span, bytes) => self.apply_read(span, &bytes, at),
                 ParamStep::Row(row) => self.written(row, at),
                 ParamStep::Saving => self.doing = Doing::Saving,
                 ParamStep::BackingUp | ParamStep::Meant(_) | ParamStep::Writing => {}
@@ -369,6 +369,6 @@ impl ParamsState {
     fn show_file(&mut self, path: &Path, file: ParamsFile) {
         let name = path.file_name().unwrap_or_default();
         let name = name.to_string_lossy().into_owned();
-        self.compared = Some(Compared::new(name, file, &self.live_params()));
+        self.compared = Some(FileComparison::new(name, file, &self.live_params()));
     }
 }

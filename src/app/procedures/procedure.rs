@@ -49,10 +49,10 @@ impl<S, E> ProcedureStage<S, E> {
     }
 
     /// Applies the steps of the task; returns true once it has ended. The callback returns true for steps to show.
-    pub(crate) fn take_news(
+    pub(crate) fn apply_news(
         &mut self,
         run: &mut Option<Running<S, E>>,
-        mut told: impl FnMut(&S, Moment) -> bool,
+        mut is_shown: impl FnMut(&S, Moment) -> bool,
     ) -> bool
     where
         S: Clone + Send + 'static,
@@ -61,7 +61,7 @@ impl<S, E> ProcedureStage<S, E> {
         let Some(running) = run else { return false };
         let (steps, end) = running.news();
         for (at, step) in steps {
-            if told(&step, at) {
+            if is_shown(&step, at) {
                 *self = Self::Doing(step, at);
             }
         }

@@ -115,7 +115,7 @@ impl Procedures {
                     ProcedureAction::LeaveUnsaved => (card.saves.take(), false),
                 };
                 // A finished task no longer listens.
-                let _heard = answer.map(|answer| answer.send(agrees));
+                let _received = answer.map(|answer| answer.send(agrees));
             }
             (_, Procedure::Reset(_) | Procedure::Calibrate(_)) => {}
         }
@@ -150,8 +150,8 @@ impl Procedures {
                 };
                 card.stage = ProcedureStage::Doing(PlaceStep::BackingUp, now);
                 card.run = Some(Running::start(env, |steps| async move {
-                    let tell = |step| steps.tell(step);
-                    change_place(&mut reach, &change, &backups?, decisions, tell).await
+                    let report = |step| steps.send(step);
+                    change_place(&mut reach, &change, &backups?, decisions, report).await
                 }));
             }
             Some(Procedure::Reset(card)) if card.stage == ProcedureStage::Asking => {
@@ -159,7 +159,7 @@ impl Procedures {
                 let backups = backups(&places.old);
                 card.stage = ProcedureStage::Doing(ResetStep::BackingUp, now);
                 card.run = Some(Running::start(env, |steps| async move {
-                    reset(&mut reach, &places, &backups?, |step| steps.tell(step)).await
+                    reset(&mut reach, &places, &backups?, |step| steps.send(step)).await
                 }));
             }
             Some(Procedure::Calibrate(card)) if card.stage == ProcedureStage::Asking => {
@@ -171,7 +171,7 @@ impl Procedures {
                 card.stage = ProcedureStage::Doing(CalibrateStep::Calibrating, now);
                 let (link, clock) = (link.clone(), env.clock);
                 card.run = Some(Running::start(env, |steps| async move {
-                    calibrate(&link, clock, |step| steps.tell(step)).await
+                    calibrate(&link, clock, |step| steps.send(step)).await
                 }));
             }
             _ => return,
@@ -180,7 +180,7 @@ impl Procedures {
     }
 
     /// Link request of the card's task, if pending.
-    pub(crate) fn wants_link(&mut self) -> Option<GoRequest> {
+    pub(crate) fn take_link_request(&mut self) -> Option<GoRequest> {
         self.requested.as_mut()?.try_recv().ok()
     }
 
@@ -194,7 +194,7 @@ impl Procedures {
     }
 
     /// Applies the steps of the card's task. Returns true once it has ended.
-    pub(crate) fn take_news(
+    pub(crate) fn apply_news(
         &mut self,
         params: &mut ParamsState,
         overshoot: &OvershootMap,
@@ -203,7 +203,7 @@ impl Procedures {
         match &mut self.card {
             None => false,
             Some(Procedure::Place(card)) => {
-                let is_over = card.stage.take_news(&mut card.run, |step, at| {
+                let is_over = card.stage.apply_news(&mut card.run, |step, at| {
                     match step {
                         PlaceStep::BackedUp(path, held) => {
                             let before = params.before_changes(held);
@@ -227,13 +227,13 @@ impl Procedures {
                 }
                 is_over
             }
-            Some(Procedure::Reset(card)) => card.stage.take_news(&mut card.run, |step, at| {
+            Some(Procedure::Reset(card)) => card.stage.apply_news(&mut card.run, |step, at| {
                 if *step == ResetStep::Sending {
                     params.lost_at = Some(at);
                 }
                 true
             }),
-            Some(Procedure::Calibrate(card)) => card.stage.take_news(&mut card.run, |_, _| true),
+            Some(Procedure::Calibrate(card)) => card.stage.apply_news(&mut card.run, |_, _| true),
         }
     }
 
@@ -248,14 +248,14 @@ impl Procedures {
 
 /// Current value of an address row: as last read back, else as reported when the link was opened.
 pub fn held_now(id: ParamId, link: &LinkStatus, params: &ParamsState) -> Option<Value> {
-    let told = match id {
+    let reported = match id {
         ParamId::HandId => link.quirks.hand_id,
         ParamId::ReduRatio => link.quirks.baud_code,
         _ => None,
     };
-    let told = told.map(|byte| Value::Number(i32::from(byte)));
+    let reported = reported.map(|byte| Value::Number(i32::from(byte)));
     let read = params.live(id).map(|(value, _)| value);
-    read.or(told)
+    read.or(reported)
 }
 
 /// Endpoint of the hand at another network address; unchanged for other wires.

@@ -219,8 +219,8 @@ fn tick_checkup(hand: &mut Hand, ctx: &mut Ctx<'_>) {
 fn tick_procedure(hand: &mut Hand, settings: &mut Settings, ctx: &mut Ctx<'_>) {
     hand.procedures.watch(&hand.readings.sample);
     let map = &hand.overshoot.map;
-    let is_over = hand.procedures.take_news(&mut hand.params, map, settings);
-    if let Some(request) = hand.procedures.wants_link() {
+    let is_over = hand.procedures.apply_news(&mut hand.params, map, settings);
+    if let Some(request) = hand.procedures.take_link_request() {
         if hand.connection.endpoint.as_ref() != Some(&request.place) {
             hand.go(Some(request.place), ctx);
         }
@@ -265,7 +265,7 @@ fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
                 && hand.activity().lets_read_beside()
                 && let Some(recording) = &mut hand.recording
             {
-                recording.ask_params(&link, ctx.env);
+                recording.request_params(&link, ctx.env);
             }
         }
         (Some(_), _) => hand.recording = None,

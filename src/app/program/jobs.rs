@@ -45,7 +45,7 @@ impl Jobs {
             trials.asks_path = std::mem::take(&mut trials.is_opening) && end.is_err();
         }
         let kept = BackgroundJob::take_from(&mut self.keeping);
-        told.extend(asked.into_iter().chain(kept).map(|end| trials.take(end)));
+        told.extend(asked.into_iter().chain(kept).map(|end| trials.apply(end)));
         while self.keeping.is_none()
             && let Some(id) = trials.to_keep.pop_front()
         {

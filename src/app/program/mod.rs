@@ -99,7 +99,7 @@ impl App {
     /// Tells the user something that was found elsewhere, such as an unreadable settings file.
     pub fn tell(&mut self, what: NoticeKind, now: Moment) {
         if let Some(player) = &mut self.recorded.player {
-            player.tell(what.clone());
+            player.notify(what.clone());
         }
         self.state.notices.push(now, what);
     }
@@ -371,7 +371,7 @@ impl App {
             overshoot: &hand.overshoot.map,
             env: &self.env,
         };
-        hand.params.look_at(of, now);
+        hand.params.read_if_due(of, now);
     }
 
     /// Reads the check-ups that were kept of the shown hand because somebody looks at them. Called while they do.
@@ -386,7 +386,7 @@ impl App {
             && let Some(endpoint) = &hand.connection.endpoint
         {
             let files = files(endpoint, settings, &self.env);
-            hand.checkup.look(files, &self.env);
+            hand.checkup.read_last(files, &self.env);
         }
     }
 

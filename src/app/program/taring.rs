@@ -23,7 +23,7 @@ pub(super) fn tare(hand: &mut Hand, finger: Option<Finger>, ctx: &mut Ctx<'_>) {
 pub(super) fn take_kept(hand: &mut Hand, ctx: &mut Ctx<'_>) {
     let fresh = fresh_tips(hand, ctx.now);
     let readings = &mut hand.readings;
-    let taken = readings.tare.take_kept(fresh, &readings.sample, ctx.now);
+    let taken = readings.tare.apply_stored(fresh, &readings.sample, ctx.now);
     if let Err((finger, newtons)) = taken {
         ctx.tell(NoticeKind::TareUnderLoad { finger, newtons });
     }

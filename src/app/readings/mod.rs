@@ -51,7 +51,7 @@ pub struct Readings {
 
 /// Measurements of a hand across connections.
 #[derive(Debug, Default)]
-pub struct Measured {
+pub struct Measurements {
     /// Measurements of the last minutes.
     pub history: History,
     /// Recordings around faults. They are retained when the hand changes.
@@ -61,7 +61,7 @@ pub struct Measured {
 
 impl Readings {
     /// Applies a sample received at `at`; returns the faults that are new with it.
-    pub(crate) fn take(
+    pub(crate) fn apply(
         &mut self,
         sample: &HandSample,
         fresh: Groups,
@@ -69,12 +69,12 @@ impl Readings {
     ) -> Vec<FaultEntry> {
         self.sample = *sample;
         if let Some(angle) = sample.angle.filter(|_| fresh.contains(Group::Angle)) {
-            self.pace.take(angle.asked);
+            self.pace.push(angle.asked);
         }
         for finger in Finger::ALL {
             let block = sample.tactile[finger].filter(|_| fresh.contains(Group::Tactile(finger)));
             if let Some(block) = block {
-                self.tip_pace[finger].take(block.asked);
+                self.tip_pace[finger].push(block.asked);
             }
         }
         self.grip.take(sample, fresh, at);
@@ -117,7 +117,7 @@ fn freshness(asked: Option<Moment>, pace: ReadingPace, is_live: bool, now: Momen
     }
 }
 
-impl Measured {
+impl Measurements {
     /// Finishes the recording of the hand, which had this name, when it is disconnected.
     pub(crate) fn leave(&mut self, name: &str, now: Moment) {
         self.recorder.another_hand(&self.history, name, now);
@@ -134,7 +134,7 @@ impl Measured {
     }
 
     /// Adds a sample received at `at`, and the faults that are new with it.
-    pub(crate) fn take(
+    pub(crate) fn push(
         &mut self,
         sample: &HandSample,
         fresh: Groups,
@@ -169,7 +169,7 @@ pub struct ReadingPace {
 
 impl ReadingPace {
     /// Records a successful reading that was requested at this moment.
-    pub fn take(&mut self, asked: Moment) {
+    pub fn push(&mut self, asked: Moment) {
         if let Some(last) = self.last.replace(asked) {
             self.intervals.rotate_left(1);
             if let Some(newest) = self.intervals.last_mut() {
@@ -194,11 +194,11 @@ mod tests {
         let at = |ms: u64| Moment::from_micros(ms * 1000);
         let mut pace = ReadingPace::default();
         assert_eq!(pace.stale_after(), STALE_AFTER_LEAST);
-        (0..9).for_each(|nth| pace.take(at(nth * 10)));
+        (0..9).for_each(|nth| pace.push(at(nth * 10)));
         assert_eq!(pace.stale_after(), STALE_AFTER_LEAST, "100 Hz");
-        (1..9).for_each(|nth| pace.take(at(80 + nth * 300)));
+        (1..9).for_each(|nth| pace.push(at(80 + nth * 300)));
         assert_eq!(pace.stale_after(), Duration::from_millis(900), "3 Hz");
-        pace.take(at(60_000));
+        pace.push(at(60_000));
         assert_eq!(pace.stale_after(), STALE_AFTER_MOST, "after a long silence");
     }
 }

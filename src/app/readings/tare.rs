@@ -16,12 +16,12 @@ pub struct TareZero {
     pub raw: [u32; 8],
     /// Time at which the reading was received.
     pub at: Moment,
-    pub source: Source,
+    pub source: TareSource,
 }
 
 /// Source of a fingertip's zero point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum TareSource {
     /// First reading of the untouched fingertip.
     First,
     /// Tared by the user.
@@ -42,7 +42,7 @@ pub struct KeptTare {
 
 /// A stored tare, and its age when the hand was found.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Offer {
+struct TareOffer {
     kept: KeptTare,
     age: Duration,
     at: Moment,
@@ -54,7 +54,7 @@ pub struct Tare {
     zeros: PerFinger<Option<TareZero>>,
     before: Option<PerFinger<Option<TareZero>>>,
     /// `None` until the stored tare has been looked up for this connection.
-    offer: Option<Option<Offer>>,
+    offer: Option<Option<TareOffer>>,
 }
 
 impl Tare {
@@ -66,7 +66,7 @@ impl Tare {
     /// Time of the user's last tare; `None` if there was none or it was undone.
     pub fn chosen_at(&self) -> Option<Moment> {
         let chosen = self.zeros.iter().filter_map(|(_, zero)| *zero);
-        let chosen = chosen.filter(|zero| zero.source == Source::Person);
+        let chosen = chosen.filter(|zero| zero.source == TareSource::Person);
         chosen.map(|zero| zero.at).max()
     }
 
@@ -79,7 +79,7 @@ impl Tare {
     pub(crate) fn begin(&mut self, sample: &HandSample) {
         for (finger, zero) in self.zeros.iter_mut() {
             if zero.is_none() && load(sample, finger).is_none() {
-                *zero = reading(sample, finger, Source::First);
+                *zero = reading(sample, finger, TareSource::First);
             }
         }
     }
@@ -92,7 +92,7 @@ impl Tare {
         sample: &HandSample,
     ) -> Result<(), (Finger, f32)> {
         self.count_from(fingers, sample, |finger| {
-            reading(sample, finger, Source::Person)
+            reading(sample, finger, TareSource::Person)
         })
     }
 
@@ -122,7 +122,7 @@ impl Tare {
 
     /// Offers the stored tare of the hand, if any. `since_1970` and `now` are the same moment.
     pub(crate) fn offer(&mut self, kept: Option<KeptTare>, since_1970: Duration, now: Moment) {
-        let offer = |kept: KeptTare| Offer {
+        let offer = |kept: KeptTare| TareOffer {
             age: since_1970.saturating_sub(Duration::from_secs(kept.unix_s)),
             kept,
             at: now,
@@ -138,7 +138,7 @@ impl Tare {
 
     /// Tares these fingertips to the stored values, if any. If one is touched, nothing changes and the error holds that
     /// finger and its force in newtons.
-    pub(crate) fn take_kept(
+    pub(crate) fn apply_stored(
         &mut self,
         fingers: impl IntoIterator<Item = Finger>,
         sample: &HandSample,
@@ -152,7 +152,7 @@ impl Tare {
             Some(TareZero {
                 raw: *tips.get(finger.name())?,
                 at: now,
-                source: Source::Kept(age),
+                source: TareSource::Kept(age),
             })
         })
     }
@@ -164,7 +164,7 @@ impl Tare {
             return offer.map(|offer| offer.kept.clone());
         };
         let zeros = self.zeros.iter().filter_map(|(finger, zero)| {
-            let zero = zero.filter(|zero| zero.source != Source::First)?;
+            let zero = zero.filter(|zero| zero.source != TareSource::First)?;
             Some((finger.name().to_owned(), zero.raw))
         });
         Some(KeptTare {
@@ -187,7 +187,7 @@ fn load(sample: &HandSample, finger: Finger) -> Option<f32> {
     (normal >= TOUCHED_N).then_some(normal)
 }
 
-fn reading(sample: &HandSample, finger: Finger, source: Source) -> Option<TareZero> {
+fn reading(sample: &HandSample, finger: Finger, source: TareSource) -> Option<TareZero> {
     let block = sample.tactile[finger]?;
     Some(TareZero {
         raw: block.value.raw,
@@ -266,12 +266,13 @@ mod tests {
         if let Some(block) = &mut pressed.tactile[Finger::Index] {
             block.value.normal_n = 4.5;
         }
-        let refused = tare.take_kept(Finger::ALL, &pressed, at(8));
+        let refused = tare.apply_stored(Finger::ALL, &pressed, at(8));
         assert_eq!(refused, Err((Finger::Index, 4.5)));
         assert_eq!(counted_from(&tare), Some(100));
-        tare.take_kept(Finger::ALL, &sample(400, 8), at(8)).unwrap();
+        tare.apply_stored(Finger::ALL, &sample(400, 8), at(8))
+            .unwrap();
         let zero = tare.zero(Finger::Index).unwrap();
-        let source = Source::Kept(Duration::from_secs(63));
+        let source = TareSource::Kept(Duration::from_secs(63));
         assert_eq!((zero.raw[0], zero.source), (300, source));
         assert_eq!(tare.chosen_at(), None, "not chosen in this session");
         tare.undo();

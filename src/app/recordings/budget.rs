@@ -32,7 +32,7 @@ pub struct PlannedDeletion {
 /// File format of a folder's announced deletions.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
-struct ToldFile {
+struct AnnouncedFile {
     #[serde(rename = "session")]
     recordings: Vec<PlannedDeletion>,
 }
@@ -83,7 +83,7 @@ pub(crate) fn delete(recording: &Path) -> io::Result<()> {
         std::fs::remove_file(file)?;
     }
     // Not every recording has a metadata file.
-    let _said = std::fs::remove_file(RecordingAbout::path(recording));
+    let _removed = std::fs::remove_file(RecordingAbout::path(recording));
     Ok(())
 }
 
@@ -93,7 +93,7 @@ pub(crate) fn delete(recording: &Path) -> io::Result<()> {
 pub fn plan(
     items: &[RecordingItem],
     room: &RecordingRoom<'_>,
-    told: &[PlannedDeletion],
+    announced: &[PlannedDeletion],
     now_unix_s: u64,
 ) -> Vec<PlannedDeletion> {
     let mut bytes: u64 = items.iter().map(|item| item.bytes).sum();
@@ -112,7 +112,7 @@ pub fn plan(
         planned.push(PlannedDeletion {
             path: item.path.clone(),
             bytes: item.bytes,
-            told_unix_s: told
+            told_unix_s: announced
                 .iter()
                 .find(same)
                 .map_or(now_unix_s, |known| known.told_unix_s),
@@ -124,30 +124,30 @@ pub fn plan(
 /// The planned deletions that are due: only those in the list of announcements read from disk.
 pub fn due(
     planned: &[PlannedDeletion],
-    told: &[PlannedDeletion],
+    announced: &[PlannedDeletion],
     now_unix_s: u64,
 ) -> Vec<PlannedDeletion> {
-    let is_due = |one: &&PlannedDeletion| told.contains(one) && one.due_unix_s() <= now_unix_s;
+    let is_due = |one: &&PlannedDeletion| announced.contains(one) && one.due_unix_s() <= now_unix_s;
     planned.iter().filter(is_due).cloned().collect()
 }
 
 /// Loads the announced deletions of a folder. If the file is unreadable, the list is empty and they are announced
 /// again.
-pub(crate) fn load_told(folder: &Path) -> Vec<PlannedDeletion> {
-    let path = told_path(folder);
+pub(crate) fn load_announced(folder: &Path) -> Vec<PlannedDeletion> {
+    let path = announced_path(folder);
     let read = toml_file::load(&path, FILE_LEN_MAX, |text| FileText::plain(text).parse());
-    read.map(|file: ToldFile| file.recordings)
+    read.map(|file: AnnouncedFile| file.recordings)
         .unwrap_or_default()
 }
 
 /// Saves the announced deletions of a folder.
-pub(crate) fn save_told(folder: &Path, recordings: Vec<PlannedDeletion>) -> io::Result<()> {
-    let text = toml::to_string_pretty(&ToldFile { recordings }).map_err(io::Error::other)?;
-    replace(&told_path(folder), text.as_bytes())
+pub(crate) fn save_announced(folder: &Path, recordings: Vec<PlannedDeletion>) -> io::Result<()> {
+    let text = toml::to_string_pretty(&AnnouncedFile { recordings }).map_err(io::Error::other)?;
+    replace(&announced_path(folder), text.as_bytes())
 }
 
 /// Path of the file with the announced deletions.
-pub(crate) fn told_path(folder: &Path) -> PathBuf {
+pub(crate) fn announced_path(folder: &Path) -> PathBuf {
     folder.join(FILE_NAME)
 }
 
@@ -180,7 +180,7 @@ mod tests {
         }
     }
 
-    fn told(name: &str, bytes: u64, told_unix_s: u64) -> PlannedDeletion {
+    fn announced(name: &str, bytes: u64, told_unix_s: u64) -> PlannedDeletion {
         PlannedDeletion {
             path: name.into(),
             bytes,
@@ -236,33 +236,37 @@ mod tests {
             let wanted: &[&str] = if is_due { &["a"] } else { &[] };
             assert_eq!(names(&due(&planned, &known, NOW_S)), wanted, "{known:?}");
         };
-        check(told("a", 10, NOW_S - DAY_S), true, NOW_S - DAY_S);
-        check(told("a", 10, NOW_S - DAY_S + 1), false, NOW_S - DAY_S + 1);
-        check(told("a", 10, 0), true, 0);
+        check(announced("a", 10, NOW_S - DAY_S), true, NOW_S - DAY_S);
+        check(
+            announced("a", 10, NOW_S - DAY_S + 1),
+            false,
+            NOW_S - DAY_S + 1,
+        );
+        check(announced("a", 10, 0), true, 0);
         // Announced for another recording, with another size, or at a future time.
-        check(told("b", 10, 0), false, NOW_S);
-        check(told("a", 9, 0), false, NOW_S);
-        check(told("a", 10, NOW_S + 1), false, NOW_S);
+        check(announced("b", 10, 0), false, NOW_S);
+        check(announced("a", 9, 0), false, NOW_S);
+        check(announced("a", 10, NOW_S + 1), false, NOW_S);
     }
 
     #[test]
     fn what_was_told_is_kept_and_what_cannot_be_read_was_not_told() {
         let folder = tempfile::tempdir().unwrap();
-        assert_eq!(load_told(folder.path()), []);
-        let all = vec![told("a", 10, 5), told("捏", 7, 6)];
-        save_told(folder.path(), all.clone()).unwrap();
-        assert_eq!(load_told(folder.path()), all);
+        assert_eq!(load_announced(folder.path()), []);
+        let all = vec![announced("a", 10, 5), announced("捏", 7, 6)];
+        save_announced(folder.path(), all.clone()).unwrap();
+        assert_eq!(load_announced(folder.path()), all);
         let written = std::fs::read_to_string(folder.path().join(FILE_NAME)).unwrap();
         assert!(written.contains("[[session]]"), "{written}");
         std::fs::write(folder.path().join(FILE_NAME), "session = 3").unwrap();
-        assert_eq!(load_told(folder.path()), []);
+        assert_eq!(load_announced(folder.path()), []);
     }
 
     #[test]
     fn a_file_that_changed_or_got_a_star_meanwhile_is_not_deleted() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.mcap");
-        let mut planned = told("", 3, 0);
+        let mut planned = announced("", 3, 0);
         planned.path.clone_from(&path);
         std::fs::write(&path, "longer").unwrap();
         assert!(!planned.carry_out().unwrap());
@@ -303,7 +307,7 @@ mod tests {
         let (item, unread) = RecordingItem::read(&super::parts::of(&folder.path().join("a.mcap")));
         let item = item.unwrap();
         assert_eq!((item.files.len(), unread.len()), (3, 0));
-        let mut planned = told("", item.bytes - 1, 0);
+        let mut planned = announced("", item.bytes - 1, 0);
         planned.path.clone_from(&item.path);
         assert!(!planned.carry_out().unwrap(), "it grew since");
         assert!(item.files.iter().all(|file| file.exists()));

@@ -50,7 +50,7 @@ pub struct RecordingsState {
     /// True if the folder dialog returned no folder: the path can be typed instead.
     pub asks_folder: bool,
     /// True while a scan is running.
-    pub looks: bool,
+    pub is_scanning: bool,
     /// Unreadable files, with the reasons.
     pub unread: Arc<Vec<(PathBuf, String)>>,
     /// Recording whose deletion awaits confirmation.
@@ -62,9 +62,9 @@ pub struct RecordingsState {
     /// Recordings made since the program started, oldest first.
     pub own: Vec<OwnRecording>,
     /// Number of completed scans.
-    pub looked: u64,
+    pub scans: u64,
     /// Time of the last scan since 1970; defines today.
-    pub looked_at: Duration,
+    pub scanned_at: Duration,
     /// Exports in progress.
     pub exports: Vec<ExportProgress>,
 }
@@ -80,31 +80,31 @@ impl RecordingsState {
 
 /// Result of a scan.
 #[derive(Debug)]
-pub(crate) struct Looked {
+pub(crate) struct FolderListing {
     pub(crate) items: Vec<RecordingItem>,
     pub(crate) unread: Vec<(PathBuf, String)>,
     /// Previously announced deletions.
-    pub(crate) told: Vec<PlannedDeletion>,
+    pub(crate) announced: Vec<PlannedDeletion>,
 }
 
 /// Scans this folder and its day folders for recordings.
-pub(crate) fn look(
+pub(crate) fn scan(
     folder: PathBuf,
     known: Arc<Vec<RecordingItem>>,
     env: &Env,
-) -> BackgroundJob<Looked> {
-    let look = async move {
+) -> BackgroundJob<FolderListing> {
+    let scan = async move {
         let found = on_thread(move || Ok(find(&folder, &known))).await;
-        found.unwrap_or(Looked {
+        found.unwrap_or(FolderListing {
             items: Vec::new(),
             unread: Vec::new(),
-            told: Vec::new(),
+            announced: Vec::new(),
         })
     };
-    BackgroundJob::start(&env.runtime, &env.wake, look)
+    BackgroundJob::start(&env.runtime, &env.wake, scan)
 }
 
-fn find(folder: &Path, known: &[RecordingItem]) -> Looked {
+fn find(folder: &Path, known: &[RecordingItem]) -> FolderListing {
     let mut recordings = parts::recordings(parts::files(folder));
     recordings.sort_by(|one, two| two.cmp(one));
     recordings.truncate(SESSIONS_MAX);
@@ -131,10 +131,10 @@ fn find(folder: &Path, known: &[RecordingItem]) -> Looked {
         );
     }
     items.sort_by_key(|item| std::cmp::Reverse(item.opening.began_since_1970()));
-    Looked {
+    FolderListing {
         items,
         unread,
-        told: budget::load_told(folder),
+        announced: budget::load_announced(folder),
     }
 }
 

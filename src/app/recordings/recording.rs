@@ -95,7 +95,7 @@ impl HandRecording {
 
     /// Updates the status, applies the requested parameters, and publishes notices about the file.
     pub(crate) fn tick(&mut self, notices: &mut HandNotices<'_>, now: Moment) {
-        let told = self.status.notices.len();
+        let reported = self.status.notices.len();
         let before = std::mem::replace(&mut self.status, self.recorder.status()).trouble;
         match (&before, &self.status.trouble) {
             (None, Some(why)) => {
@@ -110,7 +110,7 @@ impl HandRecording {
         if let Some(kept) = BackgroundJob::take_from(&mut self.asking) {
             self.params(&kept, now);
         }
-        for notice in self.status.notices.iter().skip(told) {
+        for notice in self.status.notices.iter().skip(reported) {
             notices.push(now, NoticeKind::Recording(notice.clone()));
         }
     }
@@ -121,7 +121,7 @@ impl HandRecording {
     }
 
     /// Reads the hand's persistent parameters once, for the file only: the views request and display their own.
-    pub(crate) fn ask_params(&mut self, link: &LinkHandle, env: &Env) {
+    pub(crate) fn request_params(&mut self, link: &LinkHandle, env: &Env) {
         if std::mem::replace(&mut self.is_asked, true) || !self.params.is_empty() {
             return;
         }
@@ -153,8 +153,8 @@ impl HandRecording {
 
     /// Records the program's settings if they differ from those last recorded. The window layout and zoom are left out.
     pub(crate) fn settings(&mut self, settings: &Settings, now: Moment) {
-        let looked = self.settings.as_ref().map(|(_, at)| *at);
-        if looked.is_some_and(|at| now.since(at) < SETTINGS_INTERVAL) {
+        let recorded_at = self.settings.as_ref().map(|(_, at)| *at);
+        if recorded_at.is_some_and(|at| now.since(at) < SETTINGS_INTERVAL) {
             return;
         }
         let own = Settings {

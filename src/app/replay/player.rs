@@ -8,7 +8,7 @@ use crate::app::recordings::about::{RecordingAbout, RecordingNote};
 use crate::app::recordings::item::RecordingItem;
 use crate::app::recordings::list::{RecordingAction, Timeline};
 use crate::app::replay::beside;
-use crate::app::replay::recorded::{Recorded, Shown};
+use crate::app::replay::recorded::{Recorded, ReplayTarget};
 use crate::app::state::State;
 use crate::hand::{Group, Moment};
 use crate::history::NOTE_MAX;
@@ -34,7 +34,7 @@ const FRAME_MAX: Duration = Duration::from_millis(250);
 pub(crate) const PACES: (f32, f32) = (0.1, 10.0);
 
 /// An opened file, and the state of the hand shortly after the start, or at the start of the requested range.
-pub(crate) struct Opened {
+pub(crate) struct OpenedRecording {
     file: Arc<RecordingFile>,
     found: HandThen,
     stretch: Option<(Moment, Moment)>,
@@ -74,7 +74,7 @@ pub(crate) fn open(
     path: PathBuf,
     stretch: Option<(Moment, Moment)>,
     env: &Env,
-) -> BackgroundJob<Result<Opened, NoticeKind>> {
+) -> BackgroundJob<Result<OpenedRecording, NoticeKind>> {
     let open = async move {
         let place = path.clone();
         let opened = on_thread(move || {
@@ -82,7 +82,7 @@ pub(crate) fn open(
                 let at = stretch.map_or(file.first().plus(AHEAD), |(from, _)| from);
                 let at = at.clamp(file.first(), file.last());
                 let found = find(&file, SeekTarget::At(at))?;
-                Ok::<Opened, OpenError>(Opened {
+                Ok::<OpenedRecording, OpenError>(OpenedRecording {
                     file: Arc::new(file),
                     found,
                     stretch,
@@ -137,8 +137,8 @@ fn reading(
 
 impl RecordingPlayer {
     /// Creates a player for an opened file, paused.
-    pub(crate) fn new(opened: Opened, live: &State) -> Self {
-        let Opened {
+    pub(crate) fn new(opened: OpenedRecording, live: &State) -> Self {
+        let OpenedRecording {
             file,
             found: (at, recorded),
             stretch,
@@ -180,7 +180,7 @@ impl RecordingPlayer {
             beside: None,
             file,
         };
-        player.take_found((at, recorded));
+        player.apply_found((at, recorded));
         player.set_loop(stretch);
         player
     }
@@ -212,14 +212,14 @@ impl RecordingPlayer {
             }
             action if action.passes_in_replay() => Some(action),
             _ => {
-                self.tell(NoticeKind::Recorded);
+                self.notify(NoticeKind::Recorded);
                 None
             }
         }
     }
 
     /// Shows a notice in the replay.
-    pub(crate) fn tell(&mut self, what: NoticeKind) {
+    pub(crate) fn notify(&mut self, what: NoticeKind) {
         self.state.notices.push(self.state.now, what);
     }
 
@@ -232,7 +232,7 @@ impl RecordingPlayer {
     }
 
     /// Shows the hand in the given state.
-    fn take_found(&mut self, (at, recorded): HandThen) {
+    fn apply_found(&mut self, (at, recorded): HandThen) {
         *self.state.hands.shown_mut() = recorded.hand;
         self.state.notices = recorded.notices;
         self.tap = recorded.tap;
@@ -261,8 +261,8 @@ impl RecordingPlayer {
             Some(Err(refused)) => self.state.notices.push(self.state.now, refused),
             None => {}
         }
-        self.take_seek(env);
-        self.take_ahead();
+        self.apply_seek(env);
+        self.apply_ahead();
         self.run(passed);
         self.read_ahead(env);
         let side = self.file.opening().side;
@@ -275,9 +275,9 @@ impl RecordingPlayer {
         }
     }
 
-    fn take_seek(&mut self, env: &Env) {
+    fn apply_seek(&mut self, env: &Env) {
         match BackgroundJob::take_from(&mut self.seeking) {
-            Some(Ok(found)) => self.take_found(found),
+            Some(Ok(found)) => self.apply_found(found),
             Some(Err(error)) => {
                 let path = self.path().to_owned();
                 let why = error.into();
@@ -296,7 +296,7 @@ impl RecordingPlayer {
         }
     }
 
-    fn take_ahead(&mut self) {
+    fn apply_ahead(&mut self) {
         let Some((until, job)) = self.reading.take() else {
             return;
         };
@@ -328,13 +328,13 @@ impl RecordingPlayer {
         if is_over {
             self.wanted = begin.map(SeekTarget::At);
         }
-        let mut shown = Shown {
+        let mut target = ReplayTarget {
             hand: self.state.hands.shown_mut(),
             notices: &mut self.state.notices,
             tap: &self.tap,
         };
         while let Some(entry) = self.ahead.pop_front_if(|entry| entry.at() <= next) {
-            shown.take(&entry);
+            target.apply(&entry);
         }
         self.show(next);
     }

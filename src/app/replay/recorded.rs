@@ -33,7 +33,7 @@ pub(crate) struct Recorded {
 }
 
 /// Target for applying recorded entries.
-pub(crate) struct Shown<'a> {
+pub(crate) struct ReplayTarget<'a> {
     pub(crate) hand: &'a mut Hand,
     pub(crate) notices: &'a mut Notices,
     pub(crate) tap: &'a WireTap,
@@ -56,20 +56,20 @@ impl Recorded {
     fn between(file: &RecordingFile, from: Moment, at: Moment) -> io::Result<Self> {
         let mut recorded = Self::new(file);
         if from > file.first() {
-            recorded.take_overview(file, from);
+            recorded.apply_overview(file, from);
         }
         let stretch = Stretch {
             from,
             to: at,
             wire: true,
         };
-        let mut shown = Shown {
+        let mut target = ReplayTarget {
             hand: &mut recorded.hand,
             notices: &mut recorded.notices,
             tap: &recorded.tap,
         };
         file.entries(stretch, |entry| {
-            shown.take(&entry);
+            target.apply(&entry);
             ControlFlow::Continue(())
         })?;
         Ok(recorded)
@@ -85,7 +85,7 @@ impl Recorded {
             return Self::between(file, file.first(), file.last());
         }
         let mut recorded = Self::new(file);
-        recorded.take_overview(file, file.last());
+        recorded.apply_overview(file, file.last());
         Ok(recorded)
     }
 
@@ -101,7 +101,7 @@ impl Recorded {
     }
 
     /// Applies the overview up to a moment.
-    fn take_overview(&mut self, file: &RecordingFile, until: Moment) {
+    fn apply_overview(&mut self, file: &RecordingFile, until: Moment) {
         let longest = Duration::from_secs(crate::history::HISTORY_SECONDS.into());
         let from = Moment::from_duration(until.since(Moment::ZERO).saturating_sub(longest));
         let second = |at: Moment| u32::try_from(at.micros() / 1_000_000).unwrap_or(u32::MAX);
@@ -120,9 +120,9 @@ impl Recorded {
     }
 }
 
-impl Shown<'_> {
+impl ReplayTarget<'_> {
     /// Applies one entry at its own time.
-    pub(crate) fn take(&mut self, entry: &Entry) {
+    pub(crate) fn apply(&mut self, entry: &Entry) {
         let at = entry.at();
         match entry {
             Entry::Heard(record) => self.hand.take(record, &mut self.notices.about(None), at),
@@ -159,7 +159,7 @@ impl Shown<'_> {
             }
             (EventKind::Parameters, _) => {
                 if let Ok(file) = params::file::read(&event.words) {
-                    self.hand.params.take_recorded(&file.params, event.at);
+                    self.hand.params.set_recorded(&file.params, event.at);
                 }
             }
             (EventKind::Trial, _) => {

@@ -8,8 +8,8 @@ use crate::app::recordings::budget::{self, PlannedDeletion, RecordingRoom};
 use crate::app::recordings::export::RunningExport;
 use crate::app::recordings::folder;
 use crate::app::recordings::item::RecordingItem;
-use crate::app::recordings::list::{self, Looked, OWN_MAX, OwnRecording, RecordingAction};
-use crate::app::replay::player::{self, Opened, RecordingPlayer};
+use crate::app::recordings::list::{self, FolderListing, OWN_MAX, OwnRecording, RecordingAction};
+use crate::app::replay::player::{self, OpenedRecording, RecordingPlayer};
 use crate::app::state::State;
 use crate::hand::Moment;
 use crate::store::calendar::since_1970;
@@ -23,13 +23,13 @@ use std::sync::Arc;
 pub(crate) struct ReplayWork {
     /// Player of the replayed recording.
     pub(crate) player: Option<RecordingPlayer>,
-    opening: Option<BackgroundJob<Result<Opened, NoticeKind>>>,
-    looking: Option<BackgroundJob<Looked>>,
-    look_again: bool,
+    opening: Option<BackgroundJob<Result<OpenedRecording, NoticeKind>>>,
+    scanning: Option<BackgroundJob<FolderListing>>,
+    scan_again: bool,
     /// True if a recording has started since the last scan: deletions that are due make room for it.
     makes_room: bool,
     /// True once planned deletions have been announced in this run of the program.
-    has_told: bool,
+    has_announced: bool,
     /// Files that the user opened last: the replayed one and the overlay.
     opened: [Option<PathBuf>; 2],
     choosing_folder: Option<BackgroundJob<Result<PathBuf, NoticeKind>>>,
@@ -56,18 +56,18 @@ enum FileWork {
 impl ReplayWork {
     /// Applies completed operations, and advances the replay.
     pub(crate) fn tick(&mut self, state: &mut State, env: &Env) {
-        if let Some(looked) = BackgroundJob::take_from(&mut self.looking) {
-            self.take_looked(looked, state);
+        if let Some(listing) = BackgroundJob::take_from(&mut self.scanning) {
+            self.apply_listing(listing, state);
         }
         self.follow_recordings(state);
-        if self.look_again && self.looking.is_none() {
-            self.look_again = false;
-            self.look(state, env);
+        if self.scan_again && self.scanning.is_none() {
+            self.scan_again = false;
+            self.scan(state, env);
         }
-        self.take_opened(state);
-        self.take_folder(state);
-        self.take_exported(state);
-        self.go_on_writing(state, env);
+        self.apply_opened(state);
+        self.apply_folder(state);
+        self.report_exports(state);
+        self.continue_writing(state, env);
         if let Some(player) = &mut self.player {
             player.tick(state, env);
         }
@@ -101,18 +101,18 @@ impl ReplayWork {
             .iter()
             .any(|path| !recordings.recorded.contains(path));
         self.makes_room |= begins;
-        self.look_again |= begins;
+        self.scan_again |= begins;
         recordings.recorded = recorded;
     }
 
     /// Applies a scan: announces planned deletions, and deletes those that are due when a recording starts.
-    fn take_looked(&mut self, looked: Looked, state: &mut State) {
+    fn apply_listing(&mut self, listing: FolderListing, state: &mut State) {
         let recordings = &mut state.recordings;
-        recordings.items = Arc::new(looked.items);
-        recordings.unread = Arc::new(looked.unread);
-        recordings.looks = false;
-        recordings.looked += 1;
-        recordings.looked_at = since_1970();
+        recordings.items = Arc::new(listing.items);
+        recordings.unread = Arc::new(listing.unread);
+        recordings.is_scanning = false;
+        recordings.scans += 1;
+        recordings.scanned_at = since_1970();
         let opened = self.opened.iter().flatten();
         let in_use: Vec<PathBuf> = recordings.recorded.iter().chain(opened).cloned().collect();
         let room = RecordingRoom {
@@ -120,18 +120,18 @@ impl ReplayWork {
             in_use: &in_use,
         };
         let now_unix_s = since_1970().as_secs();
-        let planned = budget::plan(&recordings.items, &room, &looked.told, now_unix_s);
+        let planned = budget::plan(&recordings.items, &room, &listing.announced, now_unix_s);
         if std::mem::take(&mut self.makes_room) {
-            let due = budget::due(&planned, &looked.told, now_unix_s);
+            let due = budget::due(&planned, &listing.announced, now_unix_s);
             let due = Some(due).filter(|due| !due.is_empty());
             self.to_write.extend(due.map(FileWork::MakeRoom));
         }
-        let is_new = planned.iter().any(|one| !looked.told.contains(one));
+        let is_new = planned.iter().any(|one| !listing.announced.contains(one));
         recordings.planned.clone_from(&planned);
-        if let Some(told) = self.what_to_tell(state, is_new) {
-            state.notices.push(state.now, told);
+        if let Some(notice) = self.deletion_notice(state, is_new) {
+            state.notices.push(state.now, notice);
         }
-        if planned != looked.told
+        if planned != listing.announced
             && let Some(folder) = state.recordings.folder.clone()
         {
             self.to_write.push_back(FileWork::Tell(folder, planned));
@@ -139,9 +139,9 @@ impl ReplayWork {
     }
 
     /// Notice about planned deletions: when they change, and once in each run of the program.
-    fn what_to_tell(&mut self, state: &State, is_new: bool) -> Option<NoticeKind> {
+    fn deletion_notice(&mut self, state: &State, is_new: bool) -> Option<NoticeKind> {
         let planned = &state.recordings.planned;
-        if !is_new && self.has_told {
+        if !is_new && self.has_announced {
             return None;
         }
         let day = |one: &PlannedDeletion| {
@@ -151,7 +151,7 @@ impl ReplayWork {
         };
         let days = (day(planned.first()?)?, day(planned.last()?)?);
         let due = planned.iter().min_by_key(|one| one.due_unix_s())?.due();
-        self.has_told = true;
+        self.has_announced = true;
         Some(NoticeKind::RecordingsPlanned {
             recordings: planned.len(),
             bytes: planned.iter().map(|one| one.bytes).sum(),
@@ -160,7 +160,7 @@ impl ReplayWork {
         })
     }
 
-    fn take_opened(&mut self, state: &mut State) {
+    fn apply_opened(&mut self, state: &mut State) {
         match BackgroundJob::take_from(&mut self.opening) {
             Some(Ok(_)) if is_busy(state) => {
                 state.notices.push(state.now, NoticeKind::NotReplayedNow);
@@ -171,7 +171,7 @@ impl ReplayWork {
         }
     }
 
-    fn take_folder(&mut self, state: &mut State) {
+    fn apply_folder(&mut self, state: &mut State) {
         match BackgroundJob::take_from(&mut self.choosing_folder) {
             Some(Ok(folder)) => self.record_into(Some(folder), state),
             Some(Err(why)) => {
@@ -186,16 +186,16 @@ impl ReplayWork {
     }
 
     /// Shows notices of finished exports where the user will see them: in the live window or in the replay.
-    fn take_exported(&mut self, state: &mut State) {
-        let mut told = Vec::new();
+    fn report_exports(&mut self, state: &mut State) {
+        let mut notices = Vec::new();
         self.exporting.retain_mut(|running| {
-            told.extend(BackgroundJob::take_from(&mut running.job));
+            notices.extend(BackgroundJob::take_from(&mut running.job));
             running.job.is_some()
         });
-        for told in told {
+        for notice in notices {
             match &mut self.player {
-                Some(player) => player.tell(told),
-                None => state.notices.push(state.now, told),
+                Some(player) => player.notify(notice),
+                None => state.notices.push(state.now, notice),
             }
         }
         let progress = self.exporting.iter().map(RunningExport::progress);
@@ -205,19 +205,19 @@ impl ReplayWork {
     /// Changes the folder from the next recording on; its recordings are listed immediately.
     fn record_into(&mut self, folder: Option<PathBuf>, state: &mut State) {
         state.settings.recordings.folder = folder;
-        (state.recordings.asks_folder, self.look_again) = (false, true);
+        (state.recordings.asks_folder, self.scan_again) = (false, true);
     }
 
     /// Continues with pending file operations, one at a time.
-    fn go_on_writing(&mut self, state: &mut State, env: &Env) {
+    fn continue_writing(&mut self, state: &mut State, env: &Env) {
         match BackgroundJob::take_from(&mut self.writing) {
             Some(Ok(deleted)) => {
-                self.look_again = true;
+                self.scan_again = true;
                 if deleted > 0 {
-                    let told = NoticeKind::RecordingsDeleted {
+                    let notice = NoticeKind::RecordingsDeleted {
                         recordings: deleted,
                     };
-                    state.notices.push(state.now, told);
+                    state.notices.push(state.now, notice);
                 }
             }
             Some(Err(why)) => state.notices.push(state.now, why),
@@ -230,7 +230,7 @@ impl ReplayWork {
                 FileWork::Save(path, about) => save(path, about, env),
                 FileWork::Delete(path) => delete(path, env),
                 FileWork::MakeRoom(planned) => make_room(planned, env),
-                FileWork::Tell(folder, planned) => tell(folder, planned, env),
+                FileWork::Tell(folder, planned) => save_announced(folder, planned, env),
             });
         }
     }
@@ -255,15 +255,15 @@ impl ReplayWork {
             RecordingAction::DefaultFolder => self.record_into(None, state),
             RecordingAction::Reveal(path) => self.revealing = Some(folder::reveal(path, env)),
             RecordingAction::Export(export) => self.exporting.push(export.begin(env)),
-            RecordingAction::Look => self.look(state, env),
+            RecordingAction::Look => self.scan(state, env),
             RecordingAction::Open(path) => self.open(path, None, env),
             RecordingAction::OpenAt(path, stretch) => self.open(path, Some(stretch), env),
-            RecordingAction::Close => (self.player, self.look_again) = (None, true),
+            RecordingAction::Close => (self.player, self.scan_again) = (None, true),
             RecordingAction::Name(path, name) => {
-                self.say(state, &path, |about| about.name = name);
+                self.edit_about(state, &path, |about| about.name = name);
             }
             RecordingAction::Star(path, star) => {
-                self.say(state, &path, |about| about.star = star);
+                self.edit_about(state, &path, |about| about.star = star);
             }
             RecordingAction::AskDelete(path) => state.recordings.to_delete = Some(path),
             RecordingAction::KeepIt => state.recordings.to_delete = None,
@@ -277,7 +277,7 @@ impl ReplayWork {
             }
             RecordingAction::KeepPlanned => {
                 for planned in std::mem::take(&mut state.recordings.planned) {
-                    self.say(state, &planned.path, |about| about.star = true);
+                    self.edit_about(state, &planned.path, |about| about.star = true);
                 }
             }
             RecordingAction::EditNote(at, words) => {
@@ -286,7 +286,7 @@ impl ReplayWork {
                     Some((player.path().to_owned(), notes))
                 });
                 if let Some((path, notes)) = edited {
-                    self.say(state, &path, |about| about.notes = Some(notes));
+                    self.edit_about(state, &path, |about| about.notes = Some(notes));
                 }
             }
             action @ (RecordingAction::Seek(_)
@@ -319,17 +319,22 @@ impl ReplayWork {
     }
 
     /// Scans for recordings.
-    fn look(&mut self, state: &mut State, env: &Env) {
+    fn scan(&mut self, state: &mut State, env: &Env) {
         let folder = state.settings.recordings_folder(env.documents.as_deref());
         state.recordings.folder.clone_from(&folder);
         if let Some(folder) = folder {
-            state.recordings.looks = true;
-            self.looking = Some(list::look(folder, Arc::clone(&state.recordings.items), env));
+            state.recordings.is_scanning = true;
+            self.scanning = Some(list::scan(folder, Arc::clone(&state.recordings.items), env));
         }
     }
 
     /// Changes the user metadata of a recording, on screen immediately and in its file.
-    fn say(&mut self, state: &mut State, path: &Path, change: impl FnOnce(&mut RecordingAbout)) {
+    fn edit_about(
+        &mut self,
+        state: &mut State,
+        path: &Path,
+        change: impl FnOnce(&mut RecordingAbout),
+    ) {
         let items: &mut Vec<RecordingItem> = Arc::make_mut(&mut state.recordings.items);
         let listed = items.iter_mut().find(|item| item.path == path);
         let about = match (listed, &mut self.player) {
@@ -377,9 +382,9 @@ fn make_room(planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritten {
     BackgroundJob::start(&env.runtime, &env.wake, delete)
 }
 
-fn tell(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritten {
-    let place = budget::told_path(&folder);
-    let save = on_thread(move || budget::save_told(&folder, planned).map(|()| 0));
+fn save_announced(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritten {
+    let place = budget::announced_path(&folder);
+    let save = on_thread(move || budget::save_announced(&folder, planned).map(|()| 0));
     let not_saved = move |error| NoticeKind::not_saved(place, &error);
     let save = async move { save.await.map_err(not_saved) };
     BackgroundJob::start(&env.runtime, &env.wake, save)

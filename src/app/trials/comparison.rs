@@ -112,7 +112,7 @@ pub struct Comparison {
 }
 
 /// State used to detect changes: trials are added to a session but never modified.
-fn stand(trials: &TrialsState, shown: &[SessionId]) -> Vec<(SessionId, usize)> {
+fn revision(trials: &TrialsState, shown: &[SessionId]) -> Vec<(SessionId, usize)> {
     let mut of: Vec<_> = shown
         .iter()
         .filter_map(|id| Some((*id, trials.session(*id)?.trials.len())))
@@ -126,7 +126,7 @@ fn stand(trials: &TrialsState, shown: &[SessionId]) -> Vec<(SessionId, usize)> {
 impl Comparison {
     /// Compares these sessions. If they cannot be pooled, scores cover `focus` alone.
     pub fn of(trials: &TrialsState, shown: &[SessionId], focus: SessionId) -> Self {
-        let of = stand(trials, shown);
+        let of = revision(trials, shown);
         let sessions: Vec<&TrialSession> = of
             .iter()
             .filter_map(|(id, _)| trials.session(*id))
@@ -167,8 +167,8 @@ impl Comparison {
     }
 
     /// True while recomputing would give the same result.
-    pub fn stands(&self, trials: &TrialsState, shown: &[SessionId], focus: SessionId) -> bool {
-        self.focus == focus && self.of == stand(trials, shown)
+    pub fn is_current(&self, trials: &TrialsState, shown: &[SessionId], focus: SessionId) -> bool {
+        self.focus == focus && self.of == revision(trials, shown)
     }
 
     /// IDs of the sessions, oldest first.

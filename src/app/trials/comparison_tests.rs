@@ -173,7 +173,7 @@ fn one_setting_is_told_apart_by_session_and_several_by_setting() {
         ids[1],
         trial(2, setting(250), &[Dof::Index], recording(9, 9)),
     );
-    assert!(!both.stands(&trials, &ids, ids[1]), "a trial was added");
+    assert!(!both.is_current(&trials, &ids, ids[1]), "a trial was added");
     let both = Comparison::of(&trials, &ids, ids[1]);
     let last = both.rows[2];
     let group = both.group(last, both.row(&trials, last).unwrap());
@@ -238,7 +238,7 @@ fn samples_in_files_go_first_and_what_was_lost_is_counted() {
 fn nothing_is_asked_about_a_session_that_made_room() {
     let mut trials = TrialsState::default();
     let first = begin(&mut trials, "tcp:10.0.0.1", plan(|_| {}));
-    trials.ask_to_forget(first);
+    trials.request_forget(first);
     assert_eq!(trials.to_confirm, Some(first));
     for _ in 1..=SESSIONS_MAX {
         begin(&mut trials, "tcp:10.0.0.1", plan(|_| {}));

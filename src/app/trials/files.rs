@@ -168,7 +168,7 @@ fn samples(folder: &Path, name: Option<&str>) -> Result<Option<TrialRecording>, 
 
 impl TrialsState {
     /// Applies the result of a file operation and returns its notice.
-    pub(crate) fn take(&mut self, end: FilesEnd) -> NoticeKind {
+    pub(crate) fn apply(&mut self, end: FilesEnd) -> NoticeKind {
         self.refused = end.as_ref().err().cloned();
         match end {
             Err(notice) => notice,

@@ -25,7 +25,7 @@ pub fn set_target(plan: &mut TrialPlan, dof: Dof, target: Option<Angle>) {
 
 /// Copies the angles of a pose to the start or the end. Joints that the pose omits are unchanged; an end applies only to
 /// joints that close.
-pub fn take_pose(plan: &mut TrialPlan, side: PlanSide, angles: &PerDof<Option<Angle>>) {
+pub fn copy_pose(plan: &mut TrialPlan, side: PlanSide, angles: &PerDof<Option<Angle>>) {
     for (dof, angle) in angles.iter() {
         let place = match side {
             PlanSide::Start => Some(&mut plan.start[dof]),
@@ -168,8 +168,8 @@ mod tests {
         let mut angles = PerDof::splat(Some(Angle::nearest(400)));
         angles[Dof::Ring] = None;
         let mut plan = TrialPlan::default();
-        take_pose(&mut plan, PlanSide::Start, &angles);
-        take_pose(&mut plan, PlanSide::Close, &angles);
+        copy_pose(&mut plan, PlanSide::Start, &angles);
+        copy_pose(&mut plan, PlanSide::Close, &angles);
         assert_eq!(plan.start[Dof::ThumbRotate], Some(Angle::nearest(400)));
         assert_eq!(plan.start[Dof::Ring], None);
         assert_eq!(plan.close[Dof::Index], Some(Angle::nearest(400)));

@@ -261,7 +261,7 @@ impl TrialsState {
     }
 
     /// Removes a saved session from the list; an unsaved one requires confirmation. The running session stays.
-    pub fn ask_to_forget(&mut self, id: SessionId) {
+    pub fn request_forget(&mut self, id: SessionId) {
         let runs = self.running == Some(id);
         match self.session(id).map(|session| session.origin.is_in_files()) {
             Some(true) => self.forget(id),

@@ -58,7 +58,7 @@ impl TrialsState {
                     self.keep(id);
                 }
             }
-            TrialAction::Forget(id) => self.ask_to_forget(id),
+            TrialAction::Forget(id) => self.request_forget(id),
             TrialAction::ConfirmForget => {
                 if let Some(id) = self.to_confirm.take() {
                     self.forget(id);
@@ -161,7 +161,7 @@ impl SeriesRun {
         };
         let task = Running::start(ctx.env, |steps| async move {
             let tell = |step| {
-                steps.tell(step);
+                steps.send(step);
                 true
             };
             let driven = series::trials(&link, armed, series, ends(ended), tell).await;

@@ -17,21 +17,21 @@ use egui::{Panel, Ui};
 
 /// View state.
 #[derive(Debug, Default)]
-pub(crate) struct CheckupView {
+pub(crate) struct CheckupPanel {
     is_empty: bool,
     plan: CheckupPlan,
     start: StartButton,
     report: ReportView,
 }
 
-impl CheckupView {
+impl CheckupPanel {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let width = (ui.available_width() * 0.22).clamp(232.0, 300.0);
         kit::bare(Panel::left("checkup"), width, theme::GAP_RIGHT).show(ui, |ui| {
             kit::full_card_ui(ui, look, |ui| {
                 ui.spacing_mut().item_spacing.y = theme::GAP;
-                kit::head_ui(ui, look, look.say(checkup::TITLE), |_| ());
+                kit::head_ui(ui, look, look.tr(checkup::TITLE), |_| ());
                 match pane.hand().running.checkup_run() {
                     Some(run) => {
                         // The user's confirmation does not apply to the next check-up.
@@ -50,7 +50,7 @@ impl CheckupView {
     fn begin_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let (look, palette) = (pane.look, pane.look.palette);
         let time = format::duration(expected(self.plan));
-        kit::say_ui(ui, &look.fill(checkup::ABOUT, &[&time]), palette.muted);
+        kit::small_text_ui(ui, &look.fill(checkup::ABOUT, &[&time]), palette.muted);
         let ticks = [
             (&mut self.is_empty, checkup::EMPTY),
             (&mut self.plan.press, checkup::PRESS),
@@ -76,20 +76,20 @@ impl CheckupView {
 fn progress_ui(ui: &mut Ui, pane: &Pane<'_>, run: &CheckupRun) -> bool {
     let (look, palette) = (pane.look, pane.look.palette);
     let view = run.view;
-    let name = look.say(checkup::PROGRESS);
+    let name = look.tr(checkup::PROGRESS);
     let (step, total) = (view.done + 1, view.total);
     let words = look.fill(checkup::STEP, &[&step, &total, &doing(look, run)]);
     let label = Label::new(&words, palette.text).title().wrap();
     label.named(name).ui(ui);
     if let Some(finger) = view.press {
-        let words = look.fill(checkup::PRESS_NOW, &[&look.say(words::finger(finger))]);
-        kit::say_ui(ui, &words, palette.accent);
+        let words = look.fill(checkup::PRESS_NOW, &[&look.tr(words::finger(finger))]);
+        kit::small_text_ui(ui, &words, palette.accent);
     }
     kit::progress_ui(ui, look, name, kit::share(view.done, total));
     let left = format::duration(run.left(pane.state.now));
-    kit::say_ui(ui, &look.fill(tune::LEFT, &[&left]), palette.muted);
-    kit::say_ui(ui, look.say(tune::ANY_KEY), palette.muted);
-    let button = Button::said(look, checkup::END).weight(Weight::Stop);
+    kit::small_text_ui(ui, &look.fill(tune::LEFT, &[&left]), palette.muted);
+    kit::small_text_ui(ui, look.tr(tune::ANY_KEY), palette.muted);
+    let button = Button::text(look, checkup::END).weight(Weight::Stop);
     let response = button.large().ui(ui, look);
     kit::pressed(ui, &response)
 }
@@ -98,5 +98,5 @@ fn progress_ui(ui: &mut Ui, pane: &Pane<'_>, run: &CheckupRun) -> bool {
 fn doing(look: Look, run: &CheckupRun) -> &'static str {
     let joint = run.view.joint.map(words::dof);
     let finger = run.view.press.map(words::finger);
-    look.say(joint.or(finger).unwrap_or(checkup::ALL_JOINTS))
+    look.tr(joint.or(finger).unwrap_or(checkup::ALL_JOINTS))
 }

@@ -26,20 +26,20 @@ impl ReportView {
         let own = &state.hand().checkup;
         kit::full_card_ui(ui, look, |ui| {
             if let Some(recorded) = pane.recorded() {
-                kit::say_ui(ui, recorded, look.palette.muted);
+                kit::small_text_ui(ui, recorded, look.palette.muted);
                 return;
             }
             match (&own.last, &own.unread) {
                 (Some(shown), _) => self.shown_ui(ui, pane, shown),
                 (None, Some(error)) => {
                     let words = look.fill(checkup::UNREAD, &[error]);
-                    kit::say_ui(ui, &words, look.palette.warn);
+                    kit::small_text_ui(ui, &words, look.palette.warn);
                 }
                 (None, None) if own.is_reading() => {
-                    kit::say_ui(ui, look.say(checkup::READING), look.palette.muted);
+                    kit::small_text_ui(ui, look.tr(checkup::READING), look.palette.muted);
                 }
                 (None, None) => {
-                    kit::say_ui(ui, look.say(checkup::NEVER), look.palette.text);
+                    kit::small_text_ui(ui, look.tr(checkup::NEVER), look.palette.text);
                 }
             }
         });
@@ -50,13 +50,13 @@ impl ReportView {
         let report = &shown.report;
         let title = look.fill(checkup::OF, &[&moment(&report.at)]);
         kit::head_ui(ui, look, &title, |ui| {
-            let save = Button::said(look, checkup::SAVE);
+            let save = Button::text(look, checkup::SAVE);
             let page = Export::Checkup(Box::new(report.clone()));
             save.on_click(ui, pane, Action::Save(page));
             let page = shown.page.clone();
-            let none = page.is_none().then(|| look.say(checkup::NO_REPORT));
+            let none = page.is_none().then(|| look.tr(checkup::NO_REPORT));
             let reveal = RecordingAction::Reveal(page.unwrap_or_default());
-            let show = Button::said(look, checkup::REPORT).disabled(none);
+            let show = Button::text(look, checkup::REPORT).disabled(none);
             show.on_click(ui, pane, Action::Recording(reveal));
         });
         let grades = [Grade::Fine, Grade::Watch, Grade::Act, Grade::Unknown];
@@ -67,16 +67,16 @@ impl ReportView {
         Label::new(&words, color).named(&title).ui(ui);
         if let Some(why) = report.aborted {
             let words = look.fill(checkup::PARTIAL, &[&tune::abort(look, why)]);
-            kit::say_ui(ui, &words, palette.bad);
+            kit::small_text_ui(ui, &words, palette.bad);
         }
         for words in checkup::remarks(look, report) {
-            kit::say_ui(ui, &words, palette.warn);
+            kit::small_text_ui(ui, &words, palette.warn);
         }
         let earlier = look.fill(checkup::EARLIER, &[&report.earlier]);
         let words = format!("{earlier}. {}", checkup::usage(look, report));
-        kit::say_ui(ui, &words, palette.muted);
-        let only = Button::said(look, checkup::ONLY).choice(self.only);
-        only.flips(ui, look, &mut self.only);
+        kit::small_text_ui(ui, &words, palette.muted);
+        let only = Button::text(look, checkup::ONLY).choice(self.only);
+        only.toggle(ui, look, &mut self.only);
         ui.add_space(theme::STEP);
         table::ui(ui, pane, report, self.only);
     }

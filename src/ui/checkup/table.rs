@@ -36,7 +36,7 @@ pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, report: &CheckupReport, only: boo
     let is_told = |own: &&Check| !only || own.grade != Grade::Fine || own.drift().is_some();
     let shown: Vec<&Check> = report.checks.iter().filter(is_told).collect();
     if shown.is_empty() {
-        kit::say_ui(ui, look.say(checkup::ALL_FINE), look.palette.ok);
+        kit::small_text_ui(ui, look.tr(checkup::ALL_FINE), look.palette.ok);
         return;
     }
     let heads = [
@@ -75,12 +75,12 @@ pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, report: &CheckupReport, only: boo
 
 fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, check: &Check) {
     let (look, palette) = (pane.look, pane.look.palette);
-    let of = look.say(checkup::part(check.measured.of));
-    let what = look.say(checkup::subject(check.measured.what));
+    let of = look.tr(checkup::part(check.measured.of));
+    let what = look.tr(checkup::subject(check.measured.what));
     let unit = check.measured.what.row();
     Label::new(of, palette.muted).column_ui(row);
     Label::new(what, palette.text).column_ui(row);
-    let name = |column: Text| format!("{of} {what} {}", look.say(column).to_lowercase());
+    let name = |column: Text| format!("{of} {what} {}", look.tr(column).to_lowercase());
     let channels = &check.measured.channels;
     let channels = (!channels.is_empty()).then(|| look.fill(checkup::CHANNELS, &[channels]));
     row.col(|ui| {
@@ -90,7 +90,7 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, check: &Check) {
         let value = value.unwrap_or_else(|| format::UNKNOWN.into());
         let label = Label::new(&value, palette.text).number();
         let shown = label.named(&name(checkup::COLUMN_MEASURED)).ui(ui);
-        let grade = look.say(checkup::grade(check.grade));
+        let grade = look.tr(checkup::grade(check.grade));
         let words = [grade.to_owned()].into_iter();
         let words: Vec<String> = words.chain(channels.clone()).collect();
         shown.on_hover_text(words.join(", "));
@@ -106,8 +106,8 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, check: &Check) {
     }
     row.col(|ui| drop(trend_ui(ui, pane, check)));
     row.col(|ui| {
-        let told = checkup::to_do(look, check);
-        let all: Vec<String> = channels.into_iter().chain([told]).collect();
+        let to_do = checkup::to_do(look, check);
+        let all: Vec<String> = channels.into_iter().chain([to_do]).collect();
         let all = all.join(": ");
         if !all.is_empty() {
             let name = name(checkup::COLUMN_ADVICE);

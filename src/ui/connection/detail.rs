@@ -111,7 +111,7 @@ impl LinkFields {
         let mut entered = false;
         for key in self.keys {
             if RARE.contains(key) {
-                let expert = CollapsingHeader::new(pane.look.say(panels::EXPERT));
+                let expert = CollapsingHeader::new(pane.look.tr(panels::EXPERT));
                 expert.show_unindented(ui, |ui| entered |= self.key_ui(ui, pane, key));
             } else {
                 entered |= self.key_ui(ui, pane, key);
@@ -125,7 +125,7 @@ impl LinkFields {
         let look = pane.look;
         let mut all = choices(look, key);
         let text = self.values.entry(key).or_default();
-        let caption = look.say(panels::setting(key));
+        let caption = look.tr(panels::setting(key));
         let mut entered = false;
         row_ui(ui, look, caption, |ui| {
             if all.is_empty() {
@@ -145,7 +145,7 @@ impl LinkFields {
         }
         if key == "packing" {
             let tip = look.tip(scan::fact(Fact::Packing));
-            kit::say_ui(ui, tip, look.palette.muted);
+            kit::small_text_ui(ui, tip, look.palette.muted);
         }
         entered
     }
@@ -154,7 +154,7 @@ impl LinkFields {
     fn ports_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         row_ui(ui, look, "", |ui| {
-            let find = Button::said(look, panels::PORTS_REFRESH);
+            let find = Button::text(look, panels::PORTS_REFRESH);
             find.on_click(ui, pane, Action::FindPorts);
             if pane.state.ports.is_empty() {
                 Label::note(look, panels::PORTS_NONE).wrap().ui(ui);
@@ -165,7 +165,7 @@ impl LinkFields {
             let about = about.unwrap_or_default();
             let name = format!("{}  {about}", port.path);
             row_ui(ui, look, "", |ui| {
-                let button = Button::new(&port.path, look.say(panels::PORT_PICK_TIP));
+                let button = Button::new(&port.path, look.tr(panels::PORT_PICK_TIP));
                 let is_chosen = port.path == self.value("port");
                 let button = button.named(name.trim()).choice(is_chosen);
                 if button.ui(ui, look).clicked() {
@@ -180,16 +180,16 @@ impl LinkFields {
 /// Values of a setting with a fixed choice, each with its label; empty for others.
 fn choices(look: Look, key: &str) -> Vec<(String, String)> {
     let plain = |number: u32| (number.to_string(), number.to_string());
-    let said = |key: &str, text| (key.to_owned(), look.say(text).to_owned());
+    let pair = |key: &str, text| (key.to_owned(), look.tr(text).to_owned());
     match key {
         "baud" => SerialSpeed::ALL.map(|speed| plain(speed.baud())).to_vec(),
         "bitrate" => BITRATES.map(plain).to_vec(),
         "scenario" => Scenario::ALL
-            .map(|it| said(it.name(), panels::scenario(it)))
+            .map(|it| pair(it.name(), panels::scenario(it)))
             .to_vec(),
         "packing" => {
-            let all = BytePacking::ALL.map(|it| said(it.key(), scan::packing(it)));
-            [said("", scan::AS_FOUND)].into_iter().chain(all).collect()
+            let all = BytePacking::ALL.map(|it| pair(it.key(), scan::packing(it)));
+            [pair("", scan::AS_FOUND)].into_iter().chain(all).collect()
         }
         _ => Vec::new(),
     }

@@ -21,9 +21,9 @@ const BUDGET: [(Text, f32); 3] = [
 /// Draws state and rates of the link, and a collapsible section with all figures.
 pub(crate) fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    kit::head_ui(ui, look, look.say(panels::LINK_NOW), |_| ());
+    kit::head_ui(ui, look, look.tr(panels::LINK_NOW), |_| ());
     state_ui(ui, pane);
-    let details = CollapsingHeader::new(look.say(panels::DETAILS));
+    let details = CollapsingHeader::new(look.tr(panels::DETAILS));
     details.show_unindented(ui, |ui| {
         let [hand, rates, counts, troubles] = figures(pane);
         let groups = [vec![hand, rates, counts], vec![troubles]];
@@ -49,12 +49,12 @@ fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (link, stats) = (&connection.status, &connection.stats);
     let (word, color) = link_words(pane);
     let since = format::age(pane.state.now.since(link.since));
-    let since = format!("{}{} {since}", look.say(word), look.say(panels::SINCE));
+    let since = format!("{}{} {since}", look.tr(word), look.tr(panels::SINCE));
     ui.horizontal_wrapped(|ui| {
         kit::lamp_ui(ui, Some(color));
         Label::new(&since, look.palette.text).ui(ui);
         if link.state.is_live() {
-            let rate = |text, hz| format!("{} {}", look.say(text), format::hertz(hz));
+            let rate = |text, hz| format!("{} {}", look.tr(text), format::hertz(hz));
             let trip = format::millis(stats.rtt_p50);
             let rates = [
                 rate(panels::STATE_RATE, stats.state_hz),
@@ -64,41 +64,41 @@ fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
             Label::new(&rates.join("  ·  "), look.palette.muted).ui(ui);
         }
     });
-    let say = |ui: &mut Ui, text: &str, color| Label::new(text, color).wrap().ui(ui);
+    let text_ui = |ui: &mut Ui, text: &str, color| Label::new(text, color).wrap().ui(ui);
     if let Some(endpoint) = &connection.endpoint {
         let endpoint = endpoint.to_string();
         let label = Label::new(&endpoint, look.palette.muted).number();
         label.wrap().ui(ui);
     }
     if let Some(port) = &link.moved_to {
-        let text = look.told(panels::MOVED_TO, port);
-        say(ui, &text, look.palette.warn);
+        let text = look.tr_with(panels::MOVED_TO, port);
+        text_ui(ui, &text, look.palette.warn);
     }
     if link.echoes {
-        say(ui, look.say(panels::ECHOES), look.palette.muted);
+        text_ui(ui, look.tr(panels::ECHOES), look.palette.muted);
     }
     if let Some(ms) = link.slow_ms.filter(|_| link.state.is_live()) {
         let text = look.fill(panels::SLOW, &[&ms.to_string()]);
-        say(ui, &text, look.palette.warn);
+        text_ui(ui, &text, look.palette.warn);
     }
     if let Some(trouble) = &link.trouble {
-        say(ui, &errors::trouble(look, trouble), look.palette.bad);
+        text_ui(ui, &errors::trouble(look, trouble), look.palette.bad);
     }
 }
 
-fn group_ui(ui: &mut Ui, pane: &Pane<'_>, group: Figures) {
+fn group_ui(ui: &mut Ui, pane: &Pane<'_>, group: FigureList) {
     ui.separator();
     for (caption, value, color) in group {
-        let caption = pane.look.say(caption);
+        let caption = pane.look.tr(caption);
         figure_ui(ui, pane, caption, |ui| {
             Label::new(&value, color).number().named(caption).ui(ui);
         });
     }
 }
 
-type Figures = Vec<(Text, String, Color32)>;
+type FigureList = Vec<(Text, String, Color32)>;
 
-fn figures(pane: &Pane<'_>) -> [Figures; 4] {
+fn figures(pane: &Pane<'_>) -> [FigureList; 4] {
     let palette = pane.look.palette;
     let stats = &pane.hand().connection.stats;
     let live = pane.hand().connection.status.state.is_live();
@@ -116,15 +116,15 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
         value => (text, value.to_string(), palette.warn),
     };
     let (look, quirks) = (pane.look, &pane.hand().connection.status.quirks);
-    let said = |text: Option<Text>| {
-        text.map_or(format::UNKNOWN, |text| look.say(text))
+    let tr = |text: Option<Text>| {
+        text.map_or(format::UNKNOWN, |text| look.tr(text))
             .to_owned()
     };
     let touch = format::hertz(stats.tactile_hz);
     let id = quirks.hand_id.map(i64::from);
     let mut hand = vec![
         measured(scan::fact(Fact::HandId), format::whole(id, 0)),
-        measured(scan::fact(Fact::Touch), said(quirks.touch.map(scan::touch))),
+        measured(scan::fact(Fact::Touch), tr(quirks.touch.map(scan::touch))),
     ];
     let endpoint = pane.hand().connection.endpoint.as_ref();
     let has_words = matches!(
@@ -133,7 +133,7 @@ fn figures(pane: &Pane<'_>) -> [Figures; 4] {
     );
     if has_words {
         let packing = quirks.packing.map_or(scan::PACKING_UNKNOWN, scan::packing);
-        hand.push(measured(scan::fact(Fact::Packing), said(Some(packing))));
+        hand.push(measured(scan::fact(Fact::Packing), tr(Some(packing))));
     }
     [
         hand,
@@ -168,10 +168,10 @@ fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let line = &pane.hand().connection.stats.line;
     let live = pane.hand().connection.status.state.is_live();
     let row = |ui: &mut Ui, caption: Text, values: [String; 3]| {
-        let caption = look.say(caption);
+        let caption = look.tr(caption);
         figure_ui(ui, pane, caption, |ui| {
             for ((head, width), value) in BUDGET.into_iter().zip(values) {
-                let name = format!("{caption}: {}", look.say(head));
+                let name = format!("{caption}: {}", look.tr(head));
                 let (text, color) = if live {
                     (value.as_str(), look.palette.text)
                 } else {
@@ -185,7 +185,7 @@ fn budget_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             }
         });
     };
-    kit::head_ui(ui, look, look.say(panels::BUDGET), |_| ());
+    kit::head_ui(ui, look, look.tr(panels::BUDGET), |_| ());
     figure_ui(ui, pane, "", |ui| {
         for (head, width) in BUDGET {
             let label = Label::note(look, head);
@@ -212,13 +212,13 @@ fn first_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<PollPriority> {
     let look = pane.look;
     let mut first = pane.state.settings.read_first;
     let all = [
-        (PollPriority::Force, look.say(panels::FIRST_FORCE)),
-        (PollPriority::Touch, look.say(panels::FIRST_TOUCH)),
+        (PollPriority::Force, look.tr(panels::FIRST_FORCE)),
+        (PollPriority::Touch, look.tr(panels::FIRST_TOUCH)),
     ];
-    let caption = look.say(panels::FIRST);
+    let caption = look.tr(panels::FIRST);
     let chosen = ui.horizontal(|ui| {
         let label = Label::new(caption, look.palette.muted).ui(ui);
-        label.on_hover_text(look.say(panels::FIRST_TIP));
+        label.on_hover_text(look.tr(panels::FIRST_TIP));
         kit::right_ui(ui, |ui| {
             ui.spacing_mut().combo_width = 120.0;
             kit::choose_ui(ui, caption, &mut first, &all)

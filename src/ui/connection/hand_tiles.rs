@@ -85,8 +85,8 @@ fn tile(pane: &Pane<'_>, endpoint: Endpoint, found: Option<&FoundHand>) -> HandT
         (None, Some(_)) => (Some(scan::PLUGGED_IN), look.palette.ok),
         (None, None) => (None, look.palette.muted),
     };
-    let seen = seen.map(|text| look.say(text).to_owned()).or(day);
-    let state = [Some(look.say(side_words(side)).to_owned()), seen];
+    let seen = seen.map(|text| look.tr(text).to_owned()).or(day);
+    let state = [Some(look.tr(side_words(side)).to_owned()), seen];
     let state: Vec<String> = state.into_iter().flatten().collect();
     HandTile {
         name: endpoint.to_string(),
@@ -121,9 +121,9 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, (id, place): (Id, Rect), tile: &Han
     } else {
         (panels::CONNECT, Weight::Normal)
     };
-    let name = format!("{}: {}", look.say(text), tile.name);
-    let refusal = tile.refusal.map(|reason| look.say(reason));
-    let button = Button::said(look, text).named(&name).weight(weight);
+    let name = format!("{}: {}", look.tr(text), tile.name);
+    let refusal = tile.refusal.map(|reason| look.tr(reason));
+    let button = Button::text(look, text).named(&name).weight(weight);
     let button = button.disabled(pane.recorded().or(refusal));
     let pressed = button.ground(ui, look, place, id).clicked() && !is_now;
     let connect = tile.endpoint.clone().filter(|_| pressed);
@@ -144,7 +144,7 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, (id, place): (Id, Rect), tile: &Han
         small(&tile.place, look.palette.muted).ui(&mut words);
     }
     let (state, color) = match is_now {
-        true => (look.say(scan::CONNECTED), look.palette.accent),
+        true => (look.tr(scan::CONNECTED), look.palette.accent),
         false => (tile.state.0.as_str(), tile.state.1),
     };
     small(state, color).ui(&mut words);

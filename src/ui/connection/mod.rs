@@ -96,9 +96,9 @@ impl ConnectionForm {
 
     fn address_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let title = look.say(main::TAB_CONNECTION);
+        let title = look.tr(main::TAB_CONNECTION);
         kit::head_ui(ui, look, title, |ui| slots_ui(ui, pane));
-        let name = look.say(scan_text::ADDRESS);
+        let name = look.tr(scan_text::ADDRESS);
         let field = kit::edit_ui(ui, name, name, &mut self.typed);
         if std::mem::take(&mut self.wants_focus) {
             field.request_focus();
@@ -114,11 +114,11 @@ impl ConnectionForm {
         let fields = fields.and_then(|spelled| LinkFields::of(&spelled));
         ui.horizontal_wrapped(|ui| {
             self.buttons_ui(ui, pane, &meaning);
-            let change = Button::said(look, scan_text::CHANGE).large();
+            let change = Button::text(look, scan_text::CHANGE).large();
             let change = change.switch(self.is_unfolded && fields.is_some());
-            let none = look.say(scan_text::CHANGE_NONE);
+            let none = look.tr(scan_text::CHANGE_NONE);
             let change = change.disabled_if(fields.is_none(), none);
-            change.flips(ui, look, &mut self.is_unfolded);
+            change.toggle(ui, look, &mut self.is_unfolded);
         });
         if let Some(mut fields) = fields.filter(|_| self.is_unfolded) {
             ui.add_space(theme::STEP);
@@ -128,9 +128,9 @@ impl ConnectionForm {
             if spelled != before {
                 self.typed.clone_from(&spelled);
             }
-            row_ui(ui, look, look.say(panels::ENDPOINT), |ui| {
+            row_ui(ui, look, look.tr(panels::ENDPOINT), |ui| {
                 let label = Label::new(&spelled, look.palette.text).number().wrap();
-                label.named(look.say(panels::ENDPOINT)).ui(ui);
+                label.named(look.tr(panels::ENDPOINT)).ui(ui);
             });
         }
         let is_new = |endpoint: &&Endpoint| !is_connected_to(pane, endpoint);
@@ -146,7 +146,7 @@ impl ConnectionForm {
         let palette = look.palette;
         let (words, color) = match (meaning, wrong) {
             (Ok(endpoint), _) => (&*scan_text::recognised(look, endpoint), palette.text),
-            (Err(_), None) => (look.say(scan_text::EXAMPLES), palette.muted),
+            (Err(_), None) => (look.tr(scan_text::EXAMPLES), palette.muted),
             (Err(_), Some(wrong)) if matches!(self.range(), Some(Ok(_))) => (wrong, palette.text),
             (Err(_), Some(wrong)) => (wrong, palette.warn),
         };
@@ -157,7 +157,7 @@ impl ConnectionForm {
             let Some(other) = other_kind(endpoint) else {
                 return;
             };
-            let words = look.fill(scan_text::INSTEAD, &[&look.say(panels::kind(other))]);
+            let words = look.fill(scan_text::INSTEAD, &[&look.tr(panels::kind(other))]);
             let button = Button::new(&words, look.tip(scan_text::INSTEAD));
             if button.ui(ui, look).clicked() {
                 let fields = LinkFields::of(&endpoint.to_string());
@@ -170,7 +170,7 @@ impl ConnectionForm {
     fn wrong(&self, look: Look, meaning: &Meaning) -> Option<String> {
         let error = meaning.as_ref().err()?;
         Some(match self.range() {
-            Some(Ok(_)) => look.say(scan_text::RANGE).to_owned(),
+            Some(Ok(_)) => look.tr(scan_text::RANGE).to_owned(),
             Some(Err(error)) => errors::hosts(look, &error),
             None => errors::typed(look, error),
         })
@@ -189,7 +189,7 @@ impl ConnectionForm {
         let to_it = endpoint.filter(|endpoint| is_connected_to(pane, endpoint));
         if to_it.is_none() {
             let wrong = self.wrong(look, meaning);
-            let connect = Button::said(look, panels::CONNECT).large();
+            let connect = Button::text(look, panels::CONNECT).large();
             let connect = connect.weight(Weight::Strong);
             let connect = connect.disabled(pane.recorded().or(wrong.as_deref()));
             let pressed = connect.ui(ui, look).clicked();
@@ -197,11 +197,11 @@ impl ConnectionForm {
             pane.actions.extend(connect.map(Action::Connect));
         }
         if pane.hand().connection.endpoint.is_some() {
-            let disconnect = Button::said(look, panels::DISCONNECT).large();
+            let disconnect = Button::text(look, panels::DISCONNECT).large();
             disconnect.on_click(ui, pane, Action::Disconnect);
         }
         if let Some(target) = self.scan_target(endpoint) {
-            let button = Button::said(look, panels::SCAN_HERE).large();
+            let button = Button::text(look, panels::SCAN_HERE).large();
             if scan::start_ui(ui, pane, button) {
                 pane.actions.push(Action::Scan(target));
             }
@@ -230,13 +230,13 @@ impl ConnectionForm {
         let ports = &pane.state.ports;
         let spelled = spell(&self.typed, ports).unwrap_or_default();
         kit::card_ui(ui, look, |ui| {
-            kit::head_ui(ui, look, look.say(scan_text::WAYS), |_| ());
+            kit::head_ui(ui, look, look.tr(scan_text::WAYS), |_| ());
             tiles_ui(ui, WAY, &KINDS, |ui, (id, place), (first, _)| {
                 let kind = first.split(':').next().unwrap_or_default();
                 let text = panels::kind(kind);
-                let name = look.pair(look.say(panels::CONNECTION_KIND), look.say(text));
+                let name = look.pair(look.tr(panels::CONNECTION_KIND), look.tr(text));
                 let is_now = spelled.split(':').next() == Some(kind);
-                let button = Button::new(look.say(text), "").named(&name);
+                let button = Button::new(look.tr(text), "").named(&name);
                 let button = button.switch(is_now);
                 if button.ground(ui, look, place, id).clicked() && !is_now {
                     self.typed = match first.parse() {
@@ -246,8 +246,8 @@ impl ConnectionForm {
                     (self.is_unfolded, self.wants_focus) = (true, true);
                 }
                 let mut inner = hand_tiles::inside(ui, place);
-                Label::said(look, text).title().ui(&mut inner);
-                kit::say_ui(&mut inner, look.tip(text), look.palette.muted);
+                Label::text(look, text).title().ui(&mut inner);
+                kit::small_text_ui(&mut inner, look.tip(text), look.palette.muted);
             });
         });
     }
@@ -261,12 +261,12 @@ fn is_connected_to(pane: &Pane<'_>, endpoint: &Endpoint) -> bool {
 /// Draws the buttons that add a hand to the window, and that remove this one of several.
 fn slots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, hands) = (pane.look, &pane.state.hands);
-    let full = (!hands.has_room()).then(|| look.say(window::ADD_HAND_FULL));
-    let add = Button::said(look, window::ADD_HAND).disabled(full);
+    let full = (!hands.has_room()).then(|| look.tr(window::ADD_HAND_FULL));
+    let add = Button::text(look, window::ADD_HAND).disabled(full);
     add.on_click(ui, pane, Action::Hands(HandsAction::Add));
     if hands.is_several() {
         let remove = HandsAction::Remove(pane.hand().label.slot);
-        let button = Button::said(look, window::REMOVE_HAND);
+        let button = Button::text(look, window::REMOVE_HAND);
         button.on_click(ui, pane, Action::Hands(remove));
     }
 }
@@ -279,8 +279,8 @@ fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let Some(endpoint) = endpoint.filter(|_| state.hands.is_several()) else {
         return;
     };
-    let caption = look.say(window::HAND_NAME);
-    row_ui(ui, look, look.say(window::HAND_NAME_SHORT), |ui| {
+    let caption = look.tr(window::HAND_NAME);
+    row_ui(ui, look, look.tr(window::HAND_NAME_SHORT), |ui| {
         let name = state.settings.hand_name(endpoint).unwrap_or_default();
         let field = TextField::new(caption, NAME_CHARS_MAX).hint(&hand.label.name);
         if let Some(name) = field.ui(ui, pane, name) {

@@ -28,7 +28,7 @@ impl ScanPanel {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<String> {
         let look = pane.look;
         kit::card_ui(ui, look, |ui| {
-            kit::head_ui(ui, look, look.say(scan::HANDS), |_| ());
+            kit::head_ui(ui, look, look.tr(scan::HANDS), |_| ());
             hand_tiles_ui(ui, pane, &known_hands(pane));
             self.ports_ui(ui, pane);
             stage_ui(ui, pane);
@@ -41,15 +41,15 @@ impl ScanPanel {
         let look = pane.look;
         ui.horizontal_wrapped(|ui| {
             if pane.state.scan.is_running() {
-                let cancel = Button::said(look, scan::CANCEL);
+                let cancel = Button::text(look, scan::CANCEL);
                 cancel.large().on_click(ui, pane, Action::CancelScan);
-            } else if start_ui(ui, pane, Button::said(look, scan::SCAN_PORTS).large()) {
+            } else if start_ui(ui, pane, Button::text(look, scan::SCAN_PORTS).large()) {
                 pane.actions.push(Action::Scan(ScanTarget::Ports(self.ids)));
             }
             Label::muted(look, scan::IDS).ui(ui);
             for (range, text) in [(IdRange::Few, scan::IDS_FEW), (IdRange::All, scan::IDS_ALL)] {
-                let name = format!("{}: {}", look.say(scan::IDS), look.say(text));
-                let button = Button::said(look, text)
+                let name = format!("{}: {}", look.tr(scan::IDS), look.tr(text));
+                let button = Button::text(look, text)
                     .tip(look.tip(scan::IDS))
                     .named(&name);
                 if button.choice(self.ids == range).ui(ui, look).clicked() {
@@ -67,7 +67,7 @@ fn presets_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<String> {
     ui.horizontal_wrapped(|ui| {
         Label::muted(look, scan::PRESETS).ui(ui);
         for (address, about) in PRESETS {
-            let tip = format!("{}\n{}", look.say(about), look.say(scan::PRESET_TIP));
+            let tip = format!("{}\n{}", look.tr(about), look.tr(scan::PRESET_TIP));
             if Button::new(address, &tip).ui(ui, look).clicked() {
                 chosen = Some(address.to_owned());
             }
@@ -79,7 +79,7 @@ fn presets_ui(ui: &mut Ui, pane: &Pane<'_>) -> Option<String> {
 /// Draws a button that starts a scan, disabled while one runs. True if it was clicked.
 pub(crate) fn start_ui(ui: &mut Ui, pane: &Pane<'_>, button: Button<'_>) -> bool {
     let running = pane.state.scan.is_running().then_some(scan::RUNNING);
-    let reason = running.map(|reason| pane.look.say(reason));
+    let reason = running.map(|reason| pane.look.tr(reason));
     let reason = pane.recorded().or(reason);
     button.disabled(reason).ui(ui, pane.look).clicked()
 }
@@ -90,14 +90,14 @@ fn stage_ui(ui: &mut Ui, pane: &Pane<'_>) {
     if !state.is_running() {
         let (text, color) = match scan::ended(look, state) {
             Ok(text) => (text, look.palette.text),
-            Err(text) => (look.say(text).to_owned(), look.palette.muted),
+            Err(text) => (look.tr(text).to_owned(), look.palette.muted),
         };
         Label::new(&text, color).wrap().ui(ui);
         return;
     }
     let words = scan::progress(look, state);
     let label = Label::new(&words, look.palette.text);
-    label.named(look.say(scan::PROGRESS)).ui(ui);
+    label.named(look.tr(scan::PROGRESS)).ui(ui);
     let part = kit::share(state.progress.tried, state.progress.total);
     ui.add(ProgressBar::new(part).desired_height(theme::STEP));
 }
@@ -113,7 +113,7 @@ fn remarks_ui(ui: &mut Ui, pane: &Pane<'_>) {
         Label::new(&scan::remark(look, remark), color).wrap().ui(ui);
     }
     if state.scan.left_out > 0 {
-        let text = format!("+ {} {}", state.scan.left_out, look.say(scan::MORE));
+        let text = format!("+ {} {}", state.scan.left_out, look.tr(scan::MORE));
         Label::new(&text, look.palette.muted).ui(ui);
     }
 }

@@ -27,8 +27,8 @@ impl SharedPanel {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         kit::card_ui(ui, look, |ui| {
-            kit::head_ui(ui, look, look.say(scan::SHARED), |_| ());
-            kit::say_ui(ui, look.tip(scan::SHARED), look.palette.muted);
+            kit::head_ui(ui, look, look.tr(scan::SHARED), |_| ());
+            kit::small_text_ui(ui, look.tip(scan::SHARED), look.palette.muted);
             self.switch_ui(ui, pane);
             if let Some(error) = &pane.state.fleet.refused {
                 let text = errors::dds(look, error);
@@ -54,14 +54,14 @@ impl SharedPanel {
         ui.horizontal(|ui| {
             ui.add_enabled_ui(!is_on, |ui| {
                 ui.set_max_width(240.0);
-                let name = look.say(inputs::DDS_AT);
+                let name = look.tr(inputs::DDS_AT);
                 kit::edit_ui(ui, name, name, &mut self.interface);
             });
             let interface = self.interface.trim().to_owned();
             let missing = interface.is_empty() && !is_on;
-            let missing = missing.then(|| look.say(inputs::INTERFACE_WRONG));
+            let missing = missing.then(|| look.tr(inputs::INTERFACE_WRONG));
             let action = Action::FindShared((!is_on).then_some(interface));
-            let button = Button::said(look, text).disabled(missing);
+            let button = Button::text(look, text).disabled(missing);
             button.on_click(ui, pane, action);
         });
     }
@@ -70,7 +70,7 @@ impl SharedPanel {
 /// Tile of a hand that connects to its gateway.
 fn tile(pane: &Pane<'_>, hand: &FleetHand) -> HandTile {
     let (look, card) = (pane.look, &hand.card);
-    let state = look.say(main::link_state(hand.state)).to_owned();
+    let state = look.tr(main::link_state(hand.state)).to_owned();
     HandTile {
         endpoint: hand.endpoint(),
         name: card.name.clone(),
@@ -87,12 +87,12 @@ fn about(look: Look, hand: &FleetHand) -> Vec<String> {
     let card = &hand.card;
     let owner = match hand.owner {
         Some(owner) => scan::mover(look, owner),
-        None => look.say(scan::NOBODY_MOVES).to_owned(),
+        None => look.tr(scan::NOBODY_MOVES).to_owned(),
     };
-    let first = card.first_may_move.then(|| look.say(scan::FIRST_MOVES));
+    let first = card.first_may_move.then(|| look.tr(scan::FIRST_MOVES));
     let at = card.at.map(|at| at.to_string());
     let all = [
-        Some(look.say(side_words(card.side)).to_owned()),
+        Some(look.tr(side_words(card.side)).to_owned()),
         Some(owner),
         first.map(str::to_owned),
         at,

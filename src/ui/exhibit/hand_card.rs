@@ -59,7 +59,7 @@ struct Badge {
 impl Badge {
     /// Draws it as high as a row and at most as wide.
     fn ui(&self, ui: &mut Ui, page: Page<'_>, row: Rect) {
-        let (text, palette) = (page.look.say(self.text), page.look.palette);
+        let (text, palette) = (page.look.tr(self.text), page.look.palette);
         let font = page.font(28.0);
         let wide = kit::text_width(ui, text, font.clone()) + 36.0 * page.places.unit;
         let size = vec2(wide.min(row.width()), row.height());
@@ -75,8 +75,8 @@ impl Badge {
 fn feels_ui(ui: &mut Ui, page: Page<'_>, rect: Rect, tips: &PerFinger<Option<Tip>>) {
     let (look, unit) = (page.look, page.places.unit);
     let (caption, row) = rect.split_top_bottom_at_y(rect.top() + 40.0 * unit);
-    let said = look.say(exhibit::FEELS);
-    let label = Label::new(said, look.palette.muted).font(page.font(28.0));
+    let text = look.tr(exhibit::FEELS);
+    let label = Label::new(text, look.palette.muted).font(page.font(28.0));
     label.center().put(ui, caption);
     let step = vec2(row.width() / 5.0, 0.0);
     let first = row.with_max_x(row.left() + step.x);
@@ -86,7 +86,7 @@ fn feels_ui(ui: &mut Ui, page: Page<'_>, rect: Rect, tips: &PerFinger<Option<Tip
         let tip = tips[finger].unwrap_or_default();
         fingertip::paint(ui.painter(), look, picture.shrink(6.0 * unit), &tip);
         let color = look.palette.dof[finger.bend()];
-        let label = Label::new(look.say(words::finger(finger)), color).font(page.font(28.0));
+        let label = Label::new(look.tr(words::finger(finger)), color).font(page.font(28.0));
         label.center().put(ui, name);
     }
 }

@@ -71,18 +71,18 @@ impl Keypad {
         let delete = LargeButton {
             icon: Some(theme::BACKSPACE),
             size: 40.0,
-            ..LargeButton::new(page.look.say(exhibit::PIN_DELETE))
+            ..LargeButton::new(page.look.tr(exhibit::PIN_DELETE))
         };
         if delete.ui(ui, page, place(0, 3)) {
             self.key(Key::Backspace);
         }
         self.digit_ui(ui, page, place(1, 3), '0');
         let short = self.typed.len() < *DIGITS.start();
-        let short = short.then(|| page.look.say(exhibit::PIN_CHOOSE));
+        let short = short.then(|| page.look.tr(exhibit::PIN_CHOOSE));
         let enter = LargeButton {
             weight: Weight::Strong,
             disabled: locked.or(short),
-            ..LargeButton::new(page.look.say(exhibit::PIN_ENTER))
+            ..LargeButton::new(page.look.tr(exhibit::PIN_ENTER))
         };
         enter.ui(ui, page, place(2, 3)).then(|| self.enter())?
     }
@@ -105,8 +105,8 @@ impl Keypad {
         let response = ui.allocate_rect(rect, Sense::hover());
         let count = u8::try_from(self.typed.len()).unwrap_or(u8::MAX);
         response.widget_info(|| {
-            let said = page.look.told(exhibit::PIN_TYPED, count);
-            WidgetInfo::labeled(Role::Label, true, said)
+            let text = page.look.tr_with(exhibit::PIN_TYPED, count);
+            WidgetInfo::labeled(Role::Label, true, text)
         });
         let places = count.max(4);
         let step = 48.0 * unit;

@@ -58,7 +58,7 @@ struct Touches {
 impl ExhibitPage {
     /// Draws the page over all of `ui`. Returns the requested actions, stop first.
     pub(crate) fn ui(&mut self, ui: &mut Ui, state: &State, exhibit: &ExhibitState) -> Vec<Action> {
-        let keys = take_keys(ui);
+        let keys = consume_keys(ui);
         self.begin(ui.ctx(), exhibit);
         let touches = Touches::of(ui);
         let (mut actions, mut typing) = (Vec::new(), Typing::default());
@@ -109,7 +109,7 @@ impl ExhibitPage {
             icon: Some(theme::LOCKED),
             size: 34.0,
             weight: Weight::Quiet,
-            ..LargeButton::new(page.look.say(exhibit::STAFF_BUTTON))
+            ..LargeButton::new(page.look.tr(exhibit::STAFF_BUTTON))
         };
         let asks = lock.ui(ui, page, page.places.lock);
         if asks {
@@ -134,7 +134,7 @@ impl ExhibitPage {
         }
         let own = tiles::words_of(&page.exhibit.plan.title, page.look.language);
         let title = match own {
-            "" => page.look.say(exhibit::TITLE),
+            "" => page.look.tr(exhibit::TITLE),
             own => own,
         };
         let title = LargeText::new(title, 46.0, page.look.palette.text);
@@ -180,10 +180,10 @@ const fn wish(wish: ExhibitWish) -> Action {
 /// Draws STOP, above everything else.
 fn stop_ui(ui: &Ui, pane: &mut Pane<'_>, page: Page<'_>) {
     let stop = LargeButton {
-        note: page.look.say(exhibit::STOP_NOTE),
+        note: page.look.tr(exhibit::STOP_NOTE),
         size: 60.0,
         weight: Weight::Stop,
-        ..LargeButton::new(page.look.say(main::STOP))
+        ..LargeButton::new(page.look.tr(main::STOP))
     };
     if stop.ui(ui, page, page.places.stop) {
         pane.actions.push(Action::Stop);
@@ -234,7 +234,7 @@ impl Touches {
 }
 
 /// Removes all keyboard events from the input before any widget sees them. Returns the keys that went down.
-fn take_keys(ui: &Ui) -> Vec<Key> {
+fn consume_keys(ui: &Ui) -> Vec<Key> {
     let mut keys = Vec::new();
     ui.input_mut(|input| {
         input.events.retain(|event| match event {

@@ -24,7 +24,7 @@ pub(crate) struct StaffView {
     keypad: Keypad,
     shown: Option<Discriminant<StaffPanel>>,
     /// Time from which the panel opened by the PIN accepts presses.
-    takes_from: f64,
+    accepts_from: f64,
 }
 
 /// Text above the keypad.
@@ -44,7 +44,7 @@ impl StaffView {
         if is_new {
             self.keypad.clear();
         }
-        let takes = self.takes_presses(ui, is_new);
+        let accepts = self.accepts_presses(ui, is_new);
         if exhibit.staff == StaffPanel::Closed {
             return;
         }
@@ -59,7 +59,7 @@ impl StaffView {
                 pane.actions.extend(typed.map(enter));
             }
             None => drop(ui.scope(|ui| {
-                if !takes {
+                if !accepts {
                     ui.visuals_mut().disabled_alpha = 1.0;
                     ui.disable();
                 }
@@ -69,16 +69,16 @@ impl StaffView {
     }
 
     /// False until nothing has been pressed for [`AWAY_S`] since a new panel is shown: a surplus digit then presses nothing.
-    fn takes_presses(&mut self, ui: &Ui, is_new: bool) -> bool {
+    fn accepts_presses(&mut self, ui: &Ui, is_new: bool) -> bool {
         let (now, is_down) = ui.input(|input| {
             let pointer = &input.pointer;
             let is_down = pointer.any_down() || pointer.any_pressed() || input.any_touches();
             (input.time, is_down)
         });
-        if is_new || is_down && now < self.takes_from {
-            self.takes_from = now + AWAY_S;
+        if is_new || is_down && now < self.accepts_from {
+            self.accepts_from = now + AWAY_S;
         }
-        now >= self.takes_from
+        now >= self.accepts_from
     }
 
     fn pad_ui(
@@ -103,7 +103,7 @@ impl StaffView {
         let keys = rest.with_max_y(rest.bottom() - last - 16.0 * unit);
         let locked = words.locked.then_some(words.note.as_str());
         let typed = self.keypad.ui(ui, page, keys, locked);
-        let cancel = LargeButton::new(look.say(exhibit::CANCEL));
+        let cancel = LargeButton::new(look.tr(exhibit::CANCEL));
         if cancel.ui(ui, page, rest.with_min_y(rest.bottom() - last)) {
             let close = Action::Exhibit(ExhibitAction::CloseStaff);
             pane.actions.push(close);
@@ -117,7 +117,7 @@ fn card_ui(ui: &mut Ui, page: Page<'_>, size: Vec2, title: Text) -> Rect {
     let room = page.places.staff();
     let rect = Rect::from_center_size(room.center(), (size * page.places.unit).min(room.size()));
     let response = ui.allocate_rect(rect, Sense::hover());
-    let name = page.look.say(title);
+    let name = page.look.tr(title);
     response.widget_info(|| WidgetInfo::labeled(Role::Dialog, true, name));
     page.card(ui, rect);
     rect.shrink(28.0 * page.places.unit)
@@ -125,7 +125,7 @@ fn card_ui(ui: &mut Ui, page: Page<'_>, size: Vec2, title: Text) -> Rect {
 
 fn title_ui(ui: &mut Ui, page: Page<'_>, place: Rect, title: Text) {
     let look = page.look;
-    let title = LargeText::new(look.say(title), 38.0, look.palette.text);
+    let title = LargeText::new(look.tr(title), 38.0, look.palette.text);
     page.line(ui, place, title);
 }
 
@@ -134,7 +134,7 @@ fn pad_words(pane: &Pane<'_>, exhibit: &ExhibitState) -> Option<PadWords> {
     let look = pane.look;
     let plain = |title, note: Text| PadWords {
         title,
-        note: look.say(note).to_owned(),
+        note: look.tr(note).to_owned(),
         is_bad: false,
         locked: false,
     };
@@ -150,7 +150,7 @@ fn pad_words(pane: &Pane<'_>, exhibit: &ExhibitState) -> Option<PadWords> {
         }
         StaffPanel::Choose { refused: true, .. } => bad(
             exhibit::PIN_CHOOSE,
-            look.say(exhibit::PIN_REFUSED).to_owned(),
+            look.tr(exhibit::PIN_REFUSED).to_owned(),
         ),
         StaffPanel::Choose { .. } => plain(exhibit::PIN_CHOOSE, exhibit::PIN_CHOOSE_NOTE),
         StaffPanel::Ask { answer, .. } => match answer {
@@ -181,21 +181,21 @@ fn open_ui(ui: &mut Ui, pane: &mut Pane<'_>, page: Page<'_>) {
     let is_halted = matches!(page.exhibit.view.stage, ExhibitStage::Halted(_));
     let no_hand = !pane.hand().connection.status.state.is_live();
     let arm = LargeButton {
-        note: look.say(exhibit::ARM_NOTE),
+        note: look.tr(exhibit::ARM_NOTE),
         size: 48.0,
         weight: Weight::Armed,
-        disabled: no_hand.then(|| look.say(exhibit::ARM_NO_HAND)),
-        ..LargeButton::new(look.say(exhibit::ARM))
+        disabled: no_hand.then(|| look.tr(exhibit::ARM_NO_HAND)),
+        ..LargeButton::new(look.tr(exhibit::ARM))
     };
     let disarm = LargeButton {
-        disabled: is_halted.then(|| look.say(exhibit::DISARM_NOTHING)),
-        ..LargeButton::new(look.say(exhibit::DISARM))
+        disabled: is_halted.then(|| look.tr(exhibit::DISARM_NOTHING)),
+        ..LargeButton::new(look.tr(exhibit::DISARM))
     };
     let leave = LargeButton {
         weight: Weight::Danger,
-        ..LargeButton::new(look.say(exhibit::LEAVE))
+        ..LargeButton::new(look.tr(exhibit::LEAVE))
     };
-    let close = LargeButton::new(look.say(exhibit::CLOSE));
+    let close = LargeButton::new(look.tr(exhibit::CLOSE));
     let (large, small) = split(left, gap);
     let all = [
         (arm, large, ExhibitAction::Wish(ExhibitWish::Arm)),
@@ -231,7 +231,7 @@ fn figures_ui(ui: &mut Ui, page: Page<'_>, rect: Rect) {
     ];
     let high = rect.height() / 7.0;
     let (head, mut rest) = above(rect, high, 0.0);
-    let today = LargeText::new(look.say(exhibit::TODAY), 30.0, look.palette.muted);
+    let today = LargeText::new(look.tr(exhibit::TODAY), 30.0, look.palette.muted);
     page.line(ui, head, today);
     for (text, count) in rows {
         let (row, below) = above(rest, high, 0.0);
@@ -239,11 +239,11 @@ fn figures_ui(ui: &mut Ui, page: Page<'_>, rect: Rect) {
         let line = egui::Stroke::new(1.0, look.palette.edge);
         ui.painter().hline(row.x_range(), row.top(), line);
         let (name, figure) = row.split_left_right_at_fraction(0.72);
-        let said = LargeText::new(look.say(text), 30.0, look.palette.text);
-        page.line(ui, name, said);
+        let label = LargeText::new(look.tr(text), 30.0, look.palette.text);
+        page.line(ui, name, label);
         let count = count.to_string();
         let label = Label::new(&count, look.palette.text).font(page.font(34.0));
-        label.right().named(look.say(text)).put(ui, figure);
+        label.right().named(look.tr(text)).put(ui, figure);
     }
     if let Some(trouble) = page.exhibit.report.troubles().last() {
         let words = notices::notice(look, trouble);

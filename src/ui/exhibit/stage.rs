@@ -32,15 +32,15 @@ pub(crate) fn restarts(state: &State, exhibit: &ExhibitState) -> bool {
 
 /// Reason why pressing a tile has no effect now; `None` if it has.
 pub(crate) fn tile_refusal(look: Look, state: &State, exhibit: &ExhibitState) -> Option<String> {
-    let said = |text| Some(look.say(text).to_owned());
+    let tr = |text| Some(look.tr(text).to_owned());
     match exhibit.view.stage {
         ExhibitStage::Halted(_) if restarts(state, exhibit) => None,
-        ExhibitStage::Halted(why) => said(exhibit::halted(why)),
+        ExhibitStage::Halted(why) => tr(exhibit::halted(why)),
         ExhibitStage::Idle | ExhibitStage::Attract | ExhibitStage::Visit { .. } => None,
-        ExhibitStage::NextVisitor { .. } => said(exhibit::NEXT_NOTE),
-        ExhibitStage::Cooling { .. } => said(exhibit::COOLING_NOTE),
-        ExhibitStage::HeatUnknown => said(exhibit::HEAT_UNKNOWN),
-        ExhibitStage::Clearing => said(exhibit::CLEARING),
+        ExhibitStage::NextVisitor { .. } => tr(exhibit::NEXT_NOTE),
+        ExhibitStage::Cooling { .. } => tr(exhibit::COOLING_NOTE),
+        ExhibitStage::HeatUnknown => tr(exhibit::HEAT_UNKNOWN),
+        ExhibitStage::Clearing => tr(exhibit::CLEARING),
     }
 }
 
@@ -62,8 +62,8 @@ pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, page: Page<'_>) {
     let color = look.palette.text;
     page.line(ui, title, LargeText::new(&words.title, 54.0, color));
     let note = note.with_min_y(note.top() + 6.0 * unit);
-    let said = LargeText::new(words.note, 31.0, look.palette.muted);
-    page.lines(ui, note, said);
+    let label = LargeText::new(words.note, 31.0, look.palette.muted);
+    page.lines(ui, note, label);
     if let Some(left) = words.left {
         let bar = note.with_min_y(note.bottom() - 12.0 * unit);
         left_ui(ui, page, bar, left);
@@ -77,7 +77,7 @@ fn left_ui(ui: &mut Ui, page: Page<'_>, rect: Rect, left: f32) {
         let bar = ProgressBar::new(left).fill(page.look.palette.accent);
         let response = ui.add(bar.desired_height(rect.height()));
         response.widget_info(|| {
-            let name = page.look.say(exhibit::PLAY_TIME);
+            let name = page.look.tr(exhibit::PLAY_TIME);
             WidgetInfo::labeled(egui::Role::ProgressIndicator, true, name)
         });
     });
@@ -85,26 +85,26 @@ fn left_ui(ui: &mut Ui, page: Page<'_>, rect: Rect, left: f32) {
 
 /// Text of a stop that was not sent or did not stop the hand, which takes precedence; `None` otherwise.
 fn trouble(look: Look, state: &State) -> Option<StageWords> {
-    let told = |text: Text| StageWords {
-        title: look.say(text).to_owned(),
+    let trouble = |text: Text| StageWords {
+        title: look.tr(text).to_owned(),
         note: look.tip(text),
         color: look.palette.bad,
         left: None,
     };
     let mut notices = state.notices.iter();
     if notices.any(|notice| notice.what == NoticeKind::StopNotSent) {
-        return Some(told(window::STOP_NOT_SENT));
+        return Some(trouble(window::STOP_NOT_SENT));
     }
     matches!(state.hand().connection.status.hold, Hold::Alarm { .. })
-        .then(|| told(main::ALARM_TITLE))
+        .then(|| trouble(main::ALARM_TITLE))
 }
 
 fn stage_words(look: Look, state: &State, exhibit: &ExhibitState) -> StageWords {
     let palette = look.palette;
     let (accent, warn) = (palette.accent, palette.warn);
-    let said = |(title, note): (Text, Text), color| StageWords {
-        title: look.say(title).to_owned(),
-        note: look.say(note),
+    let words = |(title, note): (Text, Text), color| StageWords {
+        title: look.tr(title).to_owned(),
+        note: look.tr(note),
         color,
         left: None,
     };
@@ -119,29 +119,29 @@ fn stage_words(look: Look, state: &State, exhibit: &ExhibitState) -> StageWords 
                 HaltReason::NotArmed => accent,
                 _ => warn,
             };
-            said((title, exhibit::halted(why)), color)
+            words((title, exhibit::halted(why)), color)
         }
-        ExhibitStage::Idle => said((exhibit::IDLE, exhibit::IDLE_NOTE), accent),
-        ExhibitStage::Attract => said((exhibit::ATTRACT, exhibit::ATTRACT_NOTE), accent),
+        ExhibitStage::Idle => words((exhibit::IDLE, exhibit::IDLE_NOTE), accent),
+        ExhibitStage::Attract => words((exhibit::ATTRACT, exhibit::ATTRACT_NOTE), accent),
         ExhibitStage::Visit { until } => {
             let (left, all) = (until.since(state.now), exhibit.plan.visit);
             StageWords {
                 left: Some(left.as_secs_f32() / all.as_secs_f32().max(1.0)),
-                ..said((exhibit::VISIT, exhibit::VISIT_NOTE), palette.ok)
+                ..words((exhibit::VISIT, exhibit::VISIT_NOTE), palette.ok)
             }
         }
-        ExhibitStage::NextVisitor { .. } => said((exhibit::NEXT, exhibit::NEXT_NOTE), accent),
+        ExhibitStage::NextVisitor { .. } => words((exhibit::NEXT, exhibit::NEXT_NOTE), accent),
         ExhibitStage::Cooling { until } => {
             let left = until.since(state.now).as_millis();
             let minutes = left.div_ceil(MINUTE.as_millis()).max(1);
             StageWords {
                 title: look.fill(exhibit::COOLING, &[&minutes]),
-                ..said((exhibit::COOLING, exhibit::COOLING_NOTE), warn)
+                ..words((exhibit::COOLING, exhibit::COOLING_NOTE), warn)
             }
         }
         ExhibitStage::HeatUnknown => {
-            said((exhibit::HEAT_UNKNOWN, exhibit::HEAT_UNKNOWN_NOTE), warn)
+            words((exhibit::HEAT_UNKNOWN, exhibit::HEAT_UNKNOWN_NOTE), warn)
         }
-        ExhibitStage::Clearing => said((exhibit::CLEARING, exhibit::CLEARING_NOTE), warn),
+        ExhibitStage::Clearing => words((exhibit::CLEARING, exhibit::CLEARING_NOTE), warn),
     }
 }

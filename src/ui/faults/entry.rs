@@ -72,10 +72,10 @@ pub(crate) fn entry_ui(
         title_ui(ui, pane, entry);
         inset_ui(ui, |ui| {
             if entry.is_active() || !entry.seen || depth == Depth::Chosen {
-                let said = notices::fault_kind(entry.what, look.language);
-                kit::say_ui(ui, said.cause, palette.muted);
-                let advice = look.told(notices::TODO, said.advice);
-                kit::say_ui(ui, &advice, palette.text);
+                let words = notices::fault_kind(entry.what, look.language);
+                kit::small_text_ui(ui, words.cause, palette.muted);
+                let advice = look.tr_with(notices::TODO, words.advice);
+                kit::small_text_ui(ui, &advice, palette.text);
             }
             foot_ui(ui, pane, entry)
         })
@@ -107,7 +107,7 @@ pub(crate) fn scroll_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
     let look = pane.look;
     let palette = look.palette;
-    let (word, color) = stand(pane, entry);
+    let (word, color) = fault_state(pane, entry);
     ui.horizontal_wrapped(|ui| {
         let at = kit::lamp_ui(ui, entry.is_active().then_some(color));
         if !entry.is_active() {
@@ -122,15 +122,15 @@ fn title_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) {
         Label::new(&title, ink).ui(ui);
         // Before the parts that change, so that it does not move.
         if !entry.seen {
-            let text = look.say(notices::SEEN);
+            let text = look.tr(notices::SEEN);
             let name = format!("{text}: {title}");
             let button = Button::new(text, look.tip(notices::SEEN)).named(&name);
             button.on_click(ui, pane, Action::SeenFault(entry.dof, entry.what));
         }
         let when = format::age(entry.lasted(pane.state.now));
         let word = match entry.until {
-            None => format!("{}, {when}", look.say(word)),
-            Some(_) => look.say(word).to_owned(),
+            None => format!("{}, {when}", look.tr(word)),
+            Some(_) => look.tr(word).to_owned(),
         };
         Label::new(&word, color).small().ui(ui);
     });
@@ -145,10 +145,10 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<Fault
     let mut replay = None;
     let pressed = ui.horizontal_wrapped(|ui| {
         if !text.is_empty() {
-            kit::say_ui(ui, &text, look.palette.muted);
+            kit::small_text_ui(ui, &text, look.palette.muted);
         }
         let recording = recording.filter(|_| {
-            let words = look.say(notices::RECORDING);
+            let words = look.tr(notices::RECORDING);
             let name = format!("{words}: {}", title(pane, entry.dof, entry.what));
             let button = Button::new(words, look.tip(notices::RECORDING_OPEN));
             button.named(&name).ui(ui, look).clicked()
@@ -170,11 +170,11 @@ fn foot_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: &FaultEntry) -> Option<Fault
 
 pub(crate) fn title(pane: &Pane<'_>, dof: Dof, what: FaultKind) -> String {
     let words = notices::fault_kind(what, pane.look.language);
-    format!("{}: {}", pane.look.say(words::dof(dof)), words.title)
+    format!("{}: {}", pane.look.tr(words::dof(dof)), words.title)
 }
 
 /// State of a fault, active or past, with its colour.
-fn stand(pane: &Pane<'_>, entry: &FaultEntry) -> (Text, egui::Color32) {
+fn fault_state(pane: &Pane<'_>, entry: &FaultEntry) -> (Text, egui::Color32) {
     let palette = pane.look.palette;
     let sample = &pane.hand().readings.sample;
     let asked = match entry.what {
@@ -209,11 +209,11 @@ pub(crate) fn unseen_mark_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
     let (place, response) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
     let color = if is_active { palette.bad } else { palette.warn };
     mark(ui, place.center(), color);
-    let joint = pane.look.say(words::dof(dof));
-    let name = format!("{joint} {}", pane.look.say(notices::UNSEEN_MARK));
+    let joint = pane.look.tr(words::dof(dof));
+    let name = format!("{joint} {}", pane.look.tr(notices::UNSEEN_MARK));
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     let tip = title(pane, dof, first.what);
-    response.on_hover_text(format!("{tip}\n{}", pane.look.say(notices::OVER_UNSEEN)));
+    response.on_hover_text(format!("{tip}\n{}", pane.look.tr(notices::OVER_UNSEEN)));
 }
 
 /// Start, duration and count, as far as the title does not include them.
@@ -225,7 +225,7 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
         let age = format::age(now.since(entry.since));
         let lasted = format::age(entry.lasted(now));
         parts.push(look.fill(notices::BEGAN, &[&age]));
-        parts.push(look.told(notices::LASTED, lasted));
+        parts.push(look.tr_with(notices::LASTED, lasted));
     }
     if entry.count > 1 {
         parts.push(look.fill(notices::CAME, &[&entry.count]));
@@ -250,7 +250,7 @@ pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
 pub(crate) fn seen_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let none = pane.hand().readings.faults.unseen().next().is_none();
-    let button = Button::said(look, notices::SEEN_ALL);
-    let button = button.disabled_if(none, look.say(notices::SEEN_NONE));
+    let button = Button::text(look, notices::SEEN_ALL);
+    let button = button.disabled_if(none, look.tr(notices::SEEN_NONE));
     button.on_click(ui, pane, Action::SeenFaults);
 }

@@ -24,7 +24,7 @@ impl MessageLog {
         ui.horizontal(|ui| kit::right_ui(ui, |ui| self.tools_ui(ui, pane)));
         let lost = pane.state.notices.log_dropped();
         if lost > 0 {
-            let text = look.told(notices::LOG_LOST, lost);
+            let text = look.tr_with(notices::LOG_LOST, lost);
             Label::new(&text, look.palette.muted).small().ui(ui);
         }
         let shown: Vec<_> = self.passing(pane).take(DRAWN_MAX + 1).collect();
@@ -50,13 +50,13 @@ impl MessageLog {
         let newest = pane.state.notices.log().next().map(|newest| newest.id);
         let copied = self.copied.filter(|(at, _)| *at == newest);
         let text = match copied {
-            None => look.say(notices::COPY).to_owned(),
-            Some((_, lines)) => format!("{} ({lines})", look.say(notices::COPIED)),
+            None => look.tr(notices::COPY).to_owned(),
+            Some((_, lines)) => format!("{} ({lines})", look.tr(notices::COPIED)),
         };
-        let name = look.pair(look.say(notices::COPY), look.say(notices::LOG));
+        let name = look.pair(look.tr(notices::COPY), look.tr(notices::LOG));
         let none = self.passing(pane).next().is_none();
         let copy = Button::new(&text, look.tip(notices::COPY)).named(&name);
-        let copy = copy.disabled_if(none, look.say(notices::LOG_NONE));
+        let copy = copy.disabled_if(none, look.tr(notices::LOG_NONE));
         if copy.ui(ui, look).clicked() {
             let mut text = String::new();
             for (notice, line) in self.passing(pane) {
@@ -66,14 +66,14 @@ impl MessageLog {
             self.copied = Some((newest, text.lines().count()));
             ui.ctx().copy_text(text);
         }
-        kit::edit_said_ui(ui, look, notices::LOG_FILTER, &mut self.words);
+        kit::translated_edit_ui(ui, look, notices::LOG_FILTER, &mut self.words);
     }
 
     /// Messages that contain the filter words, each with its level and text in a line, newest first.
     fn passing<'a>(&self, pane: &Pane<'a>) -> impl Iterator<Item = (&'a Notice, String)> + use<'a> {
         let (look, wanted) = (pane.look, self.words.trim().to_lowercase());
         let lines = pane.state.notices.log().map(move |notice| {
-            let level = look.say(notices::level(notice.level));
+            let level = look.tr(notices::level(notice.level));
             (notice, format!("{level}  {}", words(look, notice)))
         });
         lines.filter(move |(_, line)| line.to_lowercase().contains(&wanted))
@@ -96,7 +96,7 @@ pub(crate) fn message_ui(
             Label::new(&age, look.palette.muted).small().ui(ui);
             ui.with_layout(Layout::left_to_right(Align::TOP), |ui| {
                 kit::lamp_ui(ui, Some(look.level(notice.level)));
-                kit::say_ui(ui, &text, look.palette.text);
+                kit::small_text_ui(ui, &text, look.palette.text);
             });
         });
     });

@@ -62,10 +62,10 @@ impl FaultsView {
 
     fn faults_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        kit::head_ui(ui, look, look.say(main::TAB_FAULTS), |ui| {
-            let shut = Button::said(look, notices::SHUT_FAULTS).icon(theme::CLOSE);
+        kit::head_ui(ui, look, look.tr(main::TAB_FAULTS), |ui| {
+            let shut = Button::text(look, notices::SHUT_FAULTS).icon(theme::CLOSE);
             let shut = shut.weight(Weight::Quiet);
-            shut.opens(ui, pane, ViewRequest::Faults);
+            shut.navigate(ui, pane, ViewRequest::Faults);
             clear_ui(ui, pane);
             seen_all_ui(ui, pane);
         });
@@ -98,15 +98,15 @@ impl FaultsView {
     fn beside_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         let recordings = match pane.hand().measured.recorder.iter().count() {
-            0 => look.say(notices::RECORDINGS).to_owned(),
-            count => format!("{} ({count})", look.say(notices::RECORDINGS)),
+            0 => look.tr(notices::RECORDINGS).to_owned(),
+            count => format!("{} ({count})", look.tr(notices::RECORDINGS)),
         };
         ui.horizontal(|ui| {
             for (text, section) in [
-                (look.say(notices::LOG), FaultSection::Log),
+                (look.tr(notices::LOG), FaultSection::Log),
                 (&recordings, FaultSection::Recordings),
             ] {
-                let button = Button::new(text, look.say(notices::SECTION_TIP));
+                let button = Button::new(text, look.tr(notices::SECTION_TIP));
                 let button = button.choice(self.section == section);
                 if button.ui(ui, look).clicked() {
                     self.section = section;
@@ -130,8 +130,8 @@ fn clear_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         Some(NothingToClear::OnlyHeat) => Some(notices::CLEAR_ONLY_HEAT),
         None => None,
     };
-    let reason = reason.map(|reason| look.say(reason));
-    let button = Button::said(look, panels::CLEAR).disabled(reason);
+    let reason = reason.map(|reason| look.tr(reason));
+    let button = Button::text(look, panels::CLEAR).disabled(reason);
     button.on_click(ui, pane, Action::ClearErrors);
 }
 
@@ -149,25 +149,25 @@ fn none_ui(ui: &mut Ui, pane: &Pane<'_>) {
         kit::lamp_ui(ui, Some(color));
         Label::muted(look, text).ui(ui);
     });
-    let hint = look.say(panels::FAULTS_NONE_HINT);
-    inset_ui(ui, |ui| kit::say_ui(ui, hint, look.palette.muted));
+    let hint = look.tr(panels::FAULTS_NONE_HINT);
+    inset_ui(ui, |ui| kit::small_text_ui(ui, hint, look.palette.muted));
 }
 
 /// Explains the state of the chosen drive. True if the user closes the explanation.
 fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
     let look = pane.look;
     let palette = look.palette;
-    let said = DriveWords::of(pane, dof);
-    let verb = match said.freshness {
+    let drive = DriveWords::of(pane, dof);
+    let verb = match drive.freshness {
         Freshness::Live => notices::SAYS_NOW,
         _ => notices::SAID_LAST,
     };
-    let joint = look.say(words::dof(dof));
-    let title = format!("{joint} · {}: {}", look.say(verb), said.title);
+    let joint = look.tr(words::dof(dof));
+    let title = format!("{joint} · {}: {}", look.tr(verb), drive.title);
     let closed = ui.horizontal_wrapped(|ui| {
-        kit::lamp_ui(ui, Some(said.lamp));
+        kit::lamp_ui(ui, Some(drive.lamp));
         Label::new(&title, palette.text).ui(ui);
-        let close = look.say(notices::CHOSEN_CLOSE);
+        let close = look.tr(notices::CHOSEN_CLOSE);
         let button = Button::new(close, "").weight(Weight::Quiet);
         button.ui(ui, look).clicked()
     });
@@ -179,10 +179,10 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
         .is_some_and(|group| !group.value[dof].is_empty());
     if let Some(status) = status.filter(|status| !(faulty && status.is_protective())) {
         let words = words::status(status, look.language);
-        let advice = look.told(notices::TODO, words.advice);
+        let advice = look.tr_with(notices::TODO, words.advice);
         inset_ui(ui, |ui| {
-            kit::say_ui(ui, words.cause, palette.muted);
-            kit::say_ui(ui, &advice, palette.text);
+            kit::small_text_ui(ui, words.cause, palette.muted);
+            kit::small_text_ui(ui, &advice, palette.text);
         });
     }
     closed.inner
@@ -192,12 +192,12 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
 fn meanings_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     ui.separator();
-    kit::head_ui(ui, look, look.say(notices::MEANINGS), |_| ());
-    kit::say_ui(ui, look.say(notices::MEANINGS_FAULT), look.palette.muted);
+    kit::head_ui(ui, look, look.tr(notices::MEANINGS), |_| ());
+    kit::small_text_ui(ui, look.tr(notices::MEANINGS_FAULT), look.palette.muted);
     for fault in (0..5).map(Fault::from_bit) {
         meaning_ui(ui, pane, words::fault(fault, look.language));
     }
-    kit::say_ui(ui, look.say(notices::MEANINGS_STATUS), look.palette.muted);
+    kit::small_text_ui(ui, look.tr(notices::MEANINGS_STATUS), look.palette.muted);
     for status in [0, 1, 2, 3, 5, 6, 7].map(Status::from_raw) {
         meaning_ui(ui, pane, words::status(status, look.language));
     }
@@ -213,7 +213,7 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>, words: Words) {
     };
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
-        kit::say_ui(ui, &title, palette.text);
-        kit::say_ui(ui, &body, palette.muted);
+        kit::small_text_ui(ui, &title, palette.text);
+        kit::small_text_ui(ui, &body, palette.muted);
     });
 }

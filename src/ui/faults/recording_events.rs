@@ -44,14 +44,14 @@ fn mark_line(look: Look, mark: &Mark) -> Option<EventLine> {
     if matches!(mark.kind, MarkKind::Fault(_)) {
         return None;
     }
-    let (text, color) = marks::told(look, &mark.kind);
+    let (text, color) = marks::mark_text(look, &mark.kind);
     let at_s = mark.at.secs();
     Some(EventLine { at_s, text, color })
 }
 
 fn event_words(look: Look, what: &FaultEventKind) -> (String, Color32) {
     let palette = look.palette;
-    let of = |dof, said: &str| look.pair(look.say(words::dof(dof)), said);
+    let of = |dof, text: &str| look.pair(look.tr(words::dof(dof)), text);
     match what {
         FaultEventKind::PersonAct(act) => (act_words(look, act), palette.accent),
         FaultEventKind::Status(dof, status) => {
@@ -76,7 +76,7 @@ fn event_words(look: Look, what: &FaultEventKind) -> (String, Color32) {
 /// Titles of all set bits.
 fn fault_words(look: Look, bits: Faults) -> String {
     if bits.is_empty() {
-        return look.say(notices::NO_FAULT_BITS).into();
+        return look.tr(notices::NO_FAULT_BITS).into();
     }
     let titles = bits
         .iter()
@@ -85,21 +85,21 @@ fn fault_words(look: Look, bits: Faults) -> String {
 }
 
 fn act_words(look: Look, act: &PersonAct) -> String {
-    let say = |text| look.say(text).to_owned();
-    let set = |who: &str, what, value: i16| format!("{who} {} {value}", look.say(what));
-    let joint = |dof| look.say(words::dof(dof));
-    let joints = |dof: &Option<Dof>| dof.map_or_else(|| look.say(main::EVERY), joint);
+    let tr = |text| look.tr(text).to_owned();
+    let set = |who: &str, what, value: i16| format!("{who} {} {value}", look.tr(what));
+    let joint = |dof| look.tr(words::dof(dof));
+    let joints = |dof: &Option<Dof>| dof.map_or_else(|| look.tr(main::EVERY), joint);
     match act {
-        PersonAct::Disarm => say(notices::ACT_DISARM),
+        PersonAct::Disarm => tr(notices::ACT_DISARM),
         PersonAct::Target(dof, angle) => set(joint(*dof), notices::ACT_TARGET, angle.get()),
         PersonAct::Force(dof, force) => set(joints(dof), notices::ACT_FORCE, force.get()),
         PersonAct::Speed(dof, speed) => set(joints(dof), main::NAME_SPEED, speed.get()),
-        PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), say(notices::ACT_LOCK)),
-        PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), say(notices::ACT_UNLOCK)),
-        PersonAct::Preset(Preset::Open) => say(main::OPEN),
-        PersonAct::Preset(Preset::Half) => say(main::HALF),
-        PersonAct::Preset(Preset::Close) => say(main::CLOSE),
-        PersonAct::Pose(name) => format!("{} {name}", say(poses::RECALL_NAME)),
+        PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), tr(notices::ACT_LOCK)),
+        PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), tr(notices::ACT_UNLOCK)),
+        PersonAct::Preset(Preset::Open) => tr(main::OPEN),
+        PersonAct::Preset(Preset::Half) => tr(main::HALF),
+        PersonAct::Preset(Preset::Close) => tr(main::CLOSE),
+        PersonAct::Pose(name) => format!("{} {name}", tr(poses::RECALL_NAME)),
         PersonAct::Play(play) => {
             let verb = match play {
                 Play::Start(_) => poses::START,
@@ -108,8 +108,8 @@ fn act_words(look: Look, act: &PersonAct) -> String {
                 Play::Resume => poses::RESUME,
                 Play::End => poses::END,
             };
-            look.pair(look.say(poses::SEQUENCE), look.say(verb))
+            look.pair(look.tr(poses::SEQUENCE), look.tr(verb))
         }
-        PersonAct::ClearErrors => say(panels::CLEAR),
+        PersonAct::ClearErrors => tr(panels::CLEAR),
     }
 }

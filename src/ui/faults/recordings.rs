@@ -55,7 +55,7 @@ fn chart<'a>(
         let points = Points::Measured(&recording.history, line.series);
         ChartCurve {
             steps: line.wished,
-            told: (is_of_fault && !line.wished).then_some(panel.row.decimals),
+            decimals: (is_of_fault && !line.wished).then_some(panel.row.decimals),
             ..ChartCurve::new(points, Stroke::new(width, color))
         }
     };
@@ -66,7 +66,7 @@ fn chart<'a>(
         curves: lines.into_iter().map(curve).collect(),
         moments: moments.collect(),
         least: panel.row.least_scale,
-        times: Times::From(fault.secs(), look.say(notices::RECORDING_FAULT)),
+        times: Times::From(fault.secs(), look.tr(notices::RECORDING_FAULT)),
         ..Chart::new(look, panel.title, height)
     }
 }
@@ -81,7 +81,7 @@ fn title(pane: &Pane<'_>, recording: &FaultRecording) -> String {
     if more == 0 {
         return title;
     }
-    let other = pane.look.say(notices::RECORDING_MORE);
+    let other = pane.look.tr(notices::RECORDING_MORE);
     format!("{title} + {more} {other}")
 }
 
@@ -111,10 +111,10 @@ impl FaultRecordingsView {
         scroll_ui(ui, |ui| {
             if let Some(until) = recorder.runs_until() {
                 let left = format::age(until.since(pane.state.now));
-                let text = look.told(notices::RECORDING_RUNS, left);
+                let text = look.tr_with(notices::RECORDING_RUNS, left);
                 ui.horizontal(|ui| {
                     kit::lamp_ui(ui, Some(look.palette.bad));
-                    kit::say_ui(ui, &text, look.palette.text);
+                    kit::small_text_ui(ui, &text, look.palette.text);
                 });
             }
             for recording in recorder.iter() {
@@ -126,10 +126,10 @@ impl FaultRecordingsView {
                 None => notices::RECORDINGS_NONE,
                 Some(_) => notices::RECORDINGS_KEPT,
             };
-            kit::say_ui(ui, look.say(kept), look.palette.muted);
+            kit::small_text_ui(ui, look.tr(kept), look.palette.muted);
             if recorder.lost() > 0 {
-                let text = look.told(notices::RECORDINGS_LOST, recorder.lost());
-                kit::say_ui(ui, &text, look.palette.warn);
+                let text = look.tr_with(notices::RECORDINGS_LOST, recorder.lost());
+                kit::small_text_ui(ui, &text, look.palette.warn);
             }
         });
         if let Some(id) = pressed {
@@ -186,25 +186,25 @@ impl FaultRecordingsView {
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, recording: &FaultRecording) {
         let look = pane.look;
         ui.horizontal(|ui| {
-            let back = Button::said(look, notices::RECORDING_BACK);
+            let back = Button::text(look, notices::RECORDING_BACK);
             if back.ui(ui, look).clicked() {
                 self.close();
             }
             kit::right_ui(ui, |ui| {
-                let save = Button::said(look, notices::RECORDING_SAVE).weight(Weight::Strong);
+                let save = Button::text(look, notices::RECORDING_SAVE).weight(Weight::Strong);
                 if save.ui(ui, look).clicked() {
                     let content = Export::Recording(recording.table());
                     pane.actions.push(Action::Save(content));
                 }
                 let title = title(pane, recording);
-                let title = format!("{}: {title}", look.say(notices::RECORDING));
+                let title = format!("{}: {title}", look.tr(notices::RECORDING));
                 kit::left_ui(ui, |ui| {
                     let title = Label::new(&title, look.palette.text).title();
                     title.ui(ui).on_hover_text(about(pane, recording));
                 });
             });
         });
-        kit::say_ui(ui, &about(pane, recording), look.palette.muted);
+        kit::small_text_ui(ui, &about(pane, recording), look.palette.muted);
     }
 
     /// Draws the choice of plots and of the time range.
@@ -212,12 +212,12 @@ impl FaultRecordingsView {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing.x = theme::STEP;
             for panel in &PANELS {
-                let title = look.say(panel.title);
+                let title = look.tr(panel.title);
                 // Without its unit, which the plot shows.
                 let text = title.split([',', ' ']).next().unwrap_or(title);
                 let on = self.shown.shows(panel.kind);
-                let name = format!("{}: {title}", look.say(notices::RECORDING));
-                let button = Button::new(text, look.say(notices::RECORDING_PANEL_TIP));
+                let name = format!("{}: {title}", look.tr(notices::RECORDING));
+                let button = Button::new(text, look.tr(notices::RECORDING_PANEL_TIP));
                 if button.named(&name).choice(on).ui(ui, look).clicked() {
                     self.shown.set(panel.kind, !on);
                 }
@@ -249,11 +249,11 @@ impl FaultRecordingsView {
         let Some((_, lines)) = &self.lines else {
             return;
         };
-        kit::say_ui(ui, look.say(notices::RECORDING_EVENTS), look.palette.muted);
+        kit::small_text_ui(ui, look.tr(notices::RECORDING_EVENTS), look.palette.muted);
         if recording.events_lost > 0 {
             let lost = recording.events_lost;
-            let text = look.told(notices::RECORDING_EVENTS_LOST, lost);
-            kit::say_ui(ui, &text, look.palette.warn);
+            let text = look.tr_with(notices::RECORDING_EVENTS_LOST, lost);
+            kit::small_text_ui(ui, &text, look.palette.warn);
         }
         ui.spacing_mut().item_spacing.y = 0.0;
         let scroll = ScrollArea::vertical().auto_shrink(false);
@@ -271,7 +271,7 @@ fn about(pane: &Pane<'_>, recording: &FaultRecording) -> String {
         .fault()
         .map(|fault| pane.state.now.since(fault.at));
     let age = format::age(age.unwrap_or_default());
-    format!("{} · {age} {}", recording.hand, pane.look.say(device::AGO))
+    format!("{} · {age} {}", recording.hand, pane.look.tr(device::AGO))
 }
 
 fn event_ui(ui: &mut Ui, look: Look, line: &EventLine, fault_s: f64) {
@@ -292,7 +292,7 @@ fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, recording: &FaultRecording) -> bool 
     let palette = look.palette;
     let row = ui.horizontal(|ui| {
         let title = title(pane, recording);
-        let text = look.say(notices::RECORDING_OPEN);
+        let text = look.tr(notices::RECORDING_OPEN);
         let name = format!("{text}: {title}");
         let open = Button::new(text, look.tip(notices::RECORDING_OPEN)).named(&name);
         let pressed = open.ui(ui, look).clicked();
@@ -309,7 +309,7 @@ fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, recording: &FaultRecording) -> bool 
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             Label::new(&title, palette.text).wrap().ui(ui);
-            kit::say_ui(ui, &about(pane, recording), palette.muted);
+            kit::small_text_ui(ui, &about(pane, recording), palette.muted);
         });
         pressed
     });

@@ -13,7 +13,7 @@ const LINKED: [Dof; 4] = [Dof::Little, Dof::Ring, Dof::Middle, Dof::Index];
 /// Reason why no target can be set for this joint now; `None` if it is possible.
 pub(crate) fn refusal(pane: &Pane<'_>, dof: Dof) -> Option<&'static str> {
     let locked = pane.hand().controls.joints[dof].locked;
-    let locked = locked.then(|| pane.look.say(main::LOCKED));
+    let locked = locked.then(|| pane.look.tr(main::LOCKED));
     pane.unready().or(locked)
 }
 

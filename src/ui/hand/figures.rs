@@ -103,7 +103,7 @@ impl Figure {
         let place = Rect::from_center_size(pos2(x, line.center().y), Vec2::splat(theme::TEXT_LINE));
         let lock = Label::new(theme::LOCKED, pane.look.palette.muted);
         let lock = lock.font(theme::icon_high(theme::SIGN_SMALL)).center();
-        let named = pane.look.pair(name, pane.look.say(main::LOCKED));
+        let named = pane.look.pair(name, pane.look.tr(main::LOCKED));
         lock.named(&named).put(ui, place);
     }
 }
@@ -133,7 +133,7 @@ fn slot(place: Rect, points: &HandPoints, finger: Finger) -> (Rect, bool) {
 
 fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
     let look = pane.look;
-    let name = look.say(words::finger(finger));
+    let name = look.tr(words::finger(finger));
     let color = look.palette.dof[finger.bend()];
     let &Figure {
         lines: [first, second, third],
@@ -162,18 +162,18 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
     };
     let label = Label::new(&force, look.value(freshness, live)).number();
     let label = label.font(FontId::monospace(if over { 15.0 } else { 14.0 }));
-    let named = format!("{name} {}", look.say(panels::FINGER_FORCE));
+    let named = format!("{name} {}", look.tr(panels::FINGER_FORCE));
     aligned(label.named(&named), ui, second);
     if let Some((words, color)) = joints.find_map(|dof| trouble(pane, dof)) {
-        let named = format!("{name} {}", look.say(panels::FINGER_TROUBLE));
+        let named = format!("{name} {}", look.tr(panels::FINGER_TROUBLE));
         aligned(Label::new(&words, color).small().named(&named), ui, third);
         return;
     }
     let state = grip(pane).fingers[finger].state;
     // The picture already shows an open grip.
     if !matches!(state, GripState::Unknown | GripState::Open) {
-        let named = format!("{name} {}", look.say(panels::FINGER_GRIP));
-        let words = Label::new(look.say(panels::grip(state)), grip_color(pane, state));
+        let named = format!("{name} {}", look.tr(panels::FINGER_GRIP));
+        let words = Label::new(look.tr(panels::grip(state)), grip_color(pane, state));
         aligned(words.small().named(&named), ui, third);
     }
 }
@@ -199,13 +199,13 @@ pub(crate) fn held_size(pane: &Pane<'_>) -> Option<String> {
 pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
     let state = grip(pane).grasp.state;
     let look = pane.look;
-    let mut words = look.pair(look.say(panels::GRIP), look.say(panels::grip(state)));
+    let mut words = look.pair(look.tr(panels::GRIP), look.tr(panels::grip(state)));
     if let Some(size) = held_size(pane).filter(|_| state == GripState::Holding) {
         words = look.list(&[&words, &size]);
     }
     let line = place.with_min_y(place.bottom() - theme::PAD);
     let label = Label::new(&words, grip_color(pane, state)).small();
-    let label = label.named(look.say(panels::GRIP)).put(ui, line);
+    let label = label.named(look.tr(panels::GRIP)).put(ui, line);
     label.on_hover_text(look.tip(panels::GRIP));
 }
 

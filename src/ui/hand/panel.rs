@@ -37,7 +37,7 @@ impl HandPanel {
         let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
         let place = response.rect;
         response
-            .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
+            .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.tr(panels::HAND_PICTURE)));
         let picture = HandPicture {
             lit: pointed::pointed(ui, PointedPlace::Row),
             ..picture(pane.hand(), tips, pane.state.now)
@@ -70,9 +70,9 @@ impl HandPanel {
         if response.is_pointer_button_down_on() {
             return None;
         }
-        let told = used.joint.map(|dof| said(pane, dof));
-        let tip = || look.tip(panels::HAND_PICTURE).to_owned();
-        response.on_hover_text_at_pointer(told.unwrap_or_else(tip));
+        let tip = used.joint.map(|dof| joint_tooltip(pane, dof));
+        let general = || look.tip(panels::HAND_PICTURE).to_owned();
+        response.on_hover_text_at_pointer(tip.unwrap_or_else(general));
         used.joint.map(Dof::finger).filter(|_| clicked)
     }
 }
@@ -108,7 +108,7 @@ impl StillHand {
     pub(crate) fn ui(&mut self, ui: &Ui, place: Rect, look: Look, picture: &HandPicture) {
         let response = ui.interact(place, ui.scope_id().with("still hand"), Sense::hover());
         response
-            .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(panels::HAND_PICTURE)));
+            .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.tr(panels::HAND_PICTURE)));
         self.0.paint(ui, place, look.palette, picture);
     }
 }
@@ -121,12 +121,12 @@ pub(crate) fn picture(state: &Hand, tips: &PerFinger<Option<Tip>>, now: Moment) 
         Some(f32::from(raw) / 1000.0)
     });
     // Targets that this window does not set joint by joint are read from the hand's own register.
-    let told = matches!(state.activity(), Activity::Series | Activity::Following(_));
-    let register = state.readings.sample.angle_set.filter(|_| told);
+    let from_register = matches!(state.activity(), Activity::Series | Activity::Following(_));
+    let register = state.readings.sample.angle_set.filter(|_| from_register);
     let target = PerDof::from_fn(|dof| {
         let sent = || state.controls.joints[dof].target;
         let target = register.map_or_else(sent, |held| held.value[dof]?.angle());
-        let target = target.filter(|_| told || state.connection.is_armed())?;
+        let target = target.filter(|_| from_register || state.connection.is_armed())?;
         Some(f32::from(target.get()) / 1000.0)
     });
     let is_live = state.connection.is_live();
@@ -201,23 +201,23 @@ fn unknown_note(ui: &mut Ui, look: Look, picture: Rect) {
 /// A button that names the side drawn and switches to the other one.
 pub(crate) fn side_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let words = look.say(match look.side {
+    let words = look.tr(match look.side {
         Side::Right => panels::RIGHT_HAND,
         Side::Left => panels::LEFT_HAND,
     });
-    let button = Button::new(words, look.say(panels::SIDE_TIP)).weight(Weight::Quiet);
+    let button = Button::new(words, look.tr(panels::SIDE_TIP)).weight(Weight::Quiet);
     if button.ui(ui, look).clicked() {
         pane.actions.push(Action::Side(look.side.other()));
     }
 }
 
 /// Description of a joint and its drag, or the reason why it cannot be dragged, with the forces on its fingertip.
-fn said(pane: &Pane<'_>, dof: Dof) -> String {
+fn joint_tooltip(pane: &Pane<'_>, dof: Dof) -> String {
     let look = pane.look;
-    let name = look.say(words::dof(dof));
+    let name = look.tr(words::dof(dof));
     let drag = match aim::refusal(pane, dof) {
-        None => look.say(panels::DRAG_FINGER),
-        Some(_) if pane.unready() == Some(look.say(main::NOT_ARMED)) => look.say(window::ARM_FIRST),
+        None => look.tr(panels::DRAG_FINGER),
+        Some(_) if pane.unready() == Some(look.tr(main::NOT_ARMED)) => look.tr(window::ARM_FIRST),
         Some(reason) => reason,
     };
     format!("{}\n{}", look.pair(name, drag), felt(pane, dof.finger()))
@@ -229,9 +229,9 @@ pub(crate) fn felt(pane: &Pane<'_>, finger: Finger) -> String {
     let block = pane.hand().readings.sample.tactile[finger].map(|block| block.value);
     format!(
         "{} {} N, {} {} N",
-        look.say(panels::TIP_NORMAL),
+        look.tr(panels::TIP_NORMAL),
         format::newtons(block.map(|block| block.normal_n)),
-        look.say(panels::TIP_SHEAR),
+        look.tr(panels::TIP_SHEAR),
         format::newtons(block.map(|block| block.tangential_n)),
     )
 }

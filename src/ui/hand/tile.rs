@@ -66,7 +66,7 @@ pub(crate) fn empty_page_ui(ui: &mut Ui, look: Look, share: f32, title: Text) {
     ui.add_space(ui.available_height() * 0.2);
     let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
     pose_ui(ui, look, picture, &PerDof::splat(Some(share)));
-    Label::said(look, title).title().ui(ui);
+    Label::text(look, title).title().ui(ui);
 }
 
 /// Cache key of a tile: its content and appearance.
@@ -93,8 +93,8 @@ impl Tile {
     }
 
     fn paint(self, ui: &Ui, rect: Rect) {
-        type Kept = FrameCache<Arc<Mesh>, PoseTiles>;
-        let mesh = ui.memory_mut(|memory| Arc::clone(memory.caches.cache::<Kept>().get(self)));
+        type TileCache = FrameCache<Arc<Mesh>, PoseTiles>;
+        let mesh = ui.memory_mut(|memory| Arc::clone(memory.caches.cache::<TileCache>().get(self)));
         let mut mesh = Mesh::clone(&mesh);
         mesh.translate(rect.min.to_vec2());
         ui.painter().with_clip_rect(rect).add(mesh);

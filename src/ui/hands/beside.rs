@@ -96,7 +96,7 @@ impl HandColumn {
             let is_lowest = panel.kind == PlotKind::Angle;
             let lines = panel.measured(&PerDof::default());
             let curves = lines.iter().map(|line| ChartCurve {
-                told: Some(panel.row.decimals),
+                decimals: Some(panel.row.decimals),
                 ..ChartCurve::measured(history, line.series, look.palette.dof[line.dof])
             });
             let chart = Chart {

@@ -79,13 +79,13 @@ impl HandWords {
         };
         let is_moved = !matches!(Mover::of(hand, now), None | Some(Mover::Stop));
         let state = if is_moved {
-            format!("{} · {}", look.say(state), look.say(window::MOVES))
+            format!("{} · {}", look.tr(state), look.tr(window::MOVES))
         } else {
-            look.say(state).to_owned()
+            look.tr(state).to_owned()
         };
         let name = match &hand.connection.endpoint {
             Some(_) => hand.label.name.to_string(),
-            None => look.say(main::NO_HAND).to_owned(),
+            None => look.tr(main::NO_HAND).to_owned(),
         };
         Self {
             number: at + 1,
@@ -130,7 +130,7 @@ pub(crate) fn strips_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool, shows_a
     let right = pos2(place.right(), middle + theme::CONTROL_LARGE / 2.0);
     let switch = vec2(SWITCH - theme::GAP, theme::CONTROL_LARGE);
     let rect = Rect::from_min_max(right - switch, right);
-    let button = Button::said(look, window::ALL_HANDS).switch(shows_all);
+    let button = Button::text(look, window::ALL_HANDS).switch(shows_all);
     let id = ui.scope_id().with("all hands");
     button.put(ui, look, rect, id).clicked()
 }
@@ -158,7 +158,7 @@ impl HandStrip {
         }
         let is_shown = pane.hand().label.slot == *slot;
         let name = look.fill(window::HAND_OF, &[&words.number, &words.name]);
-        let [letter, side] = words.side.map(|text| look.say(text));
+        let [letter, side] = words.side.map(|text| look.tr(text));
         let state = &words.state;
         let tip = format!("{name}\n{side}, {state}\n{}", look.tip(window::HAND_OF));
         let button = Button::new(&words.name, &tip).named(&name).switch(is_shown);
@@ -183,8 +183,8 @@ impl HandStrip {
         }
         let lamp = pos2(lower.left() + theme::LAMP, lower.center().y);
         kit::lamp(ui, lamp, words.color);
-        let told = lower.with_min_x(lower.left() + theme::PAD);
-        Label::new(state, palette.text).small().paint(ui, told);
+        let text_rect = lower.with_min_x(lower.left() + theme::PAD);
+        Label::new(state, palette.text).small().paint(ui, text_rect);
         if response.clicked() && !is_shown {
             pane.actions.push(Action::Hands(HandsAction::Show(*slot)));
         }
@@ -193,10 +193,10 @@ impl HandStrip {
     fn stop_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, rect: Rect) {
         let look = pane.look;
         let name = look.fill(window::STOP_ONE, &[&self.words.number]);
-        let button = Button::new(look.say(main::STOP), look.tip(window::STOP_ONE));
+        let button = Button::new(look.tr(main::STOP), look.tip(window::STOP_ONE));
         let button = button.named(&name).weight(Weight::Stop);
         let response = button.ground(ui, look, rect, ui.scope_id().with("stop"));
-        let word = Label::new(look.say(main::STOP), look.palette.on_strong);
+        let word = Label::new(look.tr(main::STOP), look.palette.on_strong);
         word.title().center().paint(ui, rect);
         if kit::pressed(ui, &response) {
             let stop = HandsAction::StopOne(self.slot);

@@ -8,7 +8,9 @@ use crate::link::Owner;
 use crate::share::gateway::{ClientLease, GatewayClient};
 use crate::ui::inputs::mirror_card::mirror_ui;
 use crate::ui::inputs::pad_card::pad_source_ui;
-use crate::ui::inputs::source::{Switch, about_ui, grant_client_ui, grant_ui, state_ui, switch_ui};
+use crate::ui::inputs::source::{
+    CardSwitch, about_ui, grant_client_ui, grant_ui, state_ui, switch_ui,
+};
 use crate::ui::kit::{self, Button, CardGrid, Label, Look, Pane, Pick};
 use crate::ui::text::{Text, errors, exhibit, inputs};
 use crate::ui::theme;
@@ -88,7 +90,7 @@ impl SourceCards {
                 StreamPlace::Udp(at)
             }
         });
-        let switch = Switch {
+        let switch = CardSwitch {
             title: inputs::STREAM,
             turns_on: inputs::LISTEN,
             is_on: at.is_some(),
@@ -108,8 +110,8 @@ impl SourceCards {
         let owner = view.owner(pane.state.now).filter(|_| at.is_some());
         let sender = view.intake.sender.map(|(sender, _)| sender.to_string());
         let words = match (at, owner.and(sender)) {
-            (None, _) => look.say(inputs::OFF).to_owned(),
-            (Some(_), None) => look.say(inputs::NOBODY_SENDS).to_owned(),
+            (None, _) => look.tr(inputs::OFF).to_owned(),
+            (Some(_), None) => look.tr(inputs::NOBODY_SENDS).to_owned(),
             (Some(_), Some(sender)) => {
                 let rate = format!("{:.0}", view.intake.rate_hz);
                 look.fill(inputs::HZ_FROM, &[&rate, &sender])
@@ -134,7 +136,7 @@ impl SourceCards {
         let look = pane.look;
         let view = pane.hand().inputs.dds_view.as_ref();
         let wanted = Some(self.dds.trim().to_owned()).filter(|name| !name.is_empty());
-        let switch = Switch {
+        let switch = CardSwitch {
             title: inputs::DDS,
             turns_on: inputs::JOIN,
             is_on: view.is_some(),
@@ -146,8 +148,8 @@ impl SourceCards {
         PlaceField::new(look, inputs::DDS_AT, at).ui(ui, &mut self.dds);
         let owner = view.and_then(|view| view.view.owner(pane.state.now));
         let words = match (view, owner) {
-            (None, _) => look.say(inputs::OFF).to_owned(),
-            (Some(_), None) => look.say(inputs::NOBODY_SENDS).to_owned(),
+            (None, _) => look.tr(inputs::OFF).to_owned(),
+            (Some(_), None) => look.tr(inputs::NOBODY_SENDS).to_owned(),
             (Some(view), Some(_)) => format!("{:.0} Hz", view.view.rate_hz),
         };
         state_ui(ui, pane, Some(InputKind::Dds), &words);
@@ -162,7 +164,7 @@ impl SourceCards {
             let odd = odd.filter(|(_, count)| *count > 0);
             counts_ui(ui, pane, counts.into_iter().chain(odd));
             if let Some(newest) = view.view.refused.keys().next_back() {
-                kit::say_ui(ui, look.say(inputs::ctrl_fault(*newest)), look.palette.warn);
+                kit::small_text_ui(ui, look.tr(inputs::ctrl_fault(*newest)), look.palette.warn);
             }
         }
         let other = view.and_then(|view| view.other.as_ref());
@@ -176,7 +178,7 @@ impl SourceCards {
         let look = pane.look;
         let at = pane.hand().inputs.gateway_at;
         let wanted = place(&self.share);
-        let switch = Switch {
+        let switch = CardSwitch {
             title: inputs::GATEWAY,
             turns_on: inputs::OPEN_GATEWAY,
             is_on: at.is_some(),
@@ -187,13 +189,13 @@ impl SourceCards {
         PlaceField::new(look, inputs::GATEWAY_AT, at.map(socket)).ui(ui, &mut self.share);
         let clients = &pane.hand().inputs.clients;
         let words = match (at, clients.len()) {
-            (None, _) => look.say(inputs::OFF).to_owned(),
-            (Some(_), 0) => look.say(inputs::NO_CLIENTS).to_owned(),
+            (None, _) => look.tr(inputs::OFF).to_owned(),
+            (Some(_), 0) => look.tr(inputs::NO_CLIENTS).to_owned(),
             (Some(_), count) => look.fill(inputs::CLIENTS, &[&count]),
         };
         state_ui(ui, pane, Some(InputKind::Gateway), &words);
         if pane.state.settings.first_client_moves {
-            kit::say_ui(ui, look.say(inputs::FIRST_CLIENT), look.palette.warn);
+            kit::small_text_ui(ui, look.tr(inputs::FIRST_CLIENT), look.palette.warn);
         }
         for client in clients {
             client_ui(ui, pane, client);
@@ -204,7 +206,7 @@ impl SourceCards {
         let look = pane.look;
         let served = pane.hand().inputs.foxglove_at;
         let wanted = place(&self.viewers);
-        let switch = Switch {
+        let switch = CardSwitch {
             title: inputs::VIEWERS,
             turns_on: inputs::SHOW,
             is_on: served.is_some(),
@@ -215,7 +217,7 @@ impl SourceCards {
         let at = served.map(|(at, _)| socket(at));
         PlaceField::new(look, inputs::VIEWERS_AT, at).ui(ui, &mut self.viewers);
         let words = match served {
-            None => look.say(inputs::OFF).to_owned(),
+            None => look.tr(inputs::OFF).to_owned(),
             Some((_, count)) => look.fill(inputs::VIEWERS_NOW, &[&count]),
         };
         state_ui(ui, pane, Some(InputKind::Viewers), &words);
@@ -225,7 +227,7 @@ impl SourceCards {
 /// Draws the card that starts the page for visitors.
 fn exhibition_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    kit::head_ui(ui, look, look.say(exhibit::ENTER), |_| ());
+    kit::head_ui(ui, look, look.tr(exhibit::ENTER), |_| ());
     about_ui(ui, pane, exhibit::ENTER);
     ui.horizontal_wrapped(|ui| {
         for (text, tip, action) in [
@@ -236,7 +238,7 @@ fn exhibition_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 ExhibitAction::EnterFile,
             ),
         ] {
-            let button = Button::new(look.say(text), look.tip(tip)).large();
+            let button = Button::new(look.tr(text), look.tip(tip)).large();
             button.on_click(ui, pane, Action::Exhibit(action));
         }
     });
@@ -263,13 +265,13 @@ impl PlaceField {
     }
 
     fn ui(self, ui: &mut Ui, typed: &mut String) {
-        let (look, name) = (self.look, self.look.say(self.name));
+        let (look, name) = (self.look, self.look.tr(self.name));
         ui.horizontal(|ui| {
             ui.set_min_height(theme::CONTROL);
             match self.at {
                 Some((ip, at)) if !ip.is_loopback() => {
                     let label = Label::new(&at, look.palette.warn).number().ui(ui);
-                    label.on_hover_text(look.say(inputs::OPEN_TO_ALL));
+                    label.on_hover_text(look.tr(inputs::OPEN_TO_ALL));
                 }
                 Some((_, at)) => drop(Label::new(&at, look.palette.text).number().ui(ui)),
                 None => drop(kit::edit_ui(ui, name, name, typed)),
@@ -282,15 +284,15 @@ impl PlaceField {
 fn counts_ui(ui: &mut Ui, pane: &Pane<'_>, counts: impl IntoIterator<Item = (Text, u64)>) {
     let look = pane.look;
     let counts = counts.into_iter();
-    let counts = counts.map(|(text, count)| look.pair(look.say(text), &count.to_string()));
+    let counts = counts.map(|(text, count)| look.pair(look.tr(text), &count.to_string()));
     let counts: Vec<String> = counts.collect();
-    kit::say_ui(ui, &counts.join("  ·  "), look.palette.muted);
+    kit::small_text_ui(ui, &counts.join("  ·  "), look.palette.muted);
 }
 
 /// Reason why there is nothing to follow: no sender. `None` if there is one.
 fn silence(pane: &Pane<'_>, owner: Option<Owner>) -> Option<&'static str> {
     let is_silent = owner.is_none();
-    is_silent.then(|| pane.look.say(inputs::NOBODY_SENDS))
+    is_silent.then(|| pane.look.tr(inputs::NOBODY_SENDS))
 }
 
 fn client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &GatewayClient) {
@@ -301,7 +303,7 @@ fn client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &GatewayClient) {
     ui.horizontal_wrapped(|ui| {
         Label::new(&address, look.palette.text).number().ui(ui);
         if holds {
-            Label::new(look.say(inputs::MOVES), look.palette.accent).ui(ui);
+            Label::new(look.tr(inputs::MOVES), look.palette.accent).ui(ui);
         } else {
             grant_client_ui(ui, pane, client);
         }
@@ -310,8 +312,8 @@ fn client_ui(ui: &mut Ui, pane: &mut Pane<'_>, client: &GatewayClient) {
         inputs::CLIENT,
         &[&client.hz, &client.reads, &client.writes, &client.refused],
     );
-    kit::say_ui(ui, &words, look.palette.muted);
+    kit::small_text_ui(ui, &words, look.palette.muted);
     if let Some(refusal) = &client.refusal {
-        kit::say_ui(ui, &errors::write_refusal(look, refusal), look.palette.warn);
+        kit::small_text_ui(ui, &errors::write_refusal(look, refusal), look.palette.warn);
     }
 }

@@ -7,7 +7,7 @@ use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::inputs::mirror::MirrorScale;
 use crate::ui::inputs::owner::leader_name;
-use crate::ui::inputs::source::{Switch, grant_ui, state_ui, switch_ui};
+use crate::ui::inputs::source::{CardSwitch, grant_ui, state_ui, switch_ui};
 use crate::ui::kit::{self, Label, NumberField, Pane};
 use crate::ui::text::{Text, inputs};
 use egui::Ui;
@@ -22,7 +22,7 @@ pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let is_led = state.hand().leader().is_some();
     let first = others(state).into_iter().next();
     let first = first.map(|(leader, _)| (leader, MirrorScale::WHOLE));
-    let switch = Switch {
+    let switch = CardSwitch {
         title: inputs::MIRROR,
         turns_on: inputs::WATCH,
         is_on: mirror.is_some(),
@@ -33,18 +33,18 @@ pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let choice = ui.add_enabled_ui(!is_led, |ui| {
         choice_ui(ui, pane, mirror);
     });
-    let taken = look.say(inputs::TAKEN);
+    let taken = look.tr(inputs::TAKEN);
     choice.response.on_disabled_hover_text(taken);
     let words = match mirror {
-        None => look.say(inputs::OFF).to_owned(),
+        None => look.tr(inputs::OFF).to_owned(),
         Some(mirror) if mirror.view.owner(state.now).is_some() => {
             let rate = format!("{:.0}", mirror.view.rate_hz);
             look.fill(inputs::ANSWERS, &[&rate])
         }
-        Some(_) => look.say(inputs::LEADER_SILENT).to_owned(),
+        Some(_) => look.tr(inputs::LEADER_SILENT).to_owned(),
     };
     state_ui(ui, pane, None, &words);
-    let missing = missing(state, mirror).map(|text| look.say(text));
+    let missing = missing(state, mirror).map(|text| look.tr(text));
     grant_ui(ui, pane, InputSource::Mirror, missing);
 }
 
@@ -69,14 +69,14 @@ fn choice_ui(ui: &mut Ui, pane: &mut Pane<'_>, mirror: Option<&HandMirror>) {
     ui.horizontal(|ui| {
         Label::muted(look, inputs::LEADER).cell_ui(ui, NAME);
         ui.spacing_mut().combo_width = ui.available_width();
-        is_new = kit::choose_ui(ui, look.say(inputs::LEADER), &mut leader, &all);
+        is_new = kit::choose_ui(ui, look.tr(inputs::LEADER), &mut leader, &all);
     });
     let typed = ui.horizontal(|ui| {
         let text = inputs::MIRROR_SCALE;
         Label::muted(look, text).cell_ui(ui, NAME);
         let [least, most] = MirrorScale::PERCENT.map(f64::from);
-        let reason = mirror.is_none().then(|| look.say(inputs::CHOOSE_LEADER));
-        let field = NumberField::new(look.say(text), look.tip(text), least..=most);
+        let reason = mirror.is_none().then(|| look.tr(inputs::CHOOSE_LEADER));
+        let field = NumberField::new(look.tr(text), look.tip(text), least..=most);
         let field = field.disabled(reason);
         field.whole_ui(ui, pane, Some(scale.percent()))
     });

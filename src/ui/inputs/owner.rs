@@ -22,7 +22,7 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             let (words, color) = match owner {
                 Some(owner) => (owner_words(pane, owner), look.palette.accent),
                 None => {
-                    let nobody = look.say(inputs::NOBODY_OUTSIDE);
+                    let nobody = look.tr(inputs::NOBODY_OUTSIDE);
                     (nobody.to_owned(), look.palette.text)
                 }
             };
@@ -34,7 +34,7 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 Label::new(&words, look.palette.muted).small().ui(ui);
             }
             if owner.is_some() {
-                let button = Button::said(look, inputs::TAKE_BACK).large();
+                let button = Button::text(look, inputs::TAKE_BACK).large();
                 let button = button.weight(Weight::Strong);
                 button.on_click(ui, pane, Action::Input(InputAction::TakeBack));
             }
@@ -52,7 +52,7 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             }
         });
         if pane.state.settings.hold_to_run {
-            kit::say_ui(ui, look.tip(inputs::HOLD_TO_RUN), look.palette.muted);
+            kit::small_text_ui(ui, look.tip(inputs::HOLD_TO_RUN), look.palette.muted);
         }
     });
 }
@@ -63,7 +63,7 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     Label::muted(look, inputs::LIMITS).ui(ui);
     let mut field = |ui: &mut Ui, text, (from, to): (u16, u16), now: u16| {
         Label::muted(look, text).ui(ui);
-        let field = NumberField::new(look.say(text), look.tip(text), from.into()..=to.into());
+        let field = NumberField::new(look.tr(text), look.tip(text), from.into()..=to.into());
         let typed = field.whole_ui(ui, pane, Some(f64::from(now)))?;
         u16::try_from(typed).ok()
     };
@@ -105,14 +105,14 @@ pub(crate) fn owner_words(pane: &Pane<'_>, owner: Owner) -> String {
     let view = hand.running.following().and_then(|run| run.view);
     let words = match view.and_then(|view| view.heat) {
         Some(heat) => {
-            let joint = look.say(words::dof(heat.dof));
+            let joint = look.tr(words::dof(heat.dof));
             format!("{words} · {joint} {} °C", heat.celsius)
         }
         None => words,
     };
     match view {
         Some(view) if view.phase != FollowPhase::Following => {
-            format!("{words} · {}", look.say(inputs::phase(view.phase)))
+            format!("{words} · {}", look.tr(inputs::phase(view.phase)))
         }
         _ => words,
     }

@@ -10,7 +10,7 @@ use crate::inputs::pad::source::PadView;
 use crate::ui::hand::tile::pose_ui;
 use crate::ui::inputs::pad_picture::{PadShown, PoseName, pad_picture_ui};
 use crate::ui::inputs::pad_table::pad_table_ui;
-use crate::ui::inputs::source::{Switch, grant_ui, state_ui, switch_ui};
+use crate::ui::inputs::source::{CardSwitch, grant_ui, state_ui, switch_ui};
 use crate::ui::kit::{self, Look, Pane};
 use crate::ui::text::{errors, inputs};
 use crate::ui::theme;
@@ -37,7 +37,7 @@ impl PadCard {
         kit::card_ui(ui, look, |ui| {
             let name = view.name.as_deref().unwrap_or_default();
             kit::head_ui(ui, look, name, |_| ());
-            kit::say_ui(ui, look.say(inputs::PAD_CHANGE), look.palette.muted);
+            kit::small_text_ui(ui, look.tr(inputs::PAD_CHANGE), look.palette.muted);
             let (map, poses) = (pane.state.settings.pad_map(), pose_names(pane.state, look));
             let shown = PadShown {
                 state: Some(&view.state),
@@ -64,7 +64,7 @@ impl PadCard {
 pub(crate) fn pad_source_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let view = pane.hand().inputs.pad_view.as_ref();
-    let switch = Switch {
+    let switch = CardSwitch {
         title: inputs::PAD,
         turns_on: inputs::READ_PAD,
         is_on: view.is_some(),
@@ -74,15 +74,15 @@ pub(crate) fn pad_source_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     switch_ui(ui, pane, switch);
     let name = view.and_then(|view| view.name.as_ref());
     let words = match (view, name) {
-        (None, _) => look.say(inputs::PAD_OFF).to_owned(),
+        (None, _) => look.tr(inputs::PAD_OFF).to_owned(),
         (Some(_), Some(name)) => name.clone(),
         (Some(view), None) => match &view.trouble {
             Some(trouble) => errors::pad(look, trouble),
-            None => look.say(inputs::PLUG_IN).to_owned(),
+            None => look.tr(inputs::PLUG_IN).to_owned(),
         },
     };
     state_ui(ui, pane, Some(InputKind::Pad), &words);
-    let missing = name.is_none().then(|| look.say(inputs::NONE));
+    let missing = name.is_none().then(|| look.tr(inputs::NONE));
     grant_ui(ui, pane, InputSource::Pad, missing);
 }
 
@@ -114,9 +114,9 @@ fn dry_run_ui(ui: &mut Ui, pane: &Pane<'_>, view: &PadView) {
         Some(f32::from(raw) / f32::from(Angle::MAX.get()))
     });
     ui.vertical(|ui| {
-        kit::say_ui(ui, look.say(inputs::DRY_RUN), look.palette.muted);
+        kit::small_text_ui(ui, look.tr(inputs::DRY_RUN), look.palette.muted);
         let (rect, response) = ui.allocate_exact_size(vec2(room, HAND), Sense::hover());
         pose_ui(ui, look, rect, &shares);
-        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, look.say(inputs::DRY_RUN)));
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, look.tr(inputs::DRY_RUN)));
     });
 }

@@ -74,7 +74,7 @@ impl PadShown<'_> {
     /// Action of a control as text.
     pub(crate) fn does(&self, look: Look, action: &PadAction) -> String {
         let PadAction::Pose(name) = action else {
-            return look.say(inputs::action(action)).to_owned();
+            return look.tr(inputs::action(action)).to_owned();
         };
         match self.poses.iter().find(|pose| pose.name == *name) {
             Some(pose) => look.fill(inputs::POSE, &[&pose.shown]),
@@ -172,11 +172,11 @@ impl PadRows {
 /// Sets the accessible name and tooltip of a control from its action.
 fn named(response: &Response, look: Look, control: PadControl, shown: &PadShown<'_>) -> Response {
     let action = shown.map.action(control);
-    let name = look.say(inputs::control(control));
+    let name = look.tr(inputs::control(control));
     let words = look.pair(name, &shown.does(look, action));
     let is_chosen = shown.chosen == Some(control);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &words));
-    let tips = [look.tip(inputs::action(action)), look.say(inputs::CHANGE)];
+    let tips = [look.tip(inputs::action(action)), look.tr(inputs::CHANGE)];
     let tips = [&[words.as_str()][..], &tips].concat().join("\n");
     let response = response.clone().on_hover_text(tips.replace("\n\n", "\n"));
     response.on_hover_cursor(egui::CursorIcon::PointingHand)
@@ -206,13 +206,13 @@ impl PadRow {
             .rect(badge, round, ink.fill, ink.edge, StrokeKind::Inside);
         let badge_sign = Label::new(sign(control), ink.text).center();
         badge_sign.paint(ui, badge);
-        let (said, amount) = rest.split_left_right_at_x(rest.right() - AMOUNT);
-        let said = said.shrink2(vec2(theme::GAP, 0.0));
+        let (text, amount) = rest.split_left_right_at_x(rest.right() - AMOUNT);
+        let text = text.shrink2(vec2(theme::GAP, 0.0));
         let color = match shown.state {
             Some(_) => palette.text,
             None => palette.muted,
         };
-        Label::new(&self.words, color).paint(ui, said);
+        Label::new(&self.words, color).paint(ui, text);
         let percent = format!("{:.0} %", 100.0 * shown.amount(control));
         if control.kind() != ControlKind::Button && shown.state.is_some() {
             let label = Label::new(&percent, palette.muted).number().right();
@@ -286,7 +286,7 @@ impl Ink {
 /// Draws the gamepad itself.
 fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<PadControl> {
     let (rect, _) = ui.allocate_exact_size(CANVAS.size() * scale, Sense::hover());
-    let drawing = Drawing {
+    let drawing = PadPainter {
         ui,
         look,
         shown,
@@ -311,7 +311,7 @@ fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<P
     }
     if shown.state.is_none() {
         let (at, center) = (drawing.at(pos2(0.0, -115.0)), Align2::CENTER_CENTER);
-        let (words, font) = (look.say(inputs::NONE), theme::title());
+        let (words, font) = (look.tr(inputs::NONE), theme::title());
         ui.painter()
             .text(at, center, words, font, look.palette.muted);
     }
@@ -343,7 +343,7 @@ fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<P
 }
 
 /// Position and content of the drawing.
-struct Drawing<'a> {
+struct PadPainter<'a> {
     ui: &'a Ui,
     look: Look,
     shown: &'a PadShown<'a>,
@@ -351,7 +351,7 @@ struct Drawing<'a> {
     scale: f32,
 }
 
-impl Drawing<'_> {
+impl PadPainter<'_> {
     fn at(&self, at: Pos2) -> Pos2 {
         self.origin + at.to_vec2() * self.scale
     }

@@ -24,7 +24,7 @@ pub(crate) fn pad_table_ui(ui: &mut Ui, look: Look, shown: &PadShown<'_>) -> Opt
             } else {
                 look.palette.text
             };
-            Label::new(look.say(inputs::control(control)), color).cell_ui(ui, NAME);
+            Label::new(look.tr(inputs::control(control)), color).cell_ui(ui, NAME);
             action_ui(ui, look, control, shown)
         });
         changed = changed.or(row.inner);
@@ -51,13 +51,13 @@ fn action_ui(ui: &mut Ui, look: Look, control: PadControl, shown: &PadShown<'_>)
     });
     let choices: Vec<(PadAction, String)> = choices.collect();
     let mut action = before.clone();
-    let name = look.say(inputs::control(control));
+    let name = look.tr(inputs::control(control));
     let chosen = ui.add_enabled_ui(!before.is_single(), |ui| {
         choose_ui(ui, name, &mut action, &choices)
     });
     chosen
         .response
-        .on_disabled_hover_text(look.say(inputs::SINGLE));
+        .on_disabled_hover_text(look.tr(inputs::SINGLE));
     if chosen.inner {
         shown.map.with(control, action).ok()
     } else {

@@ -11,7 +11,7 @@ use crate::ui::theme;
 use egui::{Color32, Ui};
 
 /// A switch in the heading of a card.
-pub(crate) struct Switch {
+pub(crate) struct CardSwitch {
     /// Name of the card, with its description as tip.
     pub(crate) title: Text,
     /// Effect of turning it on.
@@ -23,19 +23,19 @@ pub(crate) struct Switch {
 }
 
 /// Draws the name of a card with its switch, and its description.
-pub(crate) fn switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, switch: Switch) {
+pub(crate) fn switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, switch: CardSwitch) {
     let look = pane.look;
     let wrong = switch.wrong.filter(|_| !switch.is_on);
-    let wrong = wrong.map(|wrong| look.say(wrong));
+    let wrong = wrong.map(|wrong| look.tr(wrong));
     let reason = pane.recorded().or(no_hand(pane)).or(wrong);
     let tip = if switch.is_on {
         inputs::ON
     } else {
         switch.turns_on
     };
-    let button = Button::new(look.say(switch.turns_on), look.tip(tip));
+    let button = Button::new(look.tr(switch.turns_on), look.tip(tip));
     let button = button.selected(switch.is_on).disabled(reason);
-    let title = look.say(switch.title);
+    let title = look.tr(switch.title);
     let pressed = kit::head_ui(ui, look, title, |ui| button.toggle_ui(ui, look).clicked());
     if pressed {
         pane.actions.push(Action::Input(switch.action));
@@ -48,7 +48,7 @@ pub(crate) fn about_ui(ui: &mut Ui, pane: &Pane<'_>, title: Text) {
     let look = pane.look;
     ui.scope(|ui| {
         ui.set_min_height(2.0 * theme::TEXT_LINE);
-        kit::say_ui(ui, look.tip(title), look.palette.muted);
+        kit::small_text_ui(ui, look.tip(title), look.palette.muted);
     });
 }
 
@@ -80,11 +80,11 @@ pub(crate) fn grant_ui(
         InputSource::Mirror => (inputs::MIRROR, owner == Some(Owner::Mirror)),
     };
     if moves {
-        Label::new(look.say(inputs::MOVES), look.palette.accent).ui(ui);
+        Label::new(look.tr(inputs::MOVES), look.palette.accent).ui(ui);
         return;
     }
     let grant = Grant {
-        name: look.say(name),
+        name: look.tr(name),
         action: InputAction::Grant(source),
         missing,
     };
@@ -116,11 +116,11 @@ impl Grant<'_> {
         let refusal = refusal.filter(|reason| *reason != ArmRefusal::LetGo);
         let refusal = refusal.map(|reason| words::refusal(look, reason));
         let owner = hand.connection.outside_owner();
-        let taken = owner.map(|_| look.say(inputs::TAKEN));
+        let taken = owner.map(|_| look.tr(inputs::TAKEN));
         let reason = no_hand(pane).or(taken).or(self.missing);
         let reason = reason.map(ToOwned::to_owned).or(refusal);
-        let name = look.pair(look.say(inputs::GRANT), self.name);
-        let button = Button::said(look, inputs::GRANT)
+        let name = look.pair(look.tr(inputs::GRANT), self.name);
+        let button = Button::text(look, inputs::GRANT)
             .named(&name)
             .weight(Weight::Strong)
             .large();
@@ -132,5 +132,5 @@ impl Grant<'_> {
 /// Reason why nothing can be opened: no hand. `None` if the hand is live.
 fn no_hand(pane: &Pane<'_>) -> Option<&'static str> {
     let is_live = pane.hand().connection.status.state.is_live();
-    (!is_live).then(|| pane.look.say(inputs::NO_HAND))
+    (!is_live).then(|| pane.look.tr(inputs::NO_HAND))
 }

@@ -101,7 +101,7 @@ fn look(theme: Theme, language: Language) -> Look {
     }
 }
 
-struct Shown {
+struct PadDisplay {
     state: Option<PadState>,
     map: PadMap,
     chosen: Option<PadControl>,
@@ -109,7 +109,7 @@ struct Shown {
     poses: Vec<PoseName>,
 }
 
-impl Shown {
+impl PadDisplay {
     fn with(state: Option<PadState>) -> Self {
         Self {
             state,
@@ -131,7 +131,7 @@ impl Shown {
     }
 }
 
-fn both_ui(ui: &mut Ui, look: Look, shown: &mut Shown) {
+fn both_ui(ui: &mut Ui, look: Look, shown: &mut PadDisplay) {
     let (mut chosen, mut changed) = (None, None);
     card_ui(ui, look, |ui| {
         chosen = pad_picture_ui(ui, look, &shown.pad())
@@ -145,10 +145,10 @@ fn both_ui(ui: &mut Ui, look: Look, shown: &mut Shown) {
     }
 }
 
-fn harness(shown: Shown) -> Harness<'static, Shown> {
+fn harness(shown: PadDisplay) -> Harness<'static, PadDisplay> {
     let look = look(Theme::Dark, Language::En);
     let mut installed = false;
-    let frame = move |ui: &mut Ui, shown: &mut Shown| {
+    let frame = move |ui: &mut Ui, shown: &mut PadDisplay| {
         if !std::mem::replace(&mut installed, true) {
             // Fonts hold from the second frame on.
             return window::install(ui.ctx(), Theme::Dark, Language::En);
@@ -164,7 +164,7 @@ fn harness(shown: Shown) -> Harness<'static, Shown> {
 
 #[test]
 fn a_control_is_chosen_by_its_picture_and_by_its_row() {
-    let mut harness = harness(Shown::with(Some(state(&[]))));
+    let mut harness = harness(PadDisplay::with(Some(state(&[]))));
     for (name, control) in [
         ("Right trigger: Close fingers", PadControl::RightTrigger),
         ("Left stick: Choose fingers", PadControl::LeftStick),
@@ -189,7 +189,7 @@ fn a_control_is_chosen_by_its_picture_and_by_its_row() {
 
 #[test]
 fn a_pose_that_is_not_in_the_library_is_told_and_stays_the_choice() {
-    let mut shown = Shown::with(None);
+    let mut shown = PadDisplay::with(None);
     shown.poses.retain(|pose| pose.name != "Pinch");
     let harness = harness(shown);
     let gone = "A (bottom): Pose Pinch (not in the library)";
@@ -202,7 +202,7 @@ fn a_pose_that_is_not_in_the_library_is_told_and_stays_the_choice() {
 
 #[test]
 fn everything_in_the_picture_can_be_hit_and_nothing_lies_on_another() {
-    let harness = harness(Shown::with(Some(busy())));
+    let harness = harness(PadDisplay::with(Some(busy())));
     let all = PadControl::ALL.map(|control| {
         let shown = harness.state().pad();
         let does = shown.does(look(Theme::Dark, Language::En), shown.map.action(control));
@@ -226,8 +226,8 @@ fn everything_in_the_picture_can_be_hit_and_nothing_lies_on_another() {
 
 #[test]
 fn an_action_is_changed_in_the_list_and_stop_only_changes_its_place() {
-    let mut harness = harness(Shown::with(Some(state(&[]))));
-    let press = |harness: &mut Harness<'static, Shown>, name: &str, choice: &str| {
+    let mut harness = harness(PadDisplay::with(Some(state(&[]))));
+    let press = |harness: &mut Harness<'static, PadDisplay>, name: &str, choice: &str| {
         harness
             .get_by_role_and_label(egui::accesskit::Role::ComboBox, name)
             .click();
@@ -261,7 +261,7 @@ fn the_picture_is_drawn_where_somebody_wants_to_see_it() {
         ("none", None),
     ] {
         for (language, theme) in [(Language::En, Theme::Dark), (Language::Zh, Theme::Light)] {
-            let mut shown = Shown::with(state.clone());
+            let mut shown = PadDisplay::with(state.clone());
             if language == Language::Zh {
                 shown.poses = poses();
                 shown.chosen = Some(PadControl::RightStick);

@@ -49,7 +49,7 @@ impl JointsView {
             let room = ui.available_height() - theme::CONTROL - theme::STEP - below;
             let fits = room >= 6.0 * height(line, true);
             let each = self.each.unwrap_or(fits);
-            let head = look.say(main::JOINTS);
+            let head = look.tr(main::JOINTS);
             kit::head_ui(ui, look, head, |ui| self.head_ui(ui, pane, each));
             let lines = if each { 4.0 } else { 2.0 };
             let line = ((room / 6.0 - theme::GAP) / lines).clamp(line, LINE_MAX.max(line));
@@ -75,17 +75,17 @@ impl JointsView {
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, each: bool) {
         let look = pane.look;
         let unit = pane.state.settings.angle_unit;
-        let text = look.say(main::angle_unit(unit));
-        let button = Button::new(text, look.say(main::UNIT_TIP))
-            .named(look.say(main::UNIT_NAME))
+        let text = look.tr(main::angle_unit(unit));
+        let button = Button::new(text, look.tr(main::UNIT_TIP))
+            .named(look.tr(main::UNIT_NAME))
             .weight(Weight::Quiet);
         button.on_click(ui, pane, Action::AngleUnit(unit.next()));
-        let button = Button::said(look, main::LINK_FINGERS);
+        let button = Button::text(look, main::LINK_FINGERS);
         let button = button.icon(theme::LINKED).choice(self.linked);
         if button.ui(ui, look).clicked() {
             self.toggle_link();
         }
-        let button = Button::said(look, main::EACH);
+        let button = Button::text(look, main::EACH);
         if button.icon(theme::TUNE).choice(each).ui(ui, look).clicked() {
             self.each = Some(!each);
         }
@@ -96,7 +96,7 @@ impl JointsView {
         let refusal = hand.arm_refusal(pane.state.now);
         // A new user needs to know the first step; if arming is refused, the header shows the reason.
         if is_live && !hand.connection.is_armed() && refusal.is_none() {
-            let label = Label::new(look.say(window::ARM_FIRST), look.palette.accent);
+            let label = Label::new(look.tr(window::ARM_FIRST), look.palette.accent);
             label.small().ui(ui);
         }
     }
@@ -109,11 +109,11 @@ pub(crate) fn age_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let asked = angle.map(|angle| angle.asked);
     let (text, color) = match pane.freshness(asked) {
         Freshness::Live => return,
-        Freshness::Unknown => (look.say(main::NEVER_READ).to_owned(), look.palette.muted),
+        Freshness::Unknown => (look.tr(main::NEVER_READ).to_owned(), look.palette.muted),
         Freshness::Stale => {
             let age = asked.map(|asked| pane.state.now.since(asked));
             let age = format::age(age.unwrap_or_default());
-            (look.told(main::AGE, age), look.palette.warn)
+            (look.tr_with(main::AGE, age), look.palette.warn)
         }
     };
     let label = Label::new(&text, color).small().ui(ui);
@@ -130,7 +130,7 @@ fn presets_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     ];
     ui.columns(presets.len(), |columns| {
         for (ui, (text, preset)) in columns.iter_mut().zip(presets) {
-            let button = Button::said(look, text).large().disabled(not_armed);
+            let button = Button::text(look, text).large().disabled(not_armed);
             kit::wide_ui(ui, |ui| {
                 button.on_click(ui, pane, Action::Preset(preset));
             });

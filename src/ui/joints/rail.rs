@@ -15,9 +15,9 @@ use egui::{Align, Frame, Layout, Ui, vec2};
 pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
     let look = pane.look;
     kit::full_card_ui(ui, look, |ui| {
-        let title = look.say(main::JOINTS);
+        let title = look.tr(main::JOINTS);
         if can_open {
-            let name = look.told(window::OPEN, title);
+            let name = look.tr_with(window::OPEN, title);
             let button = Button::new(title, look.tip(window::OPEN)).named(&name);
             let pressed = kit::wide_ui(ui, |ui| button.ui(ui, look));
             if pressed.clicked() {

@@ -20,14 +20,14 @@ impl JointRow {
     pub(crate) fn new(dof: Dof, pane: &Pane<'_>) -> Self {
         Self {
             dof,
-            name: pane.look.say(words::dof(dof)),
+            name: pane.look.tr(words::dof(dof)),
             color: pane.look.palette.dof[dof],
         }
     }
 
     /// Accessible name of one of its parts.
     pub(crate) fn named(&self, pane: &Pane<'_>, what: Text) -> String {
-        format!("{} {}", self.name, pane.look.say(what))
+        format!("{} {}", self.name, pane.look.tr(what))
     }
 
     /// Widget id of one of its parts.

@@ -111,19 +111,19 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
 /// Draws lamp and text of the drive: a click explains them.
 fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     let rect = cell(ui, ui.available_width());
-    let said = DriveWords::of(pane, row.dof);
-    row.explain_ui(ui, pane, rect, &said);
+    let drive = DriveWords::of(pane, row.dof);
+    row.explain_ui(ui, pane, rect, &drive);
     let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
-    kit::lamp(ui, lamp, said.lamp);
+    kit::lamp(ui, lamp, drive.lamp);
     let name = row.named(pane, main::STATUS);
-    let title = if each { &said.title } else { &said.short };
-    let label = Label::new(title, said.text).small().named(&name);
+    let title = if each { &drive.title } else { &drive.short };
+    let label = Label::new(title, drive.text).small().named(&name);
     label.put(ui, rect.with_min_x(rect.left() + 17.0));
 }
 
 impl JointRow {
     /// Turns the area of a drive's text into a button that opens the explanation.
-    pub(crate) fn explain_ui(&self, ui: &Ui, pane: &mut Pane<'_>, rect: Rect, said: &DriveWords) {
+    pub(crate) fn explain_ui(&self, ui: &Ui, pane: &mut Pane<'_>, rect: Rect, drive: &DriveWords) {
         let name = self.named(pane, notices::EXPLAIN);
         let response = ui.interact(rect, self.id("explain"), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
@@ -132,7 +132,7 @@ impl JointRow {
             pane.open(ViewRequest::Drive(self.dof));
         }
         let tip = pane.look.tip(notices::EXPLAIN);
-        let (cause, advice) = said.words.map_or(("", ""), |it| (it.cause, it.advice));
+        let (cause, advice) = drive.words.map_or(("", ""), |it| (it.cause, it.advice));
         response
             .on_hover_text(format!("{cause}\n{advice}\n{tip}").trim())
             .on_hover_cursor(CursorIcon::PointingHand);
@@ -145,8 +145,8 @@ fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     let joint = hand.controls.joints[row.dof];
     let one = |caption, wanted: Option<i16>, held: i16| {
         let wanted = format::whole(wanted.map(i64::from), 0);
-        let held = look.told(main::HAND_HOLDS, held);
-        format!("{} {wanted} · {held}", look.say(caption))
+        let held = look.tr_with(main::HAND_HOLDS, held);
+        format!("{} {wanted} · {held}", look.tr(caption))
     };
     let held = hand.held_otherwise(row.dof);
     let speed = |held: Speed| one(main::SPEED, joint.speed.map(Speed::get), held.get());
@@ -158,7 +158,7 @@ fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
         return ui.skip_ahead_auto_ids(1);
     }
     let all = all.join("\n");
-    let label = Label::new(look.say(main::HAND_DIFFERS), look.palette.warn).small();
+    let label = Label::new(look.tr(main::HAND_DIFFERS), look.palette.warn).small();
     let label = label.named(&format!("{} {all}", row.name)).ui(ui);
     label.on_hover_text(format!("{all}\n{}", look.tip(main::HAND_DIFFERS)));
 }
@@ -182,7 +182,7 @@ fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     let peak_g = format!("{:.0}", expected.over_g);
     let exceeded = look.fill(main::IMPACT, &[&speed, &force, &peak_g]);
     let measured = tune::measured_on(look, &expected.on);
-    let tip = look.say(main::IMPACT_TIP);
+    let tip = look.tr(main::IMPACT_TIP);
     response.on_hover_text(format!("{exceeded}\n{measured}\n{tip}"));
 }
 
@@ -195,7 +195,7 @@ fn lock_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
         (theme::UNLOCKED, main::LOCK_TIP)
     };
     let name = row.named(pane, main::NAME_LOCK);
-    let mut button = Button::new(&name, look.say(tip)).icon(icon).choice(locked);
+    let mut button = Button::new(&name, look.tr(tip)).icon(icon).choice(locked);
     button.height = ui.spacing().interact_size.y;
     button.on_click(ui, pane, Action::Lock(row.dof, !locked));
 }

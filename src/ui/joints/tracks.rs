@@ -29,13 +29,13 @@ impl TrackRow<'_> {
     /// Draws it. Returns the value that the user set in this frame.
     fn ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<i16> {
         let look = pane.look;
-        let caption = Label::new(look.say(self.caption), look.palette.muted);
+        let caption = Label::new(look.tr(self.caption), look.palette.muted);
         let place = cell(ui, 40.0);
         caption.small().put(ui, place);
         let width = ui.available_width() - theme::FIELD - theme::GAP - self.after;
         let place = cell(ui, width);
         let moved = self.track.put(ui, look, place, self.id);
-        let (scale, tip) = (self.scale, look.say(main::NUMBER_TIP));
+        let (scale, tip) = (self.scale, look.tr(main::NUMBER_TIP));
         let number = NumberField::new(self.number_name, tip, scale.low..=scale.high)
             .needs_enter()
             .disabled(self.track.disabled)
@@ -54,7 +54,7 @@ impl TrackRow<'_> {
         };
         let (scale, decimals) = (self.scale, self.scale.decimals);
         let shown = |raw| format!("{:.decimals$}", scale.shown(raw));
-        let text = look.told(main::HAND_HOLDS, shown(other));
+        let text = look.tr_with(main::HAND_HOLDS, shown(other));
         let wanted = self.track.target.map_or_else(|| UNKNOWN.into(), shown);
         let name = format!("{} {wanted} · {text}", self.number_name);
         let width = theme::OTHER.min(track.width() / 2.0);
@@ -62,7 +62,7 @@ impl TrackRow<'_> {
         let fits = |number: &String| kit::text_width(ui, number, theme::small()) <= width;
         let number = || Some(shown(other)).filter(fits);
         let short = (width < theme::OTHER)
-            .then(|| number().unwrap_or_else(|| look.say(main::HAND_DIFFERS).into()));
+            .then(|| number().unwrap_or_else(|| look.tr(main::HAND_DIFFERS).into()));
         let place = match self.track.target {
             Some(target) if target > self.track.max / 2 => track.with_max_x(track.left() + width),
             _ => track.with_min_x(track.right() - width),
@@ -191,7 +191,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
 
 /// Draws force threshold and speed of all joints; values that differ between joints are shown as unknown.
 pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let name = Label::said(pane.look, main::EVERY);
+    let name = Label::text(pane.look, main::EVERY);
     ui.horizontal(|ui| {
         name.ui(ui);
         ui.columns(2, |columns| {
@@ -207,13 +207,13 @@ pub(crate) fn all_joints_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 /// Reason while a series runs: each trial sets its own force and speed, so the user's settings are not in force.
 fn series(pane: &Pane<'_>) -> Option<&'static str> {
     let runs = pane.hand().runs_series();
-    runs.then(|| pane.look.say(main::SERIES_RUNS))
+    runs.then(|| pane.look.tr(main::SERIES_RUNS))
 }
 
 fn named(pane: &Pane<'_>, row: Option<&JointRow>, what: Text) -> String {
-    let all = pane.look.say(main::EVERY);
+    let all = pane.look.tr(main::EVERY);
     let name = row.map_or(all, |row| row.name);
-    format!("{name} {}", pane.look.say(what))
+    format!("{name} {}", pane.look.tr(what))
 }
 
 fn id_of(row: Option<&JointRow>, part: &'static str) -> Id {
@@ -232,11 +232,11 @@ fn value_of(row: Option<&JointRow>, values: PerDof<Option<i16>>) -> Option<i16> 
 }
 
 fn staged(pane: &Pane<'_>, tip: Text) -> String {
-    let tip = pane.look.say(tip);
+    let tip = pane.look.tr(tip);
     if pane.hand().connection.is_armed() {
         return tip.into();
     }
-    format!("{tip}\n{}", pane.look.say(main::STAGED))
+    format!("{tip}\n{}", pane.look.tr(main::STAGED))
 }
 
 /// Mapping of a register's values 0..=max to displayed numbers.

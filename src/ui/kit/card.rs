@@ -29,19 +29,19 @@ pub(crate) enum ButtonRole {
 
 /// One button of a card. Pressing it does not close the card, which is shown for as long as its cause lasts.
 #[derive(Debug, Clone)]
-pub(crate) struct Choice {
+pub(crate) struct CardButton {
     text: Text,
-    manner: ButtonRole,
+    role: ButtonRole,
     disabled: Option<Text>,
     does: Action,
 }
 
-impl Choice {
+impl CardButton {
     /// A button that requests an action.
-    pub(crate) const fn new(text: Text, manner: ButtonRole, does: Action) -> Self {
+    pub(crate) const fn new(text: Text, role: ButtonRole, does: Action) -> Self {
         Self {
             text,
-            manner,
+            role,
             disabled: None,
             does,
         }
@@ -72,26 +72,26 @@ enum CardLine {
 }
 
 /// Text of a card: a translated sentence, or a composed string.
-pub(crate) trait Sayable {
+pub(crate) trait IntoText {
     /// Text in the window's language.
-    fn said(self, look: Look) -> String;
+    fn into_text(self, look: Look) -> String;
 }
 
-impl Sayable for Text {
-    fn said(self, look: Look) -> String {
-        look.say(self).to_owned()
+impl IntoText for Text {
+    fn into_text(self, look: Look) -> String {
+        look.tr(self).to_owned()
     }
 }
 
-impl Sayable for String {
-    fn said(self, _look: Look) -> String {
+impl IntoText for String {
+    fn into_text(self, _look: Look) -> String {
         self
     }
 }
 
-impl<D: Display> Sayable for (Text, D) {
-    fn said(self, look: Look) -> String {
-        format!("{} {}", look.say(self.0), self.1)
+impl<D: Display> IntoText for (Text, D) {
+    fn into_text(self, look: Look) -> String {
+        format!("{} {}", look.tr(self.0), self.1)
     }
 }
 
@@ -106,15 +106,15 @@ pub(crate) struct Card {
     /// A word that must be typed before any dangerous button is enabled.
     word: Option<&'static str>,
     /// The buttons, the safe one first.
-    choices: Vec<Choice>,
+    choices: Vec<CardButton>,
 }
 
 impl Card {
     /// An empty card.
-    pub(crate) fn new(look: Look, title: impl Sayable) -> Self {
+    pub(crate) fn new(look: Look, title: impl IntoText) -> Self {
         Self {
             look,
-            title: title.said(look),
+            title: title.into_text(look),
             lines: Vec::new(),
             progress: None,
             word: None,
@@ -123,39 +123,39 @@ impl Card {
     }
 
     /// Adds a sentence.
-    pub(crate) fn words(self, said: impl Sayable) -> Self {
-        let said = CardLine::Words(said.said(self.look));
-        self.line(said)
+    pub(crate) fn words(self, text: impl IntoText) -> Self {
+        let line = CardLine::Words(text.into_text(self.look));
+        self.line(line)
     }
 
     /// Adds a less important sentence.
-    pub(crate) fn note(self, said: impl Sayable) -> Self {
-        let said = CardLine::Note(said.said(self.look));
-        self.line(said)
+    pub(crate) fn note(self, text: impl IntoText) -> Self {
+        let line = CardLine::Note(text.into_text(self.look));
+        self.line(line)
     }
 
     /// Adds a warning.
-    pub(crate) fn warning(self, said: impl Sayable) -> Self {
-        let said = CardLine::Warning(said.said(self.look));
-        self.line(said)
+    pub(crate) fn warning(self, text: impl IntoText) -> Self {
+        let line = CardLine::Warning(text.into_text(self.look));
+        self.line(line)
     }
 
     /// Adds a precondition; `None` = not known.
-    pub(crate) fn check(self, is_so: Option<bool>, said: Text) -> Self {
-        let said = CardLine::Check(is_so, said.said(self.look));
-        self.line(said)
+    pub(crate) fn check(self, is_so: Option<bool>, text: Text) -> Self {
+        let line = CardLine::Check(is_so, text.into_text(self.look));
+        self.line(line)
     }
 
     /// Adds the column headings of a table.
     pub(crate) fn head(self, columns: impl IntoIterator<Item = Text>) -> Self {
-        let columns = columns.into_iter().map(|text| text.said(self.look));
+        let columns = columns.into_iter().map(|text| text.into_text(self.look));
         let head = CardLine::Head(columns.collect());
         self.line(head)
     }
 
     /// Adds a table row: its label, then its cells.
-    pub(crate) fn row(self, of: impl Sayable, cells: impl IntoIterator<Item = String>) -> Self {
-        let of = [of.said(self.look)].into_iter();
+    pub(crate) fn row(self, of: impl IntoText, cells: impl IntoIterator<Item = String>) -> Self {
+        let of = [of.into_text(self.look)].into_iter();
         self.line(CardLine::Cells(of.chain(cells).collect()))
     }
 
@@ -165,8 +165,8 @@ impl Card {
     }
 
     /// Sets the progress from 0 to 1, with the current step or the time left.
-    pub(crate) fn progress(mut self, part: f32, said: impl Sayable) -> Self {
-        self.progress = Some((part, said.said(self.look)));
+    pub(crate) fn progress(mut self, part: f32, text: impl IntoText) -> Self {
+        self.progress = Some((part, text.into_text(self.look)));
         self
     }
 
@@ -177,7 +177,7 @@ impl Card {
     }
 
     /// Adds a button, the safe one first.
-    pub(crate) fn choice(mut self, choice: Choice) -> Self {
+    pub(crate) fn choice(mut self, choice: CardButton) -> Self {
         self.choices.push(choice);
         self
     }
@@ -212,7 +212,7 @@ impl CardView {
         let key = (card.title.clone(), card.choices.len());
         let mut choices = card.choices.iter();
         self.informs =
-            !card.choices.is_empty() && choices.all(|choice| choice.manner == ButtonRole::Safe);
+            !card.choices.is_empty() && choices.all(|choice| choice.role == ButtonRole::Safe);
         let is_new = self.shown.as_ref() != Some(&key);
         if is_new {
             self.shown = Some(key);
@@ -293,7 +293,7 @@ impl CardView {
             ui.add(bar.desired_height(6.0));
         }
         if let Some(word) = card.word {
-            let ask = look.told(cards::TYPE, word);
+            let ask = look.tr_with(cards::TYPE, word);
             ui.horizontal(|ui| {
                 Label::new(&ask, palette.text).ui(ui);
                 let field = controls::edit_ui(ui, &ask, "", &mut self.typed);
@@ -314,20 +314,20 @@ impl CardView {
         let (escaped, entered) = (is_pressed(Key::Escape), is_pressed(Key::Enter));
         let mut pressed = None;
         let untyped = card.word.filter(|word| self.typed.trim() != *word);
-        let untyped = untyped.map(|word| look.told(cards::TYPE, word));
+        let untyped = untyped.map(|word| look.tr_with(cards::TYPE, word));
         for (index, choice) in card.choices.iter().enumerate().rev() {
-            let is_danger = choice.manner == ButtonRole::Danger;
-            let reason = choice.disabled.map(|reason| look.say(reason).to_owned());
+            let is_danger = choice.role == ButtonRole::Danger;
+            let reason = choice.disabled.map(|reason| look.tr(reason).to_owned());
             let reason = reason.or_else(|| untyped.clone().filter(|_| is_danger));
-            let button = Button::said(look, choice.text)
-                .weight(weight(choice.manner))
+            let button = Button::text(look, choice.text)
+                .weight(weight(choice.role))
                 .disabled(reason.as_deref())
                 .large()
                 .ui(ui, look);
             if button.clicked() && !(is_danger && entered) {
                 pressed = Some(index);
             }
-            let is_safe = choice.manner == ButtonRole::Safe;
+            let is_safe = choice.role == ButtonRole::Safe;
             if is_new && is_safe && card.word.is_none() {
                 button.request_focus();
             }
@@ -339,8 +339,8 @@ impl CardView {
     }
 }
 
-const fn weight(manner: ButtonRole) -> Weight {
-    match manner {
+const fn weight(role: ButtonRole) -> Weight {
+    match role {
         ButtonRole::Safe | ButtonRole::Plain => Weight::Normal,
         ButtonRole::Main => Weight::Strong,
         ButtonRole::Danger => Weight::Danger,

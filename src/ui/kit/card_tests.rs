@@ -3,7 +3,7 @@
 use crate::app::action::Action;
 use crate::app::params::state::ParamAction;
 use crate::app::settings::{Language, Theme};
-use crate::ui::kit::card::{ButtonRole, Card, CardView, Choice};
+use crate::ui::kit::card::{ButtonRole, Card, CardButton, CardView};
 use crate::ui::kit::controls::{Button, pressed};
 use crate::ui::style::Look;
 use crate::ui::text::{Text, cards};
@@ -44,7 +44,7 @@ fn frame(ui: &mut Ui, room: &mut Room) {
         window::install(ui.ctx(), Theme::Dark, room.language);
         return;
     }
-    let wishes = keys::take(ui, keys::Escape::Stops);
+    let wishes = keys::consume(ui, keys::Escape::Stops);
     room.stops += u32::from(wishes.contains(&Wish::Stop));
     let (bar, body) = ui.max_rect().split_top_bottom_at_y(theme::TOP_BAR);
     let stop = Button::new("STOP", "tip").put(ui, look, bar, Id::unique("stop"));
@@ -72,11 +72,11 @@ fn card() -> Card {
 
 fn titled(title: &'static str) -> Card {
     let decline = Action::Param(ParamAction::Decline);
-    let cancel = Choice::new(cards::CANCEL, ButtonRole::Safe, decline);
-    offering(said(title).choice(cancel))
+    let cancel = CardButton::new(cards::CANCEL, ButtonRole::Safe, decline);
+    offering(card_named(title).choice(cancel))
 }
 
-fn said(title: &'static str) -> Card {
+fn card_named(title: &'static str) -> Card {
     let look = Look {
         palette: Palette::of(Theme::Dark),
         language: Language::En,
@@ -93,11 +93,15 @@ fn said(title: &'static str) -> Card {
 }
 
 fn offering(card: Card) -> Card {
-    let best = Choice::new(text("Best"), ButtonRole::Main, Action::Arm);
-    let danger = Choice::new(cards::TYPE, ButtonRole::Danger, Action::Disarm);
-    card.choice(Choice::new(text("Other"), ButtonRole::Plain, Action::Arm))
-        .choice(best.disabled(Some(text("not yet"))))
-        .choice(danger)
+    let best = CardButton::new(text("Best"), ButtonRole::Main, Action::Arm);
+    let danger = CardButton::new(cards::TYPE, ButtonRole::Danger, Action::Disarm);
+    card.choice(CardButton::new(
+        text("Other"),
+        ButtonRole::Plain,
+        Action::Arm,
+    ))
+    .choice(best.disabled(Some(text("not yet"))))
+    .choice(danger)
 }
 
 fn open(card: Card, size: Vec2) -> Harness<'static, Room> {
@@ -185,7 +189,7 @@ fn escape_stops_and_closes_only_what_is_safe_to_close() {
     let room = harness.state();
     assert_eq!((room.stops, room.card.is_some()), (1, false));
 
-    let mut harness = open(offering(said("Really")), LARGE);
+    let mut harness = open(offering(card_named("Really")), LARGE);
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     let room = harness.state();

@@ -14,7 +14,7 @@ use egui::{
 use egui_extras::{TableBuilder, TableRow};
 
 /// Seconds for which a disabled control shows its reason after a press.
-const TOLD_S: f32 = 3.0;
+const REASON_S: f32 = 3.0;
 /// Maximum characters of a one-line text field.
 const EDIT_MAX: usize = 128;
 
@@ -43,13 +43,13 @@ impl<'a> Label<'a> {
     }
 
     /// A sentence in the window's language.
-    pub(crate) const fn said(look: Look, text: Text) -> Self {
-        Self::new(look.say(text), look.palette.text)
+    pub(crate) const fn text(look: Look, text: Text) -> Self {
+        Self::new(look.tr(text), look.palette.text)
     }
 
     /// A muted sentence.
     pub(crate) const fn muted(look: Look, text: Text) -> Self {
-        Self::new(look.say(text), look.palette.muted)
+        Self::new(look.tr(text), look.palette.muted)
     }
 
     /// A small muted sentence.
@@ -231,8 +231,8 @@ impl<'a> Button<'a> {
     }
 
     /// An ordinary button with a translated text and tip.
-    pub(crate) const fn said(look: Look, text: Text) -> Self {
-        Self::new(look.say(text), look.tip(text))
+    pub(crate) const fn text(look: Look, text: Text) -> Self {
+        Self::new(look.tr(text), look.tip(text))
     }
 
     /// Replaces the tooltip.
@@ -322,14 +322,14 @@ impl<'a> Button<'a> {
     }
 
     /// Draws it, and opens a view on a click.
-    pub(crate) fn opens(self, ui: &mut Ui, pane: &mut Pane<'_>, opens: ViewRequest) {
+    pub(crate) fn navigate(self, ui: &mut Ui, pane: &mut Pane<'_>, request: ViewRequest) {
         if self.ui(ui, pane.look).clicked() {
-            pane.open(opens);
+            pane.open(request);
         }
     }
 
     /// Draws it, and flips `on` on a click.
-    pub(crate) fn flips(self, ui: &mut Ui, look: Look, on: &mut bool) {
+    pub(crate) fn toggle(self, ui: &mut Ui, look: Look, on: &mut bool) {
         *on ^= self.ui(ui, look).clicked();
     }
 
@@ -400,8 +400,8 @@ impl<'a> Button<'a> {
             None => self.tip.to_owned(),
         };
         let disabled = self.disabled;
-        let told = disabled.is_some_and(|reason| told_ui(ui, &response, reason));
-        let response = if tip.is_empty() || told {
+        let is_shown = disabled.is_some_and(|reason| press_reason_ui(ui, &response, reason));
+        let response = if tip.is_empty() || is_shown {
             response
         } else {
             response.on_hover_text(tip)
@@ -452,19 +452,19 @@ impl<'a> Button<'a> {
 }
 
 /// Shows the reason on a press on a disabled control; true while it is shown.
-fn told_ui(ui: &Ui, response: &Response, reason: &str) -> bool {
-    let told = Id::unique("told why not");
+fn press_reason_ui(ui: &Ui, response: &Response, reason: &str) -> bool {
+    let id = Id::unique("told why not");
     let (pressed, now) = ui.input(|input| (input.pointer.primary_pressed(), input.time));
     if pressed && response.contains_pointer() {
-        ui.data_mut(|data| data.insert_temp(told, (response.id, now + f64::from(TOLD_S))));
-        ui.ctx().request_repaint_after_secs(TOLD_S);
+        ui.data_mut(|data| data.insert_temp(id, (response.id, now + f64::from(REASON_S))));
+        ui.ctx().request_repaint_after_secs(REASON_S);
     }
-    let last: Option<(Id, f64)> = ui.data(|data| data.get_temp(told));
-    if last.is_none_or(|(id, until)| id != response.id || now > until) {
+    let last: Option<(Id, f64)> = ui.data(|data| data.get_temp(id));
+    if last.is_none_or(|(shown, until)| shown != response.id || now > until) {
         return false;
     }
     let layer = response.layer_id;
-    let tip = egui::Tooltip::always_open(ui.ctx().clone(), layer, response.id.with(told), response);
+    let tip = egui::Tooltip::always_open(ui.ctx().clone(), layer, response.id.with(id), response);
     tip.show(|ui| ui.label(reason));
     true
 }
@@ -595,8 +595,13 @@ pub(crate) fn edit_ui(ui: &mut Ui, name: &str, hint: &str, text: &mut String) ->
 }
 
 /// Same as [`edit_ui`], with a translated name and hint.
-pub(crate) fn edit_said_ui(ui: &mut Ui, look: Look, said: Text, text: &mut String) -> Response {
-    edit_ui(ui, look.say(said), look.tip(said), text)
+pub(crate) fn translated_edit_ui(
+    ui: &mut Ui,
+    look: Look,
+    label: Text,
+    text: &mut String,
+) -> Response {
+    edit_ui(ui, look.tr(label), look.tip(label), text)
 }
 
 /// A panel of fixed size without a border, with `gap` left free around its content.
@@ -649,7 +654,7 @@ pub(crate) fn progress_ui(ui: &mut Ui, look: Look, name: &str, share: f32) {
 }
 
 /// Small text that wraps.
-pub(crate) fn say_ui(ui: &mut Ui, text: &str, color: Color32) -> Response {
+pub(crate) fn small_text_ui(ui: &mut Ui, text: &str, color: Color32) -> Response {
     Label::new(text, color).small().wrap().ui(ui)
 }
 
@@ -686,11 +691,11 @@ impl Pick {
         for (value, text) in all {
             let own = look.tip(text);
             let tip = if own.is_empty() {
-                look.say(self.tip)
+                look.tr(self.tip)
             } else {
                 own
             };
-            let button = Button::new(look.say(text), tip).choice(before == value);
+            let button = Button::new(look.tr(text), tip).choice(before == value);
             if button.ui(ui, look).clicked() {
                 *chosen = value;
             }
@@ -706,13 +711,13 @@ pub(crate) fn lasting_popup(button: &Response) -> Popup<'_> {
 
 /// A menu entry; true if it was pressed.
 pub(crate) fn entry_ui(ui: &mut Ui, look: Look, text: Text) -> bool {
-    let button = ui.button(look.say(text));
+    let button = ui.button(look.tr(text));
     button.on_hover_text(look.tip(text)).clicked()
 }
 
 /// A labelled check box; true if it was changed.
 pub(crate) fn tick_ui(ui: &mut Ui, look: Look, text: Text, on: &mut bool) -> bool {
-    let tick = ui.checkbox(on, look.say(text));
+    let tick = ui.checkbox(on, look.tr(text));
     tick.on_hover_text(look.tip(text)).changed()
 }
 

@@ -29,7 +29,7 @@ struct FieldPlace {
 
 /// Common part of text and number fields.
 #[derive(Debug, Clone, Copy)]
-struct Field<'a> {
+struct EditField<'a> {
     /// Accessible name.
     name: &'a str,
     hint: &'a str,
@@ -43,7 +43,7 @@ struct Field<'a> {
     counts_when_left: bool,
 }
 
-impl<'a> Field<'a> {
+impl<'a> EditField<'a> {
     /// A text field of at most `max` characters.
     const fn new(name: &'a str, max: usize) -> Self {
         Self {
@@ -177,12 +177,12 @@ impl<'a> Field<'a> {
 
 /// A one-line text field.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct TextField<'a>(Field<'a>);
+pub(crate) struct TextField<'a>(EditField<'a>);
 
 impl<'a> TextField<'a> {
     /// A field of at most `max` characters, with its accessible name.
     pub(crate) const fn new(name: &'a str, max: usize) -> Self {
-        Self(Field::new(name, max))
+        Self(EditField::new(name, max))
     }
 
     /// Shown while the field is empty.
@@ -218,7 +218,7 @@ impl<'a> TextField<'a> {
 /// A number field, applied when it loses focus.
 #[derive(Debug, Clone)]
 pub(crate) struct NumberField<'a> {
-    field: Field<'a>,
+    field: EditField<'a>,
     range: RangeInclusive<f64>,
     decimals: usize,
 }
@@ -226,10 +226,10 @@ pub(crate) struct NumberField<'a> {
 impl<'a> NumberField<'a> {
     /// A field for whole numbers of a range, with its accessible name and a tooltip sentence.
     pub(crate) const fn new(name: &'a str, tip: &'a str, range: RangeInclusive<f64>) -> Self {
-        let field = Field {
+        let field = EditField {
             tip,
             is_number: true,
-            ..Field::new(name, TYPED_MAX)
+            ..EditField::new(name, TYPED_MAX)
         };
         Self {
             field,
@@ -283,7 +283,7 @@ impl<'a> NumberField<'a> {
         let decimals = self.decimals;
         let shown = value.map_or_else(|| UNKNOWN.to_owned(), |value| format!("{value:.decimals$}"));
         let (from, to) = (self.range.start(), self.range.end());
-        let only = pane.look.say(main::ONLY_FROM_TO);
+        let only = pane.look.tr(main::ONLY_FROM_TO);
         let read = |text: &str| {
             let number = strict(text, decimals).filter(|value| self.range.contains(value));
             number.ok_or_else(|| format!("{only} {from}..{to}"))
@@ -293,7 +293,7 @@ impl<'a> NumberField<'a> {
             None => format!("{} {from}..{to}", self.field.tip),
         };
         let tip = tip.as_str();
-        Field { tip, ..self.field }.ui(ui, pane, &shown, read)
+        EditField { tip, ..self.field }.ui(ui, pane, &shown, read)
     }
 }
 

@@ -10,7 +10,7 @@ use crate::hand::{Dof, Finger, Moment, PerDof, Timed};
 use crate::record::ArmRefusal;
 use crate::ui::style::Look;
 use crate::ui::text::{inputs, main};
-use crate::ui::view::{Place, View};
+use crate::ui::view::{Tab, View};
 use egui::{Id, Key, Ui};
 
 /// Context for one pass over one part of the window.
@@ -31,7 +31,7 @@ pub(crate) struct Pane<'a> {
 pub(crate) enum ViewRequest {
     View(View),
     /// A tab, at the view that was open there last.
-    Place(Place),
+    Tab(Tab),
     /// Toggles between faults and messages and the view open before them.
     Faults,
     /// State and faults of one drive.
@@ -77,22 +77,22 @@ impl<'a> Pane<'a> {
         }
         let hand = self.hand();
         if hand.runs_series() {
-            return Some(self.look.say(main::SERIES_RUNS));
+            return Some(self.look.tr(main::SERIES_RUNS));
         }
         if hand.connection.outside_owner().is_some() {
-            return Some(self.look.say(inputs::TAKEN));
+            return Some(self.look.tr(inputs::TAKEN));
         }
         let advice = match hand.arm_refusal(self.state.now) {
             Some(ArmRefusal::LetGo) => main::REFUSED_LET_GO,
             _ => main::NOT_ARMED,
         };
-        (!hand.connection.is_armed()).then(|| self.look.say(advice))
+        (!hand.connection.is_armed()).then(|| self.look.tr(advice))
     }
 
     /// Reason why nothing can be requested of a hand: a recording is shown. `None` otherwise.
     pub(crate) fn recorded(&self) -> Option<&'static str> {
         let is_recorded = self.state.timeline.is_some();
-        is_recorded.then(|| self.look.say(main::RECORDED))
+        is_recorded.then(|| self.look.tr(main::RECORDED))
     }
 
     /// Freshness of a reading requested at `asked`.

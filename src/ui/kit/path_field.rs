@@ -43,10 +43,10 @@ impl PathField {
         let row = Layout::right_to_left(Align::Center);
         let size = egui::vec2(ui.available_width(), theme::CONTROL);
         let opened = ui.allocate_ui_with_layout(size, row, |ui| {
-            let open = Button::said(look, self.button);
-            let open = open.disabled_if(path.is_empty(), look.say(window::PATH_NONE));
+            let open = Button::text(look, self.button);
+            let open = open.disabled_if(path.is_empty(), look.tr(window::PATH_NONE));
             let open = open.ui(ui, look).clicked();
-            let field = controls::edit_said_ui(ui, look, self.name, &mut typed);
+            let field = controls::translated_edit_ui(ui, look, self.name, &mut typed);
             open || field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
         });
         ui.data_mut(|data| data.insert_temp(id, typed));

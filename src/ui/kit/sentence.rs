@@ -1,6 +1,6 @@
 //! A sentence whose numbers are fields, edited in place.
 
-use crate::ui::kit::controls::{Label, cell_ui, say_ui, text_width};
+use crate::ui::kit::controls::{Label, cell_ui, small_text_ui, text_width};
 use crate::ui::style::Look;
 use crate::ui::theme;
 use egui::{Ui, UiBuilder, vec2};
@@ -66,7 +66,7 @@ impl<'a> Sentence<'a> {
                 });
                 if let Some((_, why)) = self.wrong.as_ref().filter(|(at, _)| *at == number) {
                     ui.end_row();
-                    say_ui(ui, why, look.palette.bad);
+                    small_text_ui(ui, why, look.palette.bad);
                     ui.end_row();
                 }
                 before = next.trim();

@@ -4,7 +4,7 @@
 use crate::app::action::Action;
 use crate::app::trials::StartRefusal;
 use crate::hand::Moment;
-use crate::ui::kit::controls::{Button, Weight, say_ui, wide_ui};
+use crate::ui::kit::controls::{Button, Weight, small_text_ui, wide_ui};
 use crate::ui::kit::pane::Pane;
 use crate::ui::text::{Text, main, tune, words};
 use crate::ui::theme;
@@ -44,7 +44,7 @@ impl StartButton {
         } else {
             wish.arm_and_start
         };
-        let button = Button::said(look, text).large().weight(Weight::Strong);
+        let button = Button::text(look, text).large().weight(Weight::Strong);
         let button = button.disabled(reason.as_deref());
         let response = wide_ui(ui, |ui| {
             ui.set_max_height(theme::CONTROL_LARGE);
@@ -60,11 +60,11 @@ impl StartButton {
         }
         let (words, color) = match (&reason, is_armed) {
             (Some(reason), _) => (reason.as_str(), palette.warn),
-            (None, false) if self.is_short => (look.say(tune::HOLD_LONGER), palette.warn),
-            (None, false) => (look.say(tune::HOLD_TO_START), palette.muted),
-            (None, true) => (look.say(tune::ANY_KEY), palette.muted),
+            (None, false) if self.is_short => (look.tr(tune::HOLD_LONGER), palette.warn),
+            (None, false) => (look.tr(tune::HOLD_TO_START), palette.muted),
+            (None, true) => (look.tr(tune::ANY_KEY), palette.muted),
         };
-        say_ui(ui, words, color);
+        small_text_ui(ui, words, color);
     }
 
     /// True once held for [`HOLD_DURATION`], with the pointer or with Enter.
@@ -140,21 +140,21 @@ pub(crate) fn start_refused(
         return Some(recorded.into());
     }
     if !hand.connection.status.state.is_live() {
-        return Some(look.say(main::REFUSED_OFFLINE).into());
+        return Some(look.tr(main::REFUSED_OFFLINE).into());
     }
     if hand.running.awaits_arming() {
-        return Some(look.say(tune::ARMING).into());
+        return Some(look.tr(tune::ARMING).into());
     }
     if state.trials.running.is_some() {
-        return Some(look.say(main::SERIES_RUNS).into());
+        return Some(look.tr(main::SERIES_RUNS).into());
     }
     if let Some(unsound) = unsound {
-        return Some(look.say(unsound).into());
+        return Some(look.tr(unsound).into());
     }
     match refusal {
-        Some(StartRefusal::Runs) => Some(look.say(main::SERIES_RUNS).into()),
+        Some(StartRefusal::Runs) => Some(look.tr(main::SERIES_RUNS).into()),
         Some(StartRefusal::Locked(dof)) => {
-            Some(look.fill(tune::NEED_FREE, &[&look.say(words::dof(dof))]))
+            Some(look.fill(tune::NEED_FREE, &[&look.tr(words::dof(dof))]))
         }
         Some(StartRefusal::NotArmed) => {
             let refusal = hand.arm_refusal(state.now);

@@ -14,7 +14,7 @@ use crate::ui::text::{Text, cards, errors, words};
 pub(crate) fn card(state: &State, look: Look, run: &CalibrateProcedure) -> Card {
     let card = Card::new(look, cards::CALIBRATE_TITLE);
     match &run.stage {
-        ProcedureStage::Asking => ask(state, card, &run.checks),
+        ProcedureStage::Asking => confirm(state, card, &run.checks),
         ProcedureStage::Doing(CalibrateStep::Calibrating, since) => {
             let part = state.now.since(*since).as_secs_f32() / TAKES.as_secs_f32();
             card.progress(part, cards::CALIBRATING)
@@ -24,7 +24,7 @@ pub(crate) fn card(state: &State, look: Look, run: &CalibrateProcedure) -> Card 
     }
 }
 
-fn ask(state: &State, card: Card, run: &Checks) -> Card {
+fn confirm(state: &State, card: Card, run: &Checks) -> Card {
     let (hand, now) = (state.hand(), state.now);
     let (sample, link) = (&hand.readings.sample, &hand.connection.status);
     let mut card = card.words(cards::CALIBRATE_WORDS);

@@ -8,7 +8,7 @@ use crate::app::state::State;
 use crate::hand::impact::{NOTABLE_G, SLOWEST, overshoot_g};
 use crate::hand::overshoot::MeasuredOn;
 use crate::params::danger::Danger;
-use crate::ui::kit::{ButtonRole, Card, Choice, Look};
+use crate::ui::kit::{ButtonRole, Card, CardButton, Look};
 use crate::ui::params::table::value_text;
 use crate::ui::text::{cards, device, main, poses, tune, words};
 
@@ -33,16 +33,16 @@ fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
     if matches!(question.what, WriteRequest::Save) {
         card = changes(state, look, card);
     }
-    let mut manner = ButtonRole::Main;
+    let mut role = ButtonRole::Main;
     if hurts {
         card = dangers(look, card, &question.dangers);
-        manner = ButtonRole::Danger;
+        role = ButtonRole::Danger;
     }
     let hand = state.hand();
     let why = hand.params.write_refusal(&hand.connection.status);
     let decline = Action::Param(ParamAction::Decline);
-    let agree = Choice::new(agree, manner, Action::Param(ParamAction::Agree));
-    card.choice(Choice::new(device::DECLINE, ButtonRole::Safe, decline))
+    let agree = CardButton::new(agree, role, Action::Param(ParamAction::Agree));
+    card.choice(CardButton::new(device::DECLINE, ButtonRole::Safe, decline))
         .choice(agree.disabled(why.map(device::refusal)))
 }
 
@@ -85,7 +85,7 @@ pub(crate) fn dangers(look: Look, mut card: Card, dangers: &[Danger]) -> Card {
     let slowly = slowly.reduce(f64::max);
     let strong = dangers.iter().filter(|danger| danger.is_above_rated());
     let strong: Vec<&str> = strong
-        .map(|danger| look.say(words::dof(danger.dof)))
+        .map(|danger| look.tr(words::dof(danger.dof)))
         .collect();
     if !strong.is_empty() {
         card = card.warning((device::DANGER_RATED, strong.join(", ")));
@@ -102,7 +102,7 @@ pub(crate) fn dangers(look: Look, mut card: Card, dangers: &[Danger]) -> Card {
         if is_of_another(&danger) {
             return card;
         }
-        let name = look.say(words::dof(danger.dof));
+        let name = look.tr(words::dof(danger.dof));
         let measured = tune::measured_on(look, &danger.expected.on);
         card.note(format!("{name}: {measured}"))
     });

@@ -1,7 +1,7 @@
 //! A parameter file compared with the hand, row by row with check boxes. Checked rows are staged by an action; nothing is written.
 
 use crate::app::action::Action;
-use crate::app::params::state::Compared;
+use crate::app::params::state::FileComparison;
 use crate::app::params::state::ParamAction;
 use crate::params::rows::ParamId;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
@@ -12,11 +12,11 @@ use crate::ui::theme;
 use egui::{Grid, Role, ScrollArea, Ui, WidgetInfo};
 
 /// Draws the comparison.
-pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
+pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &FileComparison) {
     let look = pane.look;
     let palette = look.palette;
     let file = &compared.file;
-    let title = format!("{}: {}", look.say(device::COMPARED), compared.name);
+    let title = format!("{}: {}", look.tr(device::COMPARED), compared.name);
     Label::new(&title, palette.text).title().ui(ui);
     let parts = [
         file.hand.clone(),
@@ -41,26 +41,26 @@ pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
             }
         });
         if !unknown.is_empty() {
-            let words = look.told(device::UNKNOWN_KEYS, unknown.join(", "));
-            kit::say_ui(ui, &words, palette.warn);
+            let words = look.tr_with(device::UNKNOWN_KEYS, unknown.join(", "));
+            kit::small_text_ui(ui, &words, palette.warn);
         }
     });
 }
 
-fn buttons_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared) {
+fn buttons_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &FileComparison) {
     let look = pane.look;
     let count = compared.chosen().iter().count();
-    let text = format!("{} ({count})", look.say(device::STAGE_TICKED));
+    let text = format!("{} ({count})", look.tr(device::STAGE_TICKED));
     let stage = Button::new(&text, look.tip(device::STAGE_TICKED))
-        .named(look.say(device::STAGE_TICKED))
+        .named(look.tr(device::STAGE_TICKED))
         .weight(Weight::Strong)
-        .disabled_if(count == 0, look.say(device::STAGE_NONE));
+        .disabled_if(count == 0, look.tr(device::STAGE_NONE));
     stage.on_click(ui, pane, Action::Param(ParamAction::StageTicked));
-    let close = Button::said(look, device::CLOSE_FILE);
+    let close = Button::text(look, device::CLOSE_FILE);
     close.on_click(ui, pane, Action::Param(ParamAction::CloseFile));
 }
 
-fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, id: ParamId) {
+fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &FileComparison, id: ParamId) {
     let look = pane.look;
     let palette = look.palette;
     let words = device::whole_name(look, id);
@@ -71,9 +71,9 @@ fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, id: ParamId) {
         device::TICK_TIP
     };
     let tick = ui.checkbox(&mut ticked, &words);
-    let label = look.told(device::TAKE, words);
+    let label = look.tr_with(device::TAKE, words);
     tick.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, ticked, &label));
-    if tick.on_hover_text(look.say(tip)).changed() {
+    if tick.on_hover_text(look.tr(tip)).changed() {
         pane.actions.push(Action::Param(ParamAction::Tick(id)));
     }
     let hand = pane.hand();
@@ -87,7 +87,7 @@ fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &Compared, id: ParamId) {
     let value = compared.file.params.get(id);
     let text = value_text(id, value);
     let (words, color) = if held == value {
-        (format!("{text}  {}", look.say(device::SAME)), palette.muted)
+        (format!("{text}  {}", look.tr(device::SAME)), palette.muted)
     } else {
         (text, palette.warn)
     };

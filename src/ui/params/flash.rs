@@ -36,20 +36,20 @@ fn save_ui(ui: &mut Ui, pane: &mut Pane<'_>, most: f32) {
     let look = pane.look;
     let hand = pane.hand();
     let reason = hand.params.save_refusal(&hand.connection.status);
-    let reason = reason.map(|why| look.say(device::refusal(why)));
+    let reason = reason.map(|why| look.tr(device::refusal(why)));
     // Strong only if it is the next step.
     let unsaved = hand.params.unsaved();
     let is_next = hand.params.to_apply().is_empty() && !unsaved.is_empty();
-    let save = Button::said(look, device::SAVE).strong_if(is_next);
+    let save = Button::text(look, device::SAVE).strong_if(is_next);
     let save = save.disabled(reason);
-    kit::head_ui(ui, look, look.say(device::FLASH), |ui| {
+    kit::head_ui(ui, look, look.tr(device::FLASH), |ui| {
         save.on_click(ui, pane, Action::Param(ParamAction::Save));
     });
     let lines = lines(pane, reason);
     let area = ScrollArea::vertical().id_salt("flash").max_height(most);
     area.show(ui, |ui| {
         for (words, color) in lines {
-            kit::say_ui(ui, &words, color);
+            kit::small_text_ui(ui, &words, color);
         }
     });
 }
@@ -65,37 +65,37 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
         lines.push((reason.to_owned(), palette.muted));
     }
     if !book.to_apply().is_empty() {
-        lines.push((look.say(device::SAVE_STAGED).into(), palette.warn));
+        lines.push((look.tr(device::SAVE_STAGED).into(), palette.warn));
     }
     let unsaved = book.unsaved().into_iter();
     let unsaved: Vec<String> = unsaved
         .map(|row| device::whole_name(look, row.id))
         .collect();
     if !unsaved.is_empty() {
-        let words = look.told(device::UNSAVED, unsaved.join(", "));
+        let words = look.tr_with(device::UNSAVED, unsaved.join(", "));
         lines.push((words, palette.text));
     }
     if let Some(file) = &book.known.doubtful {
-        let words = look.told(device::DOUBTFUL, moment(&file.at));
+        let words = look.tr_with(device::DOUBTFUL, moment(&file.at));
         lines.push((words, palette.warn));
     }
     lines.push(match &book.known.saved {
-        None => (look.say(device::NEVER_SAVED).into(), palette.muted),
+        None => (look.tr(device::NEVER_SAVED).into(), palette.muted),
         Some(file) => {
             let how = match &file.verdict {
-                Some(SaveVerdict::Confirmed) => look.say(device::BY_FRAME),
-                _ => look.say(device::BY_READING),
+                Some(SaveVerdict::Confirmed) => look.tr(device::BY_FRAME),
+                _ => look.tr(device::BY_READING),
             };
-            let (saved, at) = (look.say(device::SAVED), moment(&file.at));
+            let (saved, at) = (look.tr(device::SAVED), moment(&file.at));
             (format!("{saved} {at} ({how})"), palette.text)
         }
     });
     if let Some(error) = &book.unreadable {
         let error = errors::file(look, error);
-        let words = look.told(device::UNREADABLE, error);
+        let words = look.tr_with(device::UNREADABLE, error);
         lines.push((words, palette.warn));
     }
-    lines.push((look.say(device::FLASH_BODY).into(), palette.muted));
+    lines.push((look.tr(device::FLASH_BODY).into(), palette.muted));
     lines
 }
 
@@ -103,7 +103,7 @@ fn lines(pane: &Pane<'_>, reason: Option<&str>) -> Vec<(String, Color32)> {
 pub(crate) fn writing(pane: &Pane<'_>) -> Option<&'static str> {
     let doing = pane.hand().params.doing;
     let words = device::doing(doing).filter(|_| doing != Doing::Reading);
-    words.map(|words| pane.look.say(words))
+    words.map(|words| pane.look.tr(words))
 }
 
 /// Outcome of the last save, with its colour; `None` if nothing was saved yet.
@@ -123,23 +123,23 @@ pub(crate) fn moment(stamp: &str) -> String {
 fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let nothing = pane.hand().params.live_params().is_empty();
-    let nothing = nothing.then(|| look.say(device::refusal(ParamRefusal::NothingRead)));
+    let nothing = nothing.then(|| look.tr(device::refusal(ParamRefusal::NothingRead)));
     ui.horizontal(|ui| {
-        let dump = Button::said(look, device::DUMP);
-        let open = Button::said(look, device::OPEN);
+        let dump = Button::text(look, device::DUMP);
+        let open = Button::text(look, device::OPEN);
         dump.disabled(nothing)
             .on_click(ui, pane, Action::Param(ParamAction::Dump));
         open.on_click(ui, pane, Action::Param(ParamAction::Open(None)));
     });
     if let Some(refused) = &pane.hand().params.file_refused {
         let words = notices::notice(look, refused);
-        kit::say_ui(ui, &words, look.palette.warn);
+        kit::small_text_ui(ui, &words, look.palette.warn);
         if let Some(path) = path_ui(ui, look, "parameters") {
             pane.actions
                 .push(Action::Param(ParamAction::Open(Some(path))));
         }
     }
-    Label::said(look, device::BACKUPS).title().ui(ui);
+    Label::text(look, device::BACKUPS).title().ui(ui);
     let backups = &pane.hand().params.backups;
     let most = ui.available_height() - theme::CONTROL - theme::GAP;
     let area = ScrollArea::vertical().auto_shrink(false).max_height(most);
@@ -169,7 +169,7 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
             (name, Some(errors::file(look, error)))
         }
     };
-    let tip = format!("{words}\n{}", look.say(device::BACKUP_TIP));
+    let tip = format!("{words}\n{}", look.tr(device::BACKUP_TIP));
     let button = Button::new(&words, &tip).disabled(unreadable.as_deref());
     // As wide as the list: a longer name is truncated.
     let (id, place) = ui.allocate_space(vec2(ui.available_width(), theme::CONTROL));
@@ -178,7 +178,7 @@ fn backup_ui(ui: &mut Ui, pane: &mut Pane<'_>, backup: &Backup) {
         pane.actions.push(Action::Param(wish));
     }
     if let Ok(file) = &backup.file {
-        let label = format!("{}: {words}", look.say(device::BACKUP_OF));
+        let label = format!("{}: {words}", look.tr(device::BACKUP_OF));
         let hand = Label::new(&file.hand, look.palette.muted).small();
         hand.named(&label).wrap().ui(ui);
     }
@@ -192,7 +192,7 @@ pub(crate) fn guarded_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         (cards::RESET_ENTRY, Action::FactoryReset),
         (cards::CALIBRATE_ENTRY, Action::CalibrateForce),
     ] {
-        let button = Button::said(look, text).disabled_if(!live, look.say(main::REFUSED_OFFLINE));
+        let button = Button::text(look, text).disabled_if(!live, look.tr(main::REFUSED_OFFLINE));
         button.on_click(ui, pane, action);
     }
 }

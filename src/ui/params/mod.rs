@@ -49,17 +49,17 @@ impl DeviceView {
         let look = pane.look;
         ui.scope(|ui| {
             ui.set_max_width(200.0);
-            kit::edit_said_ui(ui, look, device::FIND, &mut self.shown.words);
+            kit::translated_edit_ui(ui, look, device::FIND, &mut self.shown.words);
         });
         kit::right_ui(ui, |ui| {
             let hand = pane.hand();
             let refusal = hand.params.read_refusal(&hand.connection.status);
-            let refusal = refusal.map(|why| look.say(device::refusal(why)));
-            let read = Button::said(look, device::READ);
+            let refusal = refusal.map(|why| look.tr(device::refusal(why)));
+            let read = Button::text(look, device::READ);
             read.disabled(refusal)
                 .on_click(ui, pane, Action::Param(ParamAction::Read));
-            let only = Button::said(look, device::ONLY).choice(self.shown.only);
-            only.flips(ui, look, &mut self.shown.only);
+            let only = Button::text(look, device::ONLY).choice(self.shown.only);
+            only.toggle(ui, look, &mut self.shown.only);
         });
     }
 }
@@ -67,25 +67,25 @@ impl DeviceView {
 /// Draws the actions on staged values.
 fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, hand) = (pane.look, pane.hand());
-    let why = |why: Option<_>| why.map(|why| look.say(device::refusal(why)));
+    let why = |why: Option<_>| why.map(|why| look.tr(device::refusal(why)));
     let apply = match hand.params.to_apply().iter().count() {
-        0 => look.say(device::APPLY).to_owned(),
-        count => format!("{} ({count})", look.say(device::APPLY)),
+        0 => look.tr(device::APPLY).to_owned(),
+        count => format!("{} ({count})", look.tr(device::APPLY)),
     };
     let nothing = hand.params.all_staged().is_empty();
-    let nothing = nothing.then(|| look.say(device::refusal(ParamRefusal::NothingStaged)));
+    let nothing = nothing.then(|| look.tr(device::refusal(ParamRefusal::NothingStaged)));
     let is_known =
         hand.readings.sample.speed_set.is_some() && hand.connection.status.state.is_live();
-    let unknown = (!is_known).then(|| look.say(device::COPY_UNKNOWN));
+    let unknown = (!is_known).then(|| look.tr(device::COPY_UNKNOWN));
     let link = &hand.connection.status;
     let no_apply = why(hand.params.apply_refusal(link));
     let no_undo = why(hand.params.undo_refusal(link));
     let apply = Button::new(&apply, look.tip(device::APPLY))
-        .named(look.say(device::APPLY))
+        .named(look.tr(device::APPLY))
         .strong_if(no_apply.is_none());
-    let undo = Button::said(look, device::UNDO);
-    let drop = Button::said(look, device::UNSTAGE_ALL);
-    let copy = Button::said(look, device::COPY);
+    let undo = Button::text(look, device::UNDO);
+    let drop = Button::text(look, device::UNSTAGE_ALL);
+    let copy = Button::text(look, device::COPY);
     let tools = [
         (apply, no_apply, ParamAction::Apply),
         (undo, no_undo, ParamAction::Undo),
@@ -103,21 +103,21 @@ fn status(pane: &Pane<'_>) -> (String, Color32) {
     let (look, hand) = (pane.look, pane.hand());
     let book = &hand.params;
     if let Some(doing) = device::doing(book.doing) {
-        return (look.say(doing).into(), look.palette.accent);
+        return (look.tr(doing).into(), look.palette.accent);
     }
     if !hand.connection.status.state.is_live() {
-        return (look.say(device::NO_HAND).into(), look.palette.warn);
+        return (look.tr(device::NO_HAND).into(), look.palette.warn);
     }
     if let Some(error) = &book.trouble {
         let error = errors::request(look, error);
-        let words = look.told(device::TROUBLE, error);
+        let words = look.tr_with(device::TROUBLE, error);
         return (words, look.palette.warn);
     }
     let words = match book.read_at {
-        None => look.say(device::NOT_READ).into(),
+        None => look.tr(device::NOT_READ).into(),
         Some(at) => {
             let age = format::age(pane.state.now.since(at));
-            let [read, ago] = [device::READ_AT, device::AGO].map(|text| look.say(text));
+            let [read, ago] = [device::READ_AT, device::AGO].map(|text| look.tr(text));
             format!("{read} {age} {ago}")
         }
     };

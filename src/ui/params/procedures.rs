@@ -16,7 +16,7 @@ use crate::tasks::place::{
 };
 use crate::tasks::reset::{ResetEnd, ResetProof, ResetReport, ResetStep};
 use crate::transport::Endpoint;
-use crate::ui::kit::{ButtonRole, Card, Choice, Look};
+use crate::ui::kit::{ButtonRole, Card, CardButton, Look};
 use crate::ui::params::calibration;
 use crate::ui::params::card as device_card;
 use crate::ui::params::choices::{asking, close, step};
@@ -55,7 +55,7 @@ fn not_begun(look: Look, card: Card, error: &TaskError) -> Card {
 fn from_to(look: Look, change: &PlaceChange) -> String {
     let (from, to) = (change.before, change.wanted);
     let [from, to] = [from, to].map(|value| value_text(change.id, Some(value)));
-    let name = look.say(device::name(change.id));
+    let name = look.tr(device::name(change.id));
     look.pair(name, &format!("{from} -> {to}"))
 }
 
@@ -69,7 +69,7 @@ fn now_and_then(card: Card, places: &PlacePair) -> Card {
     }
 }
 
-fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
+fn confirm_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     let (change, places) = (&run.change, &run.change.places);
     let card = Card::new(look, cards::CHANGE_ASKED).words(from_to(look, change));
     let mut card = now_and_then(card, places);
@@ -85,7 +85,7 @@ fn ask_change(state: &State, look: Look, run: &PlaceProcedure) -> Card {
 }
 
 /// The button that begins an irreversible step.
-fn begin(text: Text) -> Choice {
+fn begin(text: Text) -> CardButton {
     step(text, ButtonRole::Danger, ProcedureAction::Begin)
 }
 
@@ -94,7 +94,7 @@ fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     let places = &change.places;
     let card = Card::new(look, cards::CHANGING);
     match &run.stage {
-        ProcedureStage::Asking => ask_change(state, look, run),
+        ProcedureStage::Asking => confirm_change(state, look, run),
         ProcedureStage::Over(Ok(report)) => change_over(look, card, places, report),
         ProcedureStage::Over(Err(error)) => not_begun(look, card, error),
         ProcedureStage::Doing(step, since) => match step {
@@ -140,14 +140,14 @@ fn keep_card(state: &State, change: &PlaceChange, place: WhichPlace, since: Mome
 fn offer_card(look: Look, run: &PlaceProcedure) -> Card {
     let mut card =
         Card::new(look, cards::OFFER_TITLE).words((cards::OFFER, &run.change.places.old));
-    let (mut text, mut manner) = (cards::SAVE, ButtonRole::Main);
+    let (mut text, mut role) = (cards::SAVE, ButtonRole::Main);
     if !run.dangers.is_empty() {
         card = device_card::dangers(look, card.words(cards::OFFER_ALL), &run.dangers);
-        (text, manner) = (device::AGREE_SAVE, ButtonRole::Danger);
+        (text, role) = (device::AGREE_SAVE, ButtonRole::Danger);
     }
     let leave = ProcedureAction::LeaveUnsaved;
     card.choice(step(cards::UNSAVED, ButtonRole::Safe, leave))
-        .choice(step(text, manner, ProcedureAction::Save))
+        .choice(step(text, role, ProcedureAction::Save))
 }
 
 fn change_over(look: Look, card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
@@ -218,7 +218,7 @@ fn backup(card: Card, backup: &Path) -> Card {
 /// Adds buttons that connect to each possible address of the hand.
 fn ways(card: Card, places: &PlacePair) -> Card {
     let connect = |text, place: &Endpoint| {
-        Choice::new(text, ButtonRole::Plain, Action::Connect(place.clone()))
+        CardButton::new(text, ButtonRole::Plain, Action::Connect(place.clone()))
     };
     let card = card.choice(connect(cards::TO_OLD, &places.old));
     if places.new == places.old {

@@ -96,7 +96,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
                 continue;
             }
             line_ui(&mut body, theme::CONTROL_LARGE, |ui| {
-                Label::said(look, title).title().ui(ui);
+                Label::text(look, title).title().ui(ui);
                 Label::note(look, about).ui(ui);
             });
             for id in own {
@@ -172,9 +172,9 @@ fn row_ui(mut row: TableRow<'_, '_>, pane: &mut Pane<'_>, id: ParamId) {
 fn range_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
     let (look, muted) = (pane.look, pane.look.palette.muted);
     let range = match (id, id.range()) {
-        (ParamId::ReduRatio, _) => look.say(device::FOUR_SPEEDS).to_owned(),
+        (ParamId::ReduRatio, _) => look.tr(device::FOUR_SPEEDS).to_owned(),
         (_, Some((min, max))) => format!("{min}..{max} {}", id.unit()).trim_end().to_owned(),
-        (_, None) => look.say(device::ADDRESS_HINT).to_owned(),
+        (_, None) => look.tr(device::ADDRESS_HINT).to_owned(),
     };
     let name = cell_name(pane, id, device::RANGE);
     let cell = |ui: &mut Ui| {
@@ -182,7 +182,7 @@ fn range_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
         if id.factory().is_some() {
             let name = cell_name(pane, id, device::FACTORY);
             let factory = value_text(id, id.factory());
-            Label::new(look.say(device::FACTORY), muted).small().ui(ui);
+            Label::new(look.tr(device::FACTORY), muted).small().ui(ui);
             Label::new(&factory, muted).small().named(&name).ui(ui);
         }
     };
@@ -191,14 +191,14 @@ fn range_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
         None => ui.scope(cell),
     };
     let section = id.register().section;
-    let section = look.told(device::MANUAL, section);
+    let section = look.tr_with(device::MANUAL, section);
     shown.response.on_hover_text(section);
 }
 
 /// Accessible name of a value: `Index speed live`.
 pub(crate) fn cell_name(pane: &Pane<'_>, id: ParamId, column: Text) -> String {
     let name = device::whole_name(pane.look, id);
-    format!("{name} {}", pane.look.say(column).to_lowercase())
+    format!("{name} {}", pane.look.tr(column).to_lowercase())
 }
 
 /// Text of a value: the serial speed in baud, not as its code.
@@ -233,7 +233,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
         _ => palette.text,
     };
     let is_applied = pane.hand().params.outcome(id).is_some() && !has_trouble(pane, id);
-    let name = Label::new(look.say(device::name(id)), color);
+    let name = Label::new(look.tr(device::name(id)), color);
     if !is_applied && !id.is_place() {
         name.ui(ui);
         return;
@@ -243,7 +243,7 @@ fn name_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
         name.ui(ui);
         if is_applied {
             let verdict = cell_name(pane, id, device::VERDICT);
-            let label = Label::new(look.say(device::APPLIED), palette.ok).small();
+            let label = Label::new(look.tr(device::APPLIED), palette.ok).small();
             label.named(&verdict).ui(ui);
         }
         if id.is_place() {
@@ -277,7 +277,7 @@ fn live_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
     let below = match (age, fresh) {
         (None, _) => String::new(),
         (Some(age), Freshness::Live) => age,
-        (Some(age), _) => format!("{age} {}", pane.look.say(device::AGO)),
+        (Some(age), _) => format!("{age} {}", pane.look.tr(device::AGO)),
     };
     let value = value_text(id, live.map(|(value, _)| value));
     let name = cell_name(pane, id, device::LIVE);
@@ -308,7 +308,7 @@ fn staged_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
         }
     });
     if staged.is_some() {
-        let label = look.told(device::UNSTAGE, whole_name);
+        let label = look.tr_with(device::UNSTAGE, whole_name);
         let drop = Button::new(&label, look.tip(device::UNSTAGE)).icon(theme::CLOSE);
         drop.on_click(ui, pane, Action::Stage(id, None));
     }
@@ -338,7 +338,7 @@ fn speed_ui(ui: &mut Ui, name: &str, value: Option<Value>) -> Option<Value> {
 /// Draws an address field. Invalid text stays, with the reason beside it.
 fn address_ui(ui: &mut Ui, pane: &mut Pane<'_>, name: &str, value: Option<Value>) -> Option<Value> {
     let text = value.map_or_else(String::new, |value| value.to_string());
-    let words = pane.look.say(panels::ADDRESS_WRONG);
+    let words = pane.look.tr(panels::ADDRESS_WRONG);
     let field = TextField::new(name, ADDRESS_MAX).hint(format::UNKNOWN);
     field.read_ui(ui, pane, &text, |text| {
         let address = text.parse().ok().map(Value::Address);
@@ -351,7 +351,7 @@ fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
     let look = pane.look;
     let hand = pane.hand();
     let name = device::whole_name(look, id);
-    let label = look.told(device::CHANGE, name);
+    let label = look.tr_with(device::CHANGE, name);
     let live = hand.params.live(id).map(|(value, _)| value);
     let wanted = hand.params.staged(id);
     let wanted = wanted.filter(|wanted| Some(*wanted) != live);
@@ -363,9 +363,9 @@ fn change_ui(ui: &mut Ui, pane: &mut Pane<'_>, id: ParamId) {
             .write_refusal(&hand.connection.status)
             .map(device::refusal),
     };
-    let button = Button::said(look, device::CHANGE)
+    let button = Button::text(look, device::CHANGE)
         .named(&label)
-        .disabled(reason.map(|reason| look.say(reason)));
+        .disabled(reason.map(|reason| look.tr(reason)));
     let pressed = button.ui(ui, look);
     if let Some(wanted) = wanted.filter(|_| pressed.clicked()) {
         pane.actions.push(Action::ChangePlace(id, wanted));

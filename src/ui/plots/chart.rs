@@ -49,7 +49,7 @@ pub(crate) struct ChartCurve<'a> {
     /// True if a value holds until the next one, as setpoints do: nothing was requested in between.
     pub(crate) steps: bool,
     /// Decimals of the value shown at the pointer; `None` hides it.
-    pub(crate) told: Option<usize>,
+    pub(crate) decimals: Option<usize>,
     /// True for a curve of the second recording: its points are cached separately.
     pub(crate) beside: bool,
 }
@@ -69,7 +69,7 @@ impl<'a> ChartCurve<'a> {
             stroke,
             style: LineStyle::Solid,
             steps: false,
-            told: None,
+            decimals: None,
             beside: false,
         }
     }
@@ -246,12 +246,12 @@ impl<'a> Chart<'a> {
             .with_clip_rect(frame.intersect(ui.clip_rect()))
             .add(mesh);
         if dense.is_empty() && sparse.is_empty() {
-            let empty = Label::new(self.look.say(self.empty), self.look.palette.muted);
+            let empty = Label::new(self.look.tr(self.empty), self.look.palette.muted);
             empty.small().center().put(ui, frame);
         }
         view.traces = traces;
         self.pointer_ui(ui, view, frame);
-        let name = self.look.say(self.title);
+        let name = self.look.tr(self.title);
         let info = || WidgetInfo::labeled(Role::Image, true, name);
         shown.response.widget_info(info);
         let axis = frame
@@ -363,7 +363,7 @@ impl<'a> Chart<'a> {
             let (fixed, tip) = (panels::RANGE_FIXED, panels::RANGE.tip());
             let is_fixed = view.scales.chosen(self.title).is_some();
             let taken = if is_fixed {
-                kit::text_width(ui, look.say(fixed), theme::small()) + theme::GAP
+                kit::text_width(ui, look.tr(fixed), theme::small()) + theme::GAP
             } else {
                 0.0
             };
@@ -376,12 +376,12 @@ impl<'a> Chart<'a> {
                 ui.add_space(theme::PLOT_AXIS);
                 ui.scope(|ui| {
                     ui.set_max_width((ui.available_width() - taken).max(0.0));
-                    let title = Label::new(look.say(self.title), look.palette.muted);
+                    let title = Label::new(look.tr(self.title), look.palette.muted);
                     title.small().ui(ui);
                 });
                 if is_fixed {
                     let label = Label::muted(look, fixed);
-                    label.small().ui(ui).on_hover_text(look.say(tip));
+                    label.small().ui(ui).on_hover_text(look.tr(tip));
                 }
             });
         });
@@ -392,7 +392,7 @@ impl<'a> Chart<'a> {
         let mut job = LayoutJob::default();
         let mut texts = Vec::new();
         for curve in &self.curves {
-            let (Points::Measured(history, series), Some(digits)) = (curve.points, curve.told)
+            let (Points::Measured(history, series), Some(digits)) = (curve.points, curve.decimals)
             else {
                 continue;
             };
@@ -413,7 +413,7 @@ impl<'a> Chart<'a> {
         let response = ui.add(egui::Label::new(galley));
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, texts.join(" ")));
         let look = self.look;
-        let name = look.told(self.title, look.say(panels::UNDER_POINTER));
+        let name = look.tr_with(self.title, look.tr(panels::UNDER_POINTER));
         kit::set_accessible_name(&response, &name);
     }
 
@@ -538,7 +538,7 @@ impl ChartView {
         if self.time.is_held() {
             Times::Clock
         } else {
-            Times::From(self.time.span().1, look.say(panels::NOW))
+            Times::From(self.time.span().1, look.tr(panels::NOW))
         }
     }
 

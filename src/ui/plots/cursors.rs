@@ -74,7 +74,7 @@ impl Cursors {
             let at = pos2(x, frame.bottom() + half);
             let flag = Rect::from_center_size(at, vec2(CURSOR_FLAG, CURSOR_FLAG));
             let response = ui.interact(flag, Id::unique(("cursor", short)), Sense::drag());
-            response.widget_info(|| WidgetInfo::slider(true, *at_s, look.say(name)));
+            response.widget_info(|| WidgetInfo::slider(true, *at_s, look.tr(name)));
             ui.painter()
                 .rect_filled(flag, theme::ROUND_SMALL, look.palette.accent);
             let label = Label::new(short, look.palette.on_accent).center();
@@ -84,9 +84,9 @@ impl Cursors {
                 let to_s = lowest.transform.value_from_position(pointer).x;
                 *at_s = to_s.clamp(*times.start(), *times.end());
             }
-            let told = clock(*at_s, lowest.transform.dvalue_dpos()[0]);
+            let at_text = clock(*at_s, lowest.transform.dvalue_dpos()[0]);
             response
-                .on_hover_text(look.told(name, told))
+                .on_hover_text(look.tr_with(name, at_text))
                 .on_hover_cursor(CursorIcon::ResizeHorizontal);
         }
     }
@@ -101,14 +101,14 @@ impl Cursors {
     ) -> bool {
         let Some(at) = self.0 else { return false };
         let look = pane.look;
-        let title = look.say(panel.title);
+        let title = look.tr(panel.title);
         let head = ui.horizontal(|ui| {
             let button = Button::new(title, look.tip(panels::FIGURES));
-            let button = button.named(look.say(panels::FIGURES));
+            let button = button.named(look.tr(panels::FIGURES));
             let pressed = button.ui(ui, look).clicked();
             let apart = format!("B - A = {:.3} s", at[1] - at[0]);
             let label = Label::new(&apart, look.palette.muted).number();
-            label.named(look.say(panels::APART)).ui(ui);
+            label.named(look.tr(panels::APART)).ui(ui);
             pressed
         });
         let width = (ui.available_width() - CURSOR_NAMES) / 7.0 - theme::STEP;
@@ -129,11 +129,11 @@ impl Cursors {
         grid.min_col_width(0.0).min_row_height(0.0).show(ui, |ui| {
             ui.allocate_space(vec2(CURSOR_NAMES, theme::TEXT_LINE));
             for text in COLUMNS {
-                cell(ui, look.say(text), None);
+                cell(ui, look.tr(text), None);
             }
             ui.end_row();
             for line in lines {
-                let name = look.say(words::dof(line.dof));
+                let name = look.tr(words::dof(line.dof));
                 Label::new(name, look.palette.dof[line.dof]).small().ui(ui);
                 for (value, column) in figures(pane, line.series, at).into_iter().zip(COLUMNS) {
                     let text = value.map(|value| {
@@ -144,7 +144,7 @@ impl Cursors {
                         format!("{value:.digits$}")
                     });
                     let text = text.unwrap_or_else(|| format::UNKNOWN.into());
-                    let named = format!("{name} {title}: {}", look.say(column));
+                    let named = format!("{name} {title}: {}", look.tr(column));
                     cell(ui, &text, Some(&named));
                 }
                 ui.end_row();

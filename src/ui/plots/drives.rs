@@ -36,7 +36,7 @@ impl DrivesPlace<'_> {
         let look = pane.look;
         let size = vec2(ui.available_width(), height(self.joints.len()));
         let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
-        let name = look.say(panels::DRIVES);
+        let name = look.tr(panels::DRIVES);
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, name));
         let whole = whole.with_min_y(whole.top() + theme::STEP);
         let xs = Rangef::new(whole.left() + theme::PLOT_AXIS, whole.right() - self.end);
@@ -55,16 +55,16 @@ impl DrivesPlace<'_> {
                 .vline(self.x(frame, at_s), frame.y_range(), stroke);
         }
         let at = response.hover_pos().filter(|at| frame.contains(*at));
-        let told = at.and_then(|at| {
+        let tip = at.and_then(|at| {
             let (from_s, to_s) = self.span;
             let part = f64::from((at.x - xs.min) / xs.span().max(1.0));
             let below = |row: usize| frame.top() + height(row + 1) - theme::STEP;
             let mut rows = self.joints.iter().enumerate();
             let row = rows.find(|(row, _)| at.y < below(*row));
-            told(pane, *row?.1, from_s + part * (to_s - from_s))
+            status_tooltip(pane, *row?.1, from_s + part * (to_s - from_s))
         });
         response
-            .on_hover_text_at_pointer(told.unwrap_or_else(|| look.tip(panels::DRIVES).to_owned()));
+            .on_hover_text_at_pointer(tip.unwrap_or_else(|| look.tip(panels::DRIVES).to_owned()));
     }
 
     /// Draws the row of one joint: time ranges with a known state.
@@ -119,18 +119,18 @@ fn seen(
 }
 
 /// State of a joint's drive at a time, and its start.
-fn told(pane: &Pane<'_>, dof: Dof, at_s: f64) -> Option<String> {
+fn status_tooltip(pane: &Pane<'_>, dof: Dof, at_s: f64) -> Option<String> {
     let look = pane.look;
     let history = &pane.hand().measured.history;
     let run = history.status(dof, at_s, at_s).last()?;
     let lasted = Duration::from_secs_f64((run.until_s - run.from_s).max(0.0));
     let since = clock(run.from_s, 0.1);
     let since = look.fill(panels::DRIVE_SINCE, &[&since, &format::age(lasted)]);
-    let said = look.pair(look.say(words::dof(dof)), &said(look, run));
-    Some(format!("{said}\n{since}"))
+    let status = look.pair(look.tr(words::dof(dof)), &status_text(look, run));
+    Some(format!("{status}\n{since}"))
 }
 
-fn said(look: Look, run: &StatusRun) -> String {
+fn status_text(look: Look, run: &StatusRun) -> String {
     let faults = run.faults.into_iter().flat_map(|faults| faults.iter());
     let faults = faults.map(|fault| words::fault(fault, look.language).title);
     let faults: Vec<&str> = faults.collect();

@@ -89,12 +89,12 @@ impl PlotEnds<'_> {
     /// Draws the value of one curve, and its name if it fits.
     fn end_ui(&self, ui: &Ui, end: &CurveEnd, place: Rect) -> Response {
         let (look, panel) = (self.look, self.panel);
-        let name = look.say(words::dof(end.dof));
+        let name = look.tr(words::dof(end.dof));
         let id = ui.scope_id().with((panel.title.en, end.dof.index()));
         // On a touch screen a finger would hide the wrong curve: use the menu there.
         let sense = kit::click_if(ui.pixels_per_point() < TOUCHED);
         let response = ui.interact(place, id, sense);
-        let named = look.pair(look.say(panel.title), name);
+        let named = look.pair(look.tr(panel.title), name);
         let role = if sense.interactive() {
             Role::Button
         } else {
@@ -111,7 +111,7 @@ impl PlotEnds<'_> {
             let label = Label::new(name, end.color).small();
             label.paint(ui, rest.with_min_x(rest.left() + theme::STEP));
         }
-        let tip = format!("{name}\n{}", look.say(panels::HIDE_CURVE));
+        let tip = format!("{name}\n{}", look.tr(panels::HIDE_CURVE));
         response
             .on_hover_cursor(CursorIcon::PointingHand)
             .on_hover_text(tip)

@@ -21,19 +21,19 @@ const MENU: f32 = 264.0;
 pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
     let is_narrow = ui.available_width() < 440.0;
-    kit::head_ui(ui, look, look.say(panels::HISTORY), |ui| {
+    kit::head_ui(ui, look, look.tr(panels::HISTORY), |ui| {
         ui.spacing_mut().item_spacing.x = theme::STEP;
         menu_ui(ui, pane, view);
-        let cursors = Button::said(look, panels::CURSORS)
-            .named(look.say(panels::CURSORS_NAME))
+        let cursors = Button::text(look, panels::CURSORS)
+            .named(look.tr(panels::CURSORS_NAME))
             .switch(view.cursors.0.is_some());
         if cursors.ui(ui, look).clicked() {
             view.cursors.toggle(view.view.time.span());
         }
         if !is_narrow {
-            let note = Button::said(look, panels::NOTE);
-            let note = note.named(look.say(panels::NOTE_NAME));
-            note.opens(ui, pane, ViewRequest::Note);
+            let note = Button::text(look, panels::NOTE);
+            let note = note.named(look.tr(panels::NOTE_NAME));
+            note.navigate(ui, pane, ViewRequest::Note);
         }
         pause_ui(ui, pane, view, is_narrow);
         window_ui(ui, pane, view);
@@ -43,20 +43,20 @@ pub(crate) fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
 /// Draws the menu of less frequent options.
 fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     let look = pane.look;
-    let button = Button::said(look, panels::MORE);
+    let button = Button::text(look, panels::MORE);
     let button = button
-        .named(look.say(panels::MORE_NAME))
+        .named(look.tr(panels::MORE_NAME))
         .icon(theme::MORE)
         .ui(ui, look);
     kit::lasting_popup(&button).show(|ui| {
         ui.set_max_width(MENU);
-        ui.label(look.say(panels::SHOWN));
+        ui.label(look.tr(panels::SHOWN));
         shown_ui(ui, pane);
         ui.separator();
-        ui.label(look.say(panels::CURVES));
+        ui.label(look.tr(panels::CURVES));
         legend_ui(ui, look, view);
         ui.separator();
-        ui.checkbox(&mut view.large, look.say(panels::ENLARGE));
+        ui.checkbox(&mut view.large, look.tr(panels::ENLARGE));
         if kit::entry_ui(ui, look, panels::NOTE_NAME) {
             pane.open(ViewRequest::Note);
             Popup::close_all(ui.ctx());
@@ -68,7 +68,7 @@ fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
         }
         keep_ui(ui, pane, view);
         ui.separator();
-        let hint = egui::RichText::new(look.say(panels::AREA_TIP));
+        let hint = egui::RichText::new(look.tr(panels::AREA_TIP));
         ui.label(hint.small().color(look.palette.muted));
     });
 }
@@ -79,7 +79,7 @@ fn shown_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     for panel in &PANELS {
         let mut on = shown.shows(panel.kind);
         let enabled = !on || shown.count() > 1;
-        let switch = egui::Checkbox::new(&mut on, pane.look.say(panel.title));
+        let switch = egui::Checkbox::new(&mut on, pane.look.tr(panel.title));
         if ui.add_enabled(enabled, switch).changed() {
             pane.actions.push(Action::ShowPlot(panel.kind, on));
         }
@@ -113,8 +113,8 @@ fn pause_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView, is_narrow: bo
     } else {
         (panels::PAUSE, theme::PAUSE, Weight::Normal)
     };
-    let button = Button::said(look, text)
-        .named(look.say(panels::PAUSE_NAME))
+    let button = Button::text(look, text)
+        .named(look.tr(panels::PAUSE_NAME))
         .selected(is_paused)
         .weight(weight);
     let button = if is_narrow { button.icon(icon) } else { button };
@@ -129,7 +129,7 @@ fn window_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: &mut PlotView) {
     ui.spacing_mut().combo_width = 68.0;
     // All entries, without scrolling.
     ui.spacing_mut().combo_height = f32::INFINITY;
-    let name = pane.look.say(panels::WINDOW_NAME);
+    let name = pane.look.tr(panels::WINDOW_NAME);
     if kit::choose_ui(ui, name, &mut chosen, &all) {
         view.view.time.resize(chosen.seconds());
         pane.actions.push(Action::PlotWindow(chosen));
@@ -158,17 +158,17 @@ fn legend_ui(ui: &mut Ui, look: Look, view: &mut PlotView) {
         ui.spacing_mut().button_padding = egui::vec2(theme::STEP, 2.0);
         ui.spacing_mut().interact_size.y = 20.0;
         for dof in Dof::ALL {
-            let words = look.say(words::dof(dof));
+            let words = look.tr(words::dof(dof));
             let switch = CurveSwitch {
                 sign: "■ ",
                 color: palette.dof[dof],
                 words,
-                name: &format!("{}: {words}", look.say(panels::HISTORY)),
+                name: &format!("{}: {words}", look.tr(panels::HISTORY)),
                 is_on: !view.hidden[dof],
             };
-            view.hidden[dof] ^= switch.ui(ui, look, look.say(panels::SHOW_CURVE));
+            view.hidden[dof] ^= switch.ui(ui, look, look.tr(panels::SHOW_CURVE));
         }
-        let words = look.say(panels::THRESHOLDS);
+        let words = look.tr(panels::THRESHOLDS);
         let switch = CurveSwitch {
             sign: "- - ",
             color: palette.text,

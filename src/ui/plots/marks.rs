@@ -15,7 +15,7 @@ const NOTE_SHOWN: usize = 24;
 /// Times and colours of the lines.
 pub(crate) fn moments(pane: &Pane<'_>, (from_s, to_s): TimeSpan) -> Vec<(f64, Color32)> {
     let marks = pane.hand().measured.history.marks(from_s, to_s);
-    let moment = |mark: &Mark| (mark.at.secs(), told(pane.look, &mark.kind).1);
+    let moment = |mark: &Mark| (mark.at.secs(), mark_text(pane.look, &mark.kind).1);
     marks.map(moment).collect()
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
     let marks = pane.hand().measured.history.marks(from_s, to_s);
     let words = marks.map(|mark| {
         let x = shown.transform.position_from_point_x(mark.at.secs());
-        let (text, color) = told(pane.look, &mark.kind);
+        let (text, color) = mark_text(pane.look, &mark.kind);
         MarkWords {
             x,
             text: text.chars().take(NOTE_SHOWN).collect(),
@@ -92,7 +92,7 @@ impl MarkWords {
 }
 
 /// Text and colour of a mark.
-pub(crate) fn told(look: Look, kind: &MarkKind) -> (String, Color32) {
+pub(crate) fn mark_text(look: Look, kind: &MarkKind) -> (String, Color32) {
     let palette = look.palette;
     let (text, color) = match kind {
         MarkKind::Armed => (panels::MARK_ARMED, palette.armed),
@@ -103,12 +103,12 @@ pub(crate) fn told(look: Look, kind: &MarkKind) -> (String, Color32) {
         MarkKind::LinkLost => (panels::MARK_LOST, palette.bad),
         MarkKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
         MarkKind::Gesture(number) => {
-            let text = look.told(panels::GESTURE, number);
+            let text = look.tr_with(panels::GESTURE, number);
             return (text, palette.accent);
         }
         MarkKind::Note(words) => return (words.to_string(), palette.text),
     };
-    (look.say(text).to_owned(), color)
+    (look.tr(text).to_owned(), color)
 }
 
 /// Events near the pointer, one per line.
@@ -121,7 +121,7 @@ pub(crate) fn near(pane: &Pane<'_>, shown: &ChartResponse) -> Option<String> {
     let marks = history.marks(at_s - by_s, at_s + by_s);
     let lines = marks.map(|mark| {
         let at = clock(mark.at.secs(), per_point);
-        format!("{at}  {}", told(pane.look, &mark.kind).0)
+        format!("{at}  {}", mark_text(pane.look, &mark.kind).0)
     });
     let lines: Vec<String> = lines.collect();
     (!lines.is_empty()).then(|| lines.join("\n"))
@@ -144,11 +144,11 @@ mod tests {
         let check = |marks: &[(f32, &str)], wanted: &[(&str, usize)]| {
             let marks = marks.iter().map(|(x, text)| mark(*x, text));
             let all = joined(marks.collect(), 500.0, width);
-            let told: Vec<_> = all
+            let shown: Vec<_> = all
                 .iter()
                 .map(|one| (one.text.as_str(), one.more))
                 .collect();
-            assert_eq!(told, wanted);
+            assert_eq!(shown, wanted);
         };
         check(
             &[(100.0, "stop"), (300.0, "armed")],

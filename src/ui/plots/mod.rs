@@ -238,7 +238,7 @@ impl PlotView {
         ui.add_space(theme::STEP);
         let chart = self.panel_ui(ui, pane, panel, &place);
         let frame = *chart.transform.frame();
-        let name = look.pair(look.say(text::GROW), look.say(panel.title));
+        let name = look.pair(look.tr(text::GROW), look.tr(panel.title));
         let grow = chart.inner;
         grow.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
         let at = pos2(frame.left() - theme::STEP, frame.center().y);
@@ -247,7 +247,7 @@ impl PlotView {
         } else {
             look.palette.muted
         };
-        let short = look.say(panel.short).to_owned();
+        let short = look.tr(panel.short).to_owned();
         ui.painter()
             .text(at, Align2::RIGHT_CENTER, short, theme::small(), color);
         let values = self.ends(pane, panel).into_iter();
@@ -266,7 +266,7 @@ impl PlotView {
             self.chosen = Some(panel.kind);
             pane.actions.push(Action::GrowPlot(panel.kind));
         }
-        let tip = format!("{}\n{}", look.say(panel.title), look.tip(text::GROW));
+        let tip = format!("{}\n{}", look.tr(panel.title), look.tip(text::GROW));
         grow.on_hover_text(tip);
     }
 
@@ -285,7 +285,7 @@ impl PlotView {
         };
         let curve = |line: &PanelLine| ChartCurve {
             steps: line.wished,
-            told: (!line.wished).then_some(panel.row.decimals),
+            decimals: (!line.wished).then_some(panel.row.decimals),
             ..curve_of(&hand.measured.history, line)
         };
         let lines = panel.lines(&self.hidden);

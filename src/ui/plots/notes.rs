@@ -26,14 +26,14 @@ pub(crate) fn notes_ui(ui: &mut Ui, pane: &mut Pane<'_>) -> Option<f64> {
         return None;
     }
     let look = pane.look;
-    ui.label(look.say(panels::NOTES));
+    ui.label(look.tr(panels::NOTES));
     let mut asked = None;
     let list = ScrollArea::vertical().id_salt("notes").max_height(180.0);
     list.show(ui, |ui| {
         for (mark, words) in notes {
             ui.horizontal(|ui| {
-                let name = look.pair(look.say(panels::NOTE_DELETE), words);
-                let delete = Button::said(look, panels::NOTE_DELETE);
+                let name = look.pair(look.tr(panels::NOTE_DELETE), words);
+                let delete = Button::text(look, panels::NOTE_DELETE);
                 let delete = delete.icon(theme::CLOSE).weight(Weight::Quiet);
                 if delete.named(&name).ui(ui, look).clicked() {
                     pane.actions.push(Action::RemoveMark(mark.clone()));

@@ -193,7 +193,7 @@ impl Scales {
         if response.hovered() {
             ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
         }
-        let name = look.pair(look.say(panels::RANGE), look.say(title));
+        let name = look.pair(look.tr(panels::RANGE), look.tr(title));
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
         ui.ctx().accesskit_node_builder(response.id, |node| {
             node.set_value(format!("{low} to {high}"));

@@ -53,7 +53,7 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     ] {
         ui.horizontal(|ui| {
             Label::muted(look, caption).cell_ui(ui, CAPTION);
-            let field = TextField::new(look.say(caption), max).hint(look.tip(caption));
+            let field = TextField::new(look.tr(caption), max).hint(look.tip(caption));
             if let Some(text) = field.ui(ui, pane, value) {
                 change(pane, pose, edit(text));
             }
@@ -64,7 +64,7 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
 /// Draws the switch for a pose by size, its gap, and the thresholds of its grip.
 fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
-    let by_size = Button::said(look, poses::BY_SIZE).choice(pose.gap.is_some());
+    let by_size = Button::text(look, poses::BY_SIZE).choice(pose.gap.is_some());
     if by_size.ui(ui, look).clicked() {
         let counts = pose.angles.map(|angle| f32::from(angle.get()));
         let near = gap_on_path(&counts).unwrap_or(FIRST_GAP_MM);
@@ -86,9 +86,9 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
 /// Draws a gap in mm. Returns it once confirmed.
 fn gap_field_ui(ui: &mut Ui, pane: &mut Pane<'_>, gap: Gap) -> Option<Gap> {
     let look = pane.look;
-    let caption = look.say(poses::GAP);
+    let caption = look.tr(poses::GAP);
     Label::new(caption, look.palette.muted).ui(ui);
-    let label = look.told(poses::POSE, caption);
+    let label = look.tr_with(poses::POSE, caption);
     let range = f64::from(Gap::MIN.mm())..=f64::from(Gap::MAX.mm());
     let field = NumberField::new(&label, look.tip(poses::GAP), range).decimals(1);
     #[expect(clippy::cast_possible_truncation, reason = "a gap of at most 120 mm")]
@@ -110,12 +110,12 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
     if let Some(angle) = angle_ui(ui, pane, pose, dof) {
         change(pane, pose, PoseEdit::Angle(dof, angle));
     }
-    let text = look.say(poses::LEAVE);
-    let label = look.told(words::dof(dof), text);
+    let text = look.tr(poses::LEAVE);
+    let label = look.tr_with(words::dof(dof), text);
     let leave = pose.leave[dof];
     let pinches = pose.gap.is_some() && Gap::JOINTS.contains(&dof);
     let button = Button::new(text, look.tip(poses::LEAVE)).named(&label);
-    let button = button.disabled_if(pinches, look.say(poses::LEAVE_PINCHES));
+    let button = button.disabled_if(pinches, look.tr(poses::LEAVE_PINCHES));
     if button.choice(leave).ui(ui, look).clicked() {
         change(pane, pose, PoseEdit::Leave(dof, !leave));
     }
@@ -124,10 +124,10 @@ fn joint_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) {
 /// Draws one joint's angle as a number after its name. Returns it once confirmed.
 fn angle_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) -> Option<Angle> {
     let look = pane.look;
-    let name = look.say(words::dof(dof));
+    let name = look.tr(words::dof(dof));
     Label::new(name, look.palette.dof[dof]).cell_ui(ui, CAPTION);
-    let label = format!("{name} pose {}", look.say(poses::ANGLE));
-    let fixed = pose.gap.map(|_| look.say(poses::ANGLE_OF_GAP));
+    let label = format!("{name} pose {}", look.tr(poses::ANGLE));
+    let fixed = pose.gap.map(|_| look.tr(poses::ANGLE_OF_GAP));
     let field = NumberField::new(&label, look.tip(poses::ANGLE), 0.0..=1000.0).disabled(fixed);
     let typed = field.whole_ui(ui, pane, Some(pose.angles[dof].get()))?;
     Angle::new(typed).ok()
@@ -136,9 +136,9 @@ fn angle_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, dof: Dof) -> O
 fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     let look = pane.look;
     let mut number = |pane: &mut Pane<'_>, caption: Text, value: i16, max: f64| {
-        let text = look.say(caption);
+        let text = look.tr(caption);
         Label::new(text, look.palette.muted).ui(ui);
-        let label = look.told(poses::POSE, text);
+        let label = look.tr_with(poses::POSE, text);
         let field = NumberField::new(&label, look.tip(caption), 0.0..=max);
         field.whole_ui(ui, pane, Some(value))
     };
@@ -165,14 +165,14 @@ fn order_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
         (poses::LATER, theme::TO_RIGHT),
     ]
     .map(|(text, icon)| {
-        Button::said(look, text)
-            .tip(look.say(poses::SHIFT_TIP))
+        Button::text(look, text)
+            .tip(look.tr(poses::SHIFT_TIP))
             .icon(icon)
     });
     let retake =
-        Button::said(look, poses::RECAPTURE).disabled_if(unknown, look.say(poses::CAPTURE_UNKNOWN));
-    let double = Button::said(look, poses::DUPLICATE);
-    let away = Button::said(look, poses::DELETE);
+        Button::text(look, poses::RECAPTURE).disabled_if(unknown, look.tr(poses::CAPTURE_UNKNOWN));
+    let double = Button::text(look, poses::DUPLICATE);
+    let away = Button::text(look, poses::DELETE);
     for row in [
         &[(retake, again), (double, copy)][..],
         &[(left, earlier), (right, later), (away, delete)],

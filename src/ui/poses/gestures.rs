@@ -24,7 +24,7 @@ impl GestureView {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            let hint = [panels::GESTURES_FIXED, panels::GESTURES_USER].map(|text| look.say(text));
+            let hint = [panels::GESTURES_FIXED, panels::GESTURES_USER].map(|text| look.tr(text));
             let hint = hint.join(" · ");
             ui.horizontal(|ui| {
                 self.naming_ui(ui, pane);
@@ -43,7 +43,7 @@ impl GestureView {
                 });
             }
             ui.separator();
-            CollapsingHeader::new(look.say(poses::EXPERT))
+            CollapsingHeader::new(look.tr(poses::EXPERT))
                 .id_salt("expert gestures")
                 .show(ui, |ui| route_ui(ui, pane));
         });
@@ -57,9 +57,9 @@ impl GestureView {
             (panels::GESTURE_NAME_EDIT, Weight::Normal)
         };
         let tip = look.tip(panels::GESTURE_NAME_EDIT);
-        let button = Button::new(look.say(text), tip).weight(weight);
+        let button = Button::new(look.tr(text), tip).weight(weight);
         let button = button.selected(self.naming);
-        button.flips(ui, look, &mut self.naming);
+        button.toggle(ui, look, &mut self.naming);
     }
 
     fn names_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
@@ -67,7 +67,7 @@ impl GestureView {
         Grid::new("gesture names").show(ui, |ui| {
             for (index, gesture) in Gesture::all().enumerate() {
                 let number = gesture.get().to_string();
-                let name = look.told(panels::GESTURE_NAME, &number);
+                let name = look.tr_with(panels::GESTURE_NAME, &number);
                 let known = pane.state.settings.gesture_name(gesture);
                 let field = TextField::new(&name, NAME_MAX).hint(&number);
                 ui.scope(|ui| {
@@ -88,9 +88,9 @@ impl GestureView {
 fn route_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let routes = [
-        (GestureRoute::Register1008, look.say(panels::ROUTE_1008)),
-        (GestureRoute::ActionLibrary, look.say(panels::ROUTE_LIBRARY)),
-        (GestureRoute::Off, look.say(panels::ROUTE_OFF)),
+        (GestureRoute::Register1008, look.tr(panels::ROUTE_1008)),
+        (GestureRoute::ActionLibrary, look.tr(panels::ROUTE_LIBRARY)),
+        (GestureRoute::Off, look.tr(panels::ROUTE_OFF)),
     ];
     let mut route = pane.state.settings.gesture_route;
     let known = match route {
@@ -98,7 +98,7 @@ fn route_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         GestureRoute::ActionLibrary => panels::KNOWN_LIBRARY,
         GestureRoute::Off => panels::KNOWN_OFF,
     };
-    let name = look.say(panels::GESTURE_ROUTE);
+    let name = look.tr(panels::GESTURE_ROUTE);
     ui.horizontal(|ui| {
         Label::new(name, look.palette.text).ui(ui);
         if kit::choose_ui(ui, name, &mut route, &routes) {

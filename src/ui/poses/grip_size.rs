@@ -18,7 +18,7 @@ const POPUP: f32 = 420.0;
 /// Draws the button in the strip of poses, with its popup.
 pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let button = Button::said(look, poses::GRIP_SIZE).ui(ui, look);
+    let button = Button::text(look, poses::GRIP_SIZE).ui(ui, look);
     kit::lasting_popup(&button).width(POPUP).show(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
         kinds_ui(ui, pane);
@@ -33,8 +33,8 @@ fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
     ui.horizontal(|ui| {
         for kind in GripKind::ALL {
             let offered = kind.offered();
-            let button = Button::said(look, poses::kind(kind)).choice(offered.is_ok());
-            let no_gap = offered.err().map(|why| look.say(poses::no_gap(why)));
+            let button = Button::text(look, poses::kind(kind)).choice(offered.is_ok());
+            let no_gap = offered.err().map(|why| look.tr(poses::no_gap(why)));
             button.disabled(no_gap).ui(ui, look);
         }
     });
@@ -43,8 +43,8 @@ fn kinds_ui(ui: &mut Ui, pane: &Pane<'_>) {
 /// Reason why no gap can be sent now; `None` if it is possible.
 fn refusal(pane: &Pane<'_>) -> Option<&'static str> {
     let (look, hand) = (pane.look, pane.hand());
-    let locked = grip::locks_pinch(hand).then(|| look.say(main::LOCKED));
-    let closed = (!grip::is_open_for_pinch(hand)).then(|| look.say(poses::GAP_CLOSED));
+    let locked = grip::locks_pinch(hand).then(|| look.tr(main::LOCKED));
+    let closed = (!grip::is_open_for_pinch(hand)).then(|| look.tr(poses::GAP_CLOSED));
     pane.unready().or(locked).or(closed)
 }
 
@@ -68,7 +68,7 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let mut mm = wish.unwrap_or_else(|| gap_now(pane).mm().round());
     ui.spacing_mut().slider_width = POPUP / 2.0;
     let range = Gap::MIN.mm()..=Gap::MAX.mm();
-    let text = look.say(poses::GAP);
+    let text = look.tr(poses::GAP);
     let slider = Slider::new(&mut mm, range).fixed_decimals(0).text(text);
     let is_movable = !is_armed || refused.is_none();
     let slider = ui.add_enabled(is_movable, slider.show_value(true));
@@ -89,7 +89,7 @@ fn gap_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         ui.set_min_height(theme::CONTROL);
         opening_ui(ui, pane, is_armed);
     });
-    let keep = Button::said(look, poses::GAP_KEEP);
+    let keep = Button::text(look, poses::GAP_KEEP);
     let pose = Action::Library(LibraryEdit::Add(vec![pose(look, Gap::nearest(mm))]));
     keep.on_click(ui, pane, pose);
 }
@@ -108,8 +108,8 @@ fn opening_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_armed: bool) {
     if !is_armed {
         Label::note(look, poses::GAP_WISH).wrap().ui(ui);
     } else if !grip::is_open_for_pinch(hand) {
-        let locked = grip::locks_pinch(hand).then(|| look.say(main::LOCKED));
-        let button = Button::said(look, poses::GAP_OPEN).disabled(pane.unready().or(locked));
+        let locked = grip::locks_pinch(hand).then(|| look.tr(main::LOCKED));
+        let button = Button::text(look, poses::GAP_OPEN).disabled(pane.unready().or(locked));
         button.on_click(ui, pane, Action::Pinch(Gap::MAX));
     }
 }
@@ -118,16 +118,16 @@ fn opening_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_armed: bool) {
 fn held_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let held = figures::held_size(pane);
-    let none = look.say(poses::HELD_NONE);
-    let words = look.pair(look.say(poses::HELD_SIZE), held.as_deref().unwrap_or(none));
+    let none = look.tr(poses::HELD_NONE);
+    let words = look.pair(look.tr(poses::HELD_SIZE), held.as_deref().unwrap_or(none));
     let label = Label::new(&words, look.palette.text).wrap().ui(ui);
     label.on_hover_text(look.tip(poses::HELD_SIZE));
     ui.horizontal(|ui| {
         Label::muted(look, poses::BLOCK).ui(ui);
         let (from, to) = (*Block::SIZES_MM.start(), *Block::SIZES_MM.end());
         let range = f64::from(from)..=f64::from(to);
-        let field = NumberField::new(look.say(poses::BLOCK), look.tip(poses::BLOCK), range);
-        let not_held = held.is_none().then(|| look.say(poses::BLOCK_NOT_HELD));
+        let field = NumberField::new(look.tr(poses::BLOCK), look.tip(poses::BLOCK), range);
+        let not_held = held.is_none().then(|| look.tr(poses::BLOCK_NOT_HELD));
         let field = field.decimals(1).needs_enter().disabled(not_held);
         if let Some(size_mm) = field.ui(ui, pane, None) {
             #[expect(clippy::cast_possible_truncation, reason = "a size of at most 120 mm")]
@@ -139,7 +139,7 @@ fn held_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let sizes = blocks.blocks().iter();
     let sizes: Vec<String> = sizes.map(|own| format!("{} mm", own.size_mm)).collect();
     let known = if blocks.is_empty() {
-        look.say(poses::BLOCKS_NONE).to_owned()
+        look.tr(poses::BLOCKS_NONE).to_owned()
     } else {
         look.list(&sizes)
     };
@@ -147,7 +147,7 @@ fn held_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let known = look.fill(poses::BLOCKS, &[&known]);
         Label::new(&known, look.palette.muted).ui(ui);
         if !blocks.is_empty() {
-            Button::said(look, poses::BLOCKS_FORGET).on_click(ui, pane, Action::ForgetBlocks);
+            Button::text(look, poses::BLOCKS_FORGET).on_click(ui, pane, Action::ForgetBlocks);
         }
     });
 }

@@ -90,11 +90,11 @@ impl PoseView {
             return empty_ui(ui, pane);
         }
         ui.horizontal(|ui| {
-            let capture = Button::said(look, poses::CAPTURE);
+            let capture = Button::text(look, poses::CAPTURE);
             capture_ui(ui, pane, capture.weight(Weight::Strong));
             ui.scope(|ui| {
                 ui.set_max_width(200.0);
-                kit::edit_said_ui(ui, look, poses::FIND, &mut self.find);
+                kit::translated_edit_ui(ui, look, poses::FIND, &mut self.find);
             });
         });
         let chosen = self.chosen.and_then(|chosen| library.pose(chosen));
@@ -149,15 +149,15 @@ impl PoseView {
 fn tools_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let book = &pane.state.poses;
-    let nothing = book.library.is_empty().then(|| look.say(poses::NOTHING));
-    let no_undo = (!book.can_undo()).then(|| look.say(poses::UNDO_NONE));
+    let nothing = book.library.is_empty().then(|| look.tr(poses::NOTHING));
+    let no_undo = (!book.can_undo()).then(|| look.tr(poses::UNDO_NONE));
     let undo = Action::Library(LibraryEdit::Undo);
     for (text, disabled, action) in [
         (poses::EXPORT, nothing, Action::ExportPoses),
         (poses::IMPORT, None, Action::ImportPoses(None)),
         (poses::UNDO, no_undo, undo),
     ] {
-        let button = Button::said(look, text).disabled(disabled);
+        let button = Button::text(look, text).disabled(disabled);
         button.on_click(ui, pane, action);
     }
 }
@@ -168,7 +168,7 @@ fn refused_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         return;
     };
     let words = notices::notice(pane.look, refused);
-    kit::say_ui(ui, &words, pane.look.palette.warn);
+    kit::small_text_ui(ui, &words, pane.look.palette.warn);
     if let Some(path) = path_ui(ui, pane.look, "poses") {
         pane.actions.push(Action::ImportPoses(Some(path)));
     }
@@ -181,7 +181,7 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         Label::muted(look, poses::EMPTY_BODY).wrap().ui(ui);
         ui.add_space(theme::GAP);
         let tip = look.tip(poses::CAPTURE);
-        let button = Button::new(look.say(poses::EMPTY_BUTTON), tip).weight(Weight::Strong);
+        let button = Button::new(look.tr(poses::EMPTY_BUTTON), tip).weight(Weight::Strong);
         capture_ui(ui, pane, button.large());
     });
 }

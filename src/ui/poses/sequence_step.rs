@@ -84,7 +84,7 @@ fn shown(pane: &Pane<'_>, goal: StepGoal) -> Option<(String, PerDof<Angle>)> {
             Some((pose.name.clone(), pose.angles))
         }
         StepGoal::Gap { gap, .. } => {
-            let name = pane.look.say(poses::kind(GripKind::Pinch));
+            let name = pane.look.tr(poses::kind(GripKind::Pinch));
             Some((format!("{name} {} mm", gap.mm()), gap.angles()))
         }
     }
@@ -105,8 +105,8 @@ fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, at: usize) {
         (theme::TO_BOTTOM, poses::LATER, poses::SHIFT_TIP, later),
         (theme::TO_TOP, poses::EARLIER, poses::SHIFT_TIP, earlier),
     ] {
-        let label = look.told(caption, &number);
-        let button = Button::new(&label, look.say(tip)).icon(icon);
+        let label = look.tr_with(caption, &number);
+        let button = Button::new(&label, look.tr(tip)).icon(icon);
         if button.weight(Weight::Quiet).ui(ui, look).clicked() {
             change(pane, sequence, edit);
         }
@@ -115,10 +115,10 @@ fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, at: usize) {
 
 /// Draws the part of a row that is focused or dragged to move the step.
 fn handle_ui(ui: &mut Ui, look: Look, at: usize, name: &str) {
-    let label = format!("{} {}: {name}", look.say(poses::STEP_NAME), at + 1);
+    let label = format!("{} {}: {name}", look.tr(poses::STEP_NAME), at + 1);
     let text = format!("{}  {name}", at + 1);
     let (id, rect) = ui.allocate_space(ui.available_size());
-    let handle = Button::new(&text, look.say(poses::DRAG_TIP)).named(&label);
+    let handle = Button::new(&text, look.tr(poses::DRAG_TIP)).named(&label);
     let response = handle.weight(Weight::Quiet).ground(ui, look, rect, id);
     let words = rect.shrink2(vec2(theme::STEP, 0.0));
     Label::new(&text, look.palette.text).paint(ui, words);
@@ -127,13 +127,13 @@ fn handle_ui(ui: &mut Ui, look: Look, at: usize, name: &str) {
 
 /// Accessible name of a step's number or button.
 fn named(look: Look, at: usize, caption: Text) -> String {
-    format!("{} {} {}", look.say(poses::STEP), at + 1, look.say(caption))
+    format!("{} {} {}", look.tr(poses::STEP), at + 1, look.tr(caption))
 }
 
 /// Draws the switch to wait until the hand holds something.
 fn until_ui(ui: &mut Ui, look: Look, at: usize, step: &mut SequenceStep) {
     let label = named(look, at, poses::UNTIL);
-    let waits = Button::said(look, poses::UNTIL).named(&label);
+    let waits = Button::text(look, poses::UNTIL).named(&label);
     if waits.choice(step.until.is_some()).ui(ui, look).clicked() {
         step.until = match step.until {
             Some(_) => None,
@@ -170,7 +170,7 @@ impl StepNumber {
     fn ui(self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<f64> {
         let look = pane.look;
         let label = named(look, self.at, self.caption);
-        let field = NumberField::new(&label, look.say(self.tip), self.range);
+        let field = NumberField::new(&label, look.tr(self.tip), self.range);
         let field = field.decimals(self.decimals);
         let typed = ui.allocate_ui_with_layout(NUMBER, Layout::top_down(Align::Min), |ui| {
             ui.set_min_width(NUMBER.x);

@@ -61,19 +61,19 @@ impl SequenceView {
         let look = pane.look;
         let library = &pane.state.poses.library;
         let tip = look.tip(poses::NEW_SEQUENCE);
-        let new = Button::new(look.say(poses::NEW_SEQUENCE), tip);
+        let new = Button::new(look.tr(poses::NEW_SEQUENCE), tip);
         let none = library.poses.is_empty();
-        let new = new.disabled(none.then(|| look.say(poses::NEEDS_POSES)));
+        let new = new.disabled(none.then(|| look.tr(poses::NEEDS_POSES)));
         ui.with_layout(Layout::top_down_justified(Align::Min), |ui| {
             if new.large().ui(ui, look).clicked() {
-                let name = look.say(poses::SEQUENCE).to_owned();
+                let name = look.tr(poses::SEQUENCE).to_owned();
                 let new = Action::Library(LibraryEdit::NewSequence(name));
                 pane.actions.push(new);
             }
             ScrollArea::vertical().id_salt("sequences").show(ui, |ui| {
                 for sequence in &library.sequences {
-                    let label = look.told(poses::SEQUENCE, &sequence.name);
-                    let button = Button::new(&sequence.name, look.say(poses::SECTION_TIP));
+                    let label = look.tr_with(poses::SEQUENCE, &sequence.name);
+                    let button = Button::new(&sequence.name, look.tr(poses::SECTION_TIP));
                     let button = button.named(&label).large();
                     let button = button.choice(self.chosen == Some(sequence.id));
                     if button.ui(ui, look).clicked() {
@@ -121,14 +121,14 @@ impl SequenceView {
         if !all.iter().any(|(pose, _)| *pose == self.adding) {
             self.adding = all.first().and_then(|(pose, _)| *pose);
         }
-        kit::choose_ui(ui, look.say(poses::POSE), &mut self.adding, &all);
-        let button = Button::said(look, poses::ADD);
+        kit::choose_ui(ui, look.tr(poses::POSE), &mut self.adding, &all);
+        let button = Button::text(look, poses::ADD);
         if button.ui(ui, look).clicked()
             && let Some(pose) = self.adding
         {
             change(pane, sequence, SequenceEdit::Add(pose));
         }
-        if Button::said(look, poses::ADD_GRIP).ui(ui, look).clicked() {
+        if Button::text(look, poses::ADD_GRIP).ui(ui, look).clicked() {
             let gap = Gap::nearest(FIRST_GAP_MM);
             change(pane, sequence, SequenceEdit::AddGap(gap));
         }
@@ -139,10 +139,10 @@ fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (look, palette) = (pane.look, pane.look.palette);
     ui.vertical_centered(|ui| {
         ui.add_space(ui.available_height() * 0.3);
-        Label::said(look, poses::SEQUENCE_EMPTY).title().ui(ui);
+        Label::text(look, poses::SEQUENCE_EMPTY).title().ui(ui);
         Label::muted(look, poses::SEQUENCE_EMPTY_BODY).wrap().ui(ui);
         if pane.state.poses.library.poses.is_empty() {
-            Label::new(look.say(poses::NEEDS_POSES), palette.warn).ui(ui);
+            Label::new(look.tr(poses::NEEDS_POSES), palette.warn).ui(ui);
         }
     });
 }
@@ -150,15 +150,15 @@ fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
 /// Draws the actions from right to left.
 fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence) {
     let look = pane.look;
-    let delete = Button::said(look, poses::DELETE);
+    let delete = Button::text(look, poses::DELETE);
     if delete.ui(ui, look).clicked() {
         change(pane, sequence, SequenceEdit::Delete);
     }
-    let looped = Button::said(look, poses::LOOP);
+    let looped = Button::text(look, poses::LOOP);
     if looped.choice(sequence.looped).ui(ui, look).clicked() {
         change(pane, sequence, SequenceEdit::Loop(!sequence.looped));
     }
-    let name = look.told(poses::SEQUENCE, look.say(poses::NAME));
+    let name = look.tr_with(poses::SEQUENCE, look.tr(poses::NAME));
     let field = TextField::new(&name, NAME_CHARS_MAX);
     if let Some(name) = field.ui(ui, pane, &sequence.name) {
         change(pane, sequence, SequenceEdit::Rename(name));
@@ -178,9 +178,9 @@ fn picture_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
         PerDof::from_fn(|dof| Some(f32::from(angle?.value[dof].documented()?) / 1000.0))
     };
     let pose = shown.map_or_else(actual, |shown| shown.shares);
-    let (text, color) = said(pane, sequence, shown.map(|shown| shown.step + 1));
+    let (text, color) = state_text(pane, sequence, shown.map(|shown| shown.step + 1));
     let label = Label::new(&text, color);
-    label.named(look.say(poses::PICTURE)).ui(ui);
+    label.named(look.tr(poses::PICTURE)).ui(ui);
     let height = (ui.available_height() * 0.36).clamp(72.0, 360.0);
     let (_, rect) = ui.allocate_space(vec2(ui.available_width(), height));
     ui.painter()
@@ -188,15 +188,15 @@ fn picture_ui(ui: &mut Ui, pane: &Pane<'_>, sequence: &Sequence) {
     tile::pose_ui(ui, look, rect.shrink(theme::STEP), &pose);
 }
 
-fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, egui::Color32) {
+fn state_text(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, egui::Color32) {
     let look = pane.look;
     let palette = look.palette;
     if let Some(step) = dry {
-        return (look.told(poses::SAY_DRY, step), palette.simulated);
+        return (look.tr_with(poses::SAY_DRY, step), palette.simulated);
     }
     let run = pane.hand().running.sequence();
     let Some(run) = run.filter(|run| run.entry == EntryId::Sequence(sequence.id)) else {
-        return (look.say(poses::SAY_IDLE).into(), palette.muted);
+        return (look.tr(poses::SAY_IDLE).into(), palette.muted);
     };
     let (text, color) = match run.view.phase {
         PlayPhase::Moving { .. } => (poses::SAY_MOVING, palette.armed),
@@ -213,16 +213,16 @@ fn said(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (String, eg
         PlayPhase::Ended(Err(Abort::TakenOver)) => (poses::END_TAKEN, palette.warn),
         PlayPhase::Ended(Err(why)) => return (abort_words(look, why), palette.warn),
         PlayPhase::Ended(Ok(PlayEnd::NotHolding(grip))) => {
-            let grip = look.say(panels::grip(grip));
+            let grip = look.tr(panels::grip(grip));
             return (look.fill(poses::END_NOT_HOLDING, &[&grip]), palette.warn);
         }
     };
-    let mut words = look.say(text).to_owned();
+    let mut words = look.tr(text).to_owned();
     if run.is_running() {
         words = format!("{words} {}", run.view.at + 1);
     }
     if run.view.late > 0 {
-        words = format!("{words} · {} {}", look.say(poses::SAY_LATE), run.view.late);
+        words = format!("{words} · {} {}", look.tr(poses::SAY_LATE), run.view.late);
     }
     (words, color)
 }
@@ -237,8 +237,8 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
     let preview = pane.state.poses.preview.as_ref();
     let dry = preview.is_some_and(|preview| preview.sequence == id);
     let empty = sequence.steps.is_empty();
-    let empty = empty.then(|| look.say(poses::STEPS_EMPTY));
-    let idle = (!running).then(|| look.say(poses::NOT_RUNNING));
+    let empty = empty.then(|| look.tr(poses::STEPS_EMPTY));
+    let idle = (!running).then(|| look.tr(poses::NOT_RUNNING));
     let cannot = empty.or(pane.unready());
     let go_on = if paused {
         (poses::RESUME, idle, Action::Play(Play::Resume))
@@ -262,7 +262,7 @@ fn controls_ui(columns: &mut [Ui], pane: &mut Pane<'_>, sequence: &Sequence) {
         (poses::END, idle, Action::Play(Play::End)),
     ];
     for (ui, (text, disabled, action)) in columns.iter_mut().zip(all) {
-        let button = Button::said(look, text).strong_if(text == poses::START);
+        let button = Button::text(look, text).strong_if(text == poses::START);
         let button = button.large().disabled(disabled);
         button.on_click(ui, pane, action);
     }

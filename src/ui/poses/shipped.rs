@@ -58,15 +58,15 @@ fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
     start_ui(ui, pane, entry);
     ui.columns_const(|[left, right]: &mut [Ui; 2]| {
         let is_reaction = matches!(entry, EntryId::Reaction(_));
-        let copy = Button::said(look, poses::COPY).weight(Weight::Quiet);
-        let copy = copy.disabled_if(is_reaction, look.say(poses::COPY_REACTION));
-        let label = look.told(poses::COPY, name);
+        let copy = Button::text(look, poses::COPY).weight(Weight::Quiet);
+        let copy = copy.disabled_if(is_reaction, look.tr(poses::COPY_REACTION));
+        let label = look.tr_with(poses::COPY, name);
         let action = Action::Library(LibraryEdit::Copy(entry));
         copy.named(&label).on_click(left, pane, action);
         let text = if hidden { poses::SHOW } else { poses::HIDE };
-        let label = look.told(text, name);
-        let hide = Button::said(look, text).weight(Weight::Quiet);
-        let hide = hide.disabled_if(overridden, look.say(poses::OVERRIDDEN));
+        let label = look.tr_with(text, name);
+        let hide = Button::text(look, text).weight(Weight::Quiet);
+        let hide = hide.disabled_if(overridden, look.tr(poses::OVERRIDDEN));
         hide.named(&label)
             .on_click(right, pane, Action::HideShipped(key.to_owned(), !hidden));
     });

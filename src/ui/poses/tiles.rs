@@ -37,13 +37,13 @@ fn refusal(pane: &Pane<'_>, pose: &LibraryPose) -> Option<&'static str> {
     let moves = |dof: Dof| !pose.leave[dof] && !pane.hand().controls.joints[dof].locked;
     let any = Dof::ALL.into_iter().any(moves);
     let pinches = pose.gap.is_none() || !grip::locks_pinch(pane.hand());
-    (!any || !pinches).then(|| pane.look.say(main::LOCKED))
+    (!any || !pinches).then(|| pane.look.tr(main::LOCKED))
 }
 
 /// Reason why no gesture can be started now; `None` if one can.
 fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
     if pane.state.settings.gesture_route == GestureRoute::Off {
-        return Some(pane.look.say(panels::GESTURES_OFF));
+        return Some(pane.look.tr(panels::GESTURES_OFF));
     }
     pane.unready()
 }
@@ -51,8 +51,8 @@ fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
 /// Draws a tile of the library: picture, name, tags. True if it was clicked.
 pub(crate) fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, chosen: bool) -> bool {
     let (look, rect) = (pane.look, ui.max_rect());
-    let name = look.told(poses::POSE, &pose.name);
-    let button = Button::new(&pose.name, look.say(poses::SELECT_TIP))
+    let name = look.tr_with(poses::POSE, &pose.name);
+    let button = Button::new(&pose.name, look.tr(poses::SELECT_TIP))
         .named(&name)
         .switch(chosen);
     ui.spacing_mut().item_spacing.y = theme::STEP;
@@ -85,11 +85,11 @@ pub(crate) fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, chos
 pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {
-        kit::head_ui(ui, look, look.say(poses::STRIP), |ui| {
-            let every = Button::said(look, poses::EVERY);
-            every.opens(ui, pane, ViewRequest::View(View::Poses));
+        kit::head_ui(ui, look, look.tr(poses::STRIP), |ui| {
+            let every = Button::text(look, poses::EVERY);
+            every.navigate(ui, pane, ViewRequest::View(View::Poses));
             let tip = look.tip(poses::CAPTURE);
-            capture_ui(ui, pane, Button::new(look.say(poses::CAPTURE), tip));
+            capture_ui(ui, pane, Button::new(look.tr(poses::CAPTURE), tip));
             gestures_ui(ui, pane);
             grip_size::drawer_ui(ui, pane);
             for_all_ui(ui, pane);
@@ -127,7 +127,7 @@ pub(crate) fn for_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let hands = &pane.state.hands;
     if hands.is_several() {
         let on = hands.poses_for_all();
-        let switch = Button::said(pane.look, window::POSES_FOR_ALL).switch(on);
+        let switch = Button::text(pane.look, window::POSES_FOR_ALL).switch(on);
         let action = Action::Hands(HandsAction::PosesForAll(!on));
         switch.on_click(ui, pane, action);
     }
@@ -141,7 +141,7 @@ fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     if named.is_empty() {
         return;
     }
-    let button = Button::said(look, poses::STRIP_GESTURES).ui(ui, look);
+    let button = Button::text(look, poses::STRIP_GESTURES).ui(ui, look);
     kit::lasting_popup(&button).width(POPUP).show(|ui| {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
@@ -156,8 +156,8 @@ fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 pub(crate) fn capture_ui(ui: &mut Ui, pane: &mut Pane<'_>, button: Button<'_>) {
     let look = pane.look;
     let unknown = pane.hand().pose_now(pane.state.now).is_none();
-    let button = button.disabled(unknown.then(|| look.say(poses::CAPTURE_UNKNOWN)));
-    let name = look.say(poses::POSE).to_owned();
+    let button = button.disabled(unknown.then(|| look.tr(poses::CAPTURE_UNKNOWN)));
+    let name = look.tr(poses::POSE).to_owned();
     button.on_click(ui, pane, Action::Capture(name));
 }
 
@@ -178,7 +178,7 @@ fn entry_tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId, size: egui::V
     if let Some(key) = key {
         tip = format!("{tip}\nShift+{}", key.get());
     }
-    let label = look.told(verb, name);
+    let label = look.tr_with(verb, name);
     let weight = if runs { Weight::Chosen } else { Weight::Normal };
     let button = Button::new(name, &tip)
         .named(&label)
@@ -246,12 +246,12 @@ fn entry_refusal(pane: &Pane<'_>, entry: EntryId) -> Option<&'static str> {
 pub(crate) fn start_ui(ui: &mut Ui, pane: &mut Pane<'_>, entry: EntryId) {
     let (look, state) = (pane.look, pane.state);
     let verb = verb(state, entry);
-    let label = look.told(verb, look.entry_name(&state.poses, entry));
+    let label = look.tr_with(verb, look.entry_name(&state.poses, entry));
     let text = match entry {
         EntryId::Pose(_) => poses::RECALL,
         _ => verb,
     };
-    let button = Button::said(look, text)
+    let button = Button::text(look, text)
         .named(&label)
         .disabled(entry_refusal(pane, entry))
         .weight(Weight::Strong);
@@ -289,8 +289,8 @@ pub(crate) fn gesture_ui(ui: &mut Ui, pane: &mut Pane<'_>, gesture: Gesture) -> 
     let known = pane.state.settings.gesture_name(gesture);
     let number = gesture.get().to_string();
     let name = known.unwrap_or_default();
-    let label = format!("{} {number} {name}", look.say(panels::GESTURE));
-    let tip = format!("{}\n{}", label.trim(), look.say(panels::GESTURE_RUN_TIP));
+    let label = format!("{} {number} {name}", look.tr(panels::GESTURE));
+    let tip = format!("{}\n{}", label.trim(), look.tr(panels::GESTURE_RUN_TIP));
     let text = known.map_or_else(|| number.clone(), |name| format!("{name}  {number}"));
     let weight = match known {
         Some(_) => Weight::Normal,

@@ -17,15 +17,15 @@ const OFFERED: usize = 200;
 pub(crate) fn beside_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let look = pane.look;
     let Some(beside) = &pane.state.beside else {
-        let choose = Button::said(look, recordings::BESIDE).ui(ui, look);
+        let choose = Button::text(look, recordings::BESIDE).ui(ui, look);
         Popup::menu(&choose).show(|ui| offers_ui(ui, pane, line));
         return;
     };
-    let off = Button::new(&beside.title, look.say(recordings::BESIDE_OFF));
-    let name = look.pair(look.say(recordings::BESIDE_OFF), &beside.title);
+    let off = Button::new(&beside.title, look.tr(recordings::BESIDE_OFF));
+    let name = look.pair(look.tr(recordings::BESIDE_OFF), &beside.title);
     let off = off.named(&name).switch(true);
     off.on_click(ui, pane, Action::Recording(RecordingAction::Beside(None)));
-    let align = Button::said(look, recordings::ALIGN).ui(ui, look);
+    let align = Button::text(look, recordings::ALIGN).ui(ui, look);
     kit::lasting_popup(&align).show(|ui| align_ui(ui, pane, line, beside));
 }
 
@@ -48,11 +48,11 @@ fn offers_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
 
 /// Moments at which a recording can be aligned.
 fn moments(look: Look, first: Moment, marks: &[FileMark]) -> Vec<(Moment, String)> {
-    let beginning = (first, look.say(recordings::BEGINNING).to_owned());
+    let beginning = (first, look.tr(recordings::BEGINNING).to_owned());
     let marks = marks.iter().filter_map(|mark| {
         let word = match mark.kind {
             EventKind::Note => mark.words.clone(),
-            kind => look.say(shown(look, kind)?.0).to_owned(),
+            kind => look.tr(shown(look, kind)?.0).to_owned(),
         };
         let at = clock(mark.at.since(first));
         Some((mark.at, format!("{at}  {word}")))
@@ -64,12 +64,12 @@ fn align_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline, beside: &BesideRe
     let look = pane.look;
     ui.set_min_width(280.0);
     let mut own = moments(look, line.first, &line.marks);
-    own.push((line.at, look.say(recordings::THIS_MOMENT).to_owned()));
+    own.push((line.at, look.tr(recordings::THIS_MOMENT).to_owned()));
     let other = moments(look, beside.first, &beside.marks);
     let (mut at_own, mut at_other) = (beside.own, beside.other);
     let choose = |ui: &mut Ui, text, chosen: &mut Moment, all: &[(Moment, String)]| {
-        ui.label(look.say(text));
-        kit::choose_ui(ui, look.say(text), chosen, all)
+        ui.label(look.tr(text));
+        kit::choose_ui(ui, look.tr(text), chosen, all)
     };
     let moved = choose(ui, recordings::ALIGN_OWN, &mut at_own, &own);
     let moved = choose(ui, recordings::ALIGN_OTHER, &mut at_other, &other) || moved;

@@ -11,7 +11,7 @@ use crate::app::state::State;
 use crate::ui::hand::tile;
 use crate::ui::kit::path_field::{folder_path_ui, path_ui};
 use crate::ui::kit::{
-    self, Button, ButtonRole, Card, Choice, Label, Look, Pane, ViewRequest, Weight, format,
+    self, Button, ButtonRole, Card, CardButton, Label, Look, Pane, ViewRequest, Weight, format,
 };
 use crate::ui::recordings::table::{MarkedStretch, RecordingTable};
 use crate::ui::text::recordings;
@@ -31,7 +31,7 @@ const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 pub(crate) struct RecordingsView {
     find: String,
     /// Time of the last listing, in seconds of the window's time.
-    looked: Option<f64>,
+    scanned_s: Option<f64>,
     /// The field for another file is open.
     other: bool,
     /// Time range marked on a strip.
@@ -42,10 +42,10 @@ impl RecordingsView {
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let now = ui.input(|input| input.time);
         if self
-            .looked
+            .scanned_s
             .is_none_or(|at| now - at >= POLL_INTERVAL.as_secs_f64())
         {
-            self.looked = Some(now);
+            self.scanned_s = Some(now);
             pane.actions.push(Action::Recording(RecordingAction::Look));
             ui.ctx().request_repaint_after(POLL_INTERVAL);
         }
@@ -71,14 +71,14 @@ impl RecordingsView {
 
     /// Called when the user leaves the view: the list is refreshed when it is next shown.
     pub(crate) const fn leave(&mut self) {
-        self.looked = None;
+        self.scanned_s = None;
     }
 
     fn head_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        kit::head_ui(ui, look, look.say(recordings::TITLE), |ui| {
-            let other = Button::said(look, recordings::OPEN_OTHER).switch(self.other);
-            other.flips(ui, look, &mut self.other);
+        kit::head_ui(ui, look, look.tr(recordings::TITLE), |ui| {
+            let other = Button::text(look, recordings::OPEN_OTHER).switch(self.other);
+            other.toggle(ui, look, &mut self.other);
             let mut simulated = pane.state.settings.recordings.record_simulated;
             if kit::tick_ui(ui, look, recordings::SIM_TOO, &mut simulated) {
                 let action = RecordingAction::RecordSimulated(simulated);
@@ -86,7 +86,7 @@ impl RecordingsView {
             }
             ui.scope(|ui| {
                 ui.set_max_width(260.0);
-                kit::edit_said_ui(ui, look, recordings::FIND, &mut self.find);
+                kit::translated_edit_ui(ui, look, recordings::FIND, &mut self.find);
             });
         });
     }
@@ -97,7 +97,7 @@ impl RecordingsView {
         let all = state.items.iter();
         let shown: Vec<&RecordingItem> = all.filter(|item| item.matches(&self.find)).collect();
         let empty = match (state.items.is_empty(), shown.is_empty()) {
-            (true, _) if state.looks || state.looked == 0 && state.folder.is_some() => {
+            (true, _) if state.is_scanning || state.scans == 0 && state.folder.is_some() => {
                 Some(recordings::LOOKS)
             }
             (true, _) => return empty_ui(ui, pane),
@@ -124,16 +124,16 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         if pane.state.recordings.folder.is_none() {
             Label::muted(look, recordings::NOWHERE).wrap().ui(ui);
             ui.add_space(theme::GAP);
-            let choose = Button::said(look, recordings::FOLDER_CHANGE);
+            let choose = Button::text(look, recordings::FOLDER_CHANGE);
             let choose = choose.weight(Weight::Strong).large();
             let action = RecordingAction::ChooseFolder(None);
             return choose.on_click(ui, pane, Action::Recording(action));
         }
         Label::muted(look, recordings::NONE).wrap().ui(ui);
         ui.add_space(theme::GAP);
-        let connect = Button::said(look, recordings::NONE_BUTTON).large();
+        let connect = Button::text(look, recordings::NONE_BUTTON).large();
         let connect = connect.weight(Weight::Strong);
-        connect.opens(ui, pane, ViewRequest::View(View::Connection));
+        connect.navigate(ui, pane, ViewRequest::View(View::Connection));
     });
 }
 
@@ -142,7 +142,7 @@ fn exports_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     for running in &pane.state.recordings.exports {
         let name = title_of(look, pane.state, &running.export.path);
-        let form = look.say(recordings::form(running.export.form));
+        let form = look.tr(recordings::form(running.export.form));
         let name = look.pair(&name, form);
         let words = look.fill(recordings::EXPORTING, &[&name, &running.percent]);
         ui.horizontal(|ui| {
@@ -160,11 +160,11 @@ fn folder_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     ui.horizontal(|ui| {
         kit::right_ui(ui, |ui| {
             let is_default = pane.state.settings.recordings.folder.is_none();
-            let default = Button::said(look, recordings::FOLDER_DEFAULT);
-            let default = default.disabled_if(is_default, look.say(recordings::FOLDER_IS_DEFAULT));
+            let default = Button::text(look, recordings::FOLDER_DEFAULT);
+            let default = default.disabled_if(is_default, look.tr(recordings::FOLDER_IS_DEFAULT));
             let action = Action::Recording(RecordingAction::DefaultFolder);
             default.on_click(ui, pane, action);
-            let change = Button::said(look, recordings::FOLDER_CHANGE);
+            let change = Button::text(look, recordings::FOLDER_CHANGE);
             let action = Action::Recording(RecordingAction::ChooseFolder(None));
             change.on_click(ui, pane, action);
             kit::left_ui(ui, |ui| {
@@ -173,7 +173,7 @@ fn folder_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 let folder = folder.map(|folder| folder.display().to_string());
                 let folder = folder.unwrap_or_else(|| "-".into());
                 let label = Label::new(&folder, look.palette.text);
-                let label = label.named(look.say(recordings::FOLDER)).ui(ui);
+                let label = label.named(look.tr(recordings::FOLDER)).ui(ui);
                 label.on_hover_text(look.tip(recordings::FOLDER));
             });
         });
@@ -225,7 +225,7 @@ fn planned_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         (recordings::ROOM_KEEP, RecordingAction::KeepPlanned),
         (recordings::ROOM_NOW, RecordingAction::MakeRoom),
     ] {
-        Button::said(look, text).on_click(ui, pane, Action::Recording(action));
+        Button::text(look, text).on_click(ui, pane, Action::Recording(action));
     }
 }
 
@@ -234,8 +234,8 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let path = state.recordings.to_delete.as_ref()?;
     let words = look.fill(recordings::DELETE_WHAT, &[&title_of(look, state, path)]);
     let [keep, delete] = [RecordingAction::KeepIt, RecordingAction::Delete].map(Action::Recording);
-    let back = Choice::new(recordings::DELETE_NOT, ButtonRole::Safe, keep);
-    let delete = Choice::new(recordings::DELETE_SURE, ButtonRole::Danger, delete);
+    let back = CardButton::new(recordings::DELETE_NOT, ButtonRole::Safe, keep);
+    let delete = CardButton::new(recordings::DELETE_SURE, ButtonRole::Danger, delete);
     let card = Card::new(look, recordings::DELETE_TITLE).warning(words);
     Some(card.choice(back).choice(delete))
 }

@@ -24,10 +24,10 @@ impl ReplayedStretch<'_> {
             let (recordings, line) = (&pane.state.recordings, pane.state.timeline.as_ref());
             replay_of(recordings, line, self.hand, stretch)
         });
-        let name = look.pair(look.say(recordings::REPLAY_STRETCH), self.title);
-        let button = Button::said(look, recordings::REPLAY_STRETCH).named(&name);
+        let name = look.pair(look.tr(recordings::REPLAY_STRETCH), self.title);
+        let button = Button::text(look, recordings::REPLAY_STRETCH).named(&name);
         let button = button.icon(theme::PLAY).weight(Weight::Quiet);
-        let button = button.disabled_if(replay.is_none(), look.say(recordings::REPLAY_NONE));
+        let button = button.disabled_if(replay.is_none(), look.tr(recordings::REPLAY_NONE));
         let is_pressed = button.ui(ui, look).clicked();
         replay.filter(|_| is_pressed)
     }

@@ -11,7 +11,7 @@ use crate::ui::recordings::marks;
 use crate::ui::recordings::strip;
 use crate::ui::text::{Text, notices, recordings};
 use crate::ui::theme;
-use crate::ui::view::Place;
+use crate::ui::view::Tab;
 use egui::{
     Align, Color32, Layout, Painter, Popup, Rangef, Rect, Role, Sense, SetOpenCommand, Stroke, Ui,
     Vec2, WidgetInfo, vec2,
@@ -100,7 +100,7 @@ impl RecordingTable<'_> {
         let table = table.header(theme::CONTROL, |mut row| {
             for (title, _) in COLUMNS {
                 let is_named = title != recordings::REPLAY;
-                let text = if is_named { look.say(title) } else { "" };
+                let text = if is_named { look.tr(title) } else { "" };
                 let label = Label::new(text, look.palette.muted);
                 label.small().column_ui(&mut row);
             }
@@ -150,7 +150,7 @@ impl RecordingTable<'_> {
         let look = pane.look;
         let size = vec2(ui.available_width() - theme::GAP, ROW - theme::GAP);
         let (place, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-        let name = look.pair(look.say(recordings::STRIP), &item.title());
+        let name = look.pair(look.tr(recordings::STRIP), &item.title());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
         let part = |x: f32| f64::from(((x - place.left()) / place.width()).clamp(0.0, 1.0));
         if response.clicked() {
@@ -202,11 +202,11 @@ impl RecordingTable<'_> {
                 let length = length(marked.length(item).as_secs_f64());
                 look.fill(recordings::EXPORT_PART, &[&length])
             }
-            None => look.say(recordings::EXPORT).to_owned(),
+            None => look.tr(recordings::EXPORT).to_owned(),
         };
         ui.label(title);
         for form in RecordingForm::ALL {
-            if ui.button(look.say(recordings::form(form))).clicked() {
+            if ui.button(look.tr(recordings::form(form))).clicked() {
                 let export = RecordingExport {
                     path: item.path.clone(),
                     form,
@@ -222,19 +222,19 @@ impl RecordingTable<'_> {
     fn ends_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
         let look = pane.look;
         let title = item.title();
-        let named = look.pair(look.say(recordings::REPLAY), &title);
-        let replay = Button::said(look, recordings::REPLAY).named(&named);
+        let named = look.pair(look.tr(recordings::REPLAY), &title);
+        let replay = Button::text(look, recordings::REPLAY).named(&named);
         let open = RecordingAction::Open(item.path.clone());
         if replay.ui(ui, look).clicked() {
             pane.actions.push(Action::Recording(open));
-            pane.open(ViewRequest::Place(Place::Live));
+            pane.open(ViewRequest::Tab(Tab::Live));
         }
-        let named = look.pair(look.say(recordings::MORE), &title);
-        let more = Button::said(look, recordings::MORE).named(&named);
+        let named = look.pair(look.tr(recordings::MORE), &title);
+        let more = Button::text(look, recordings::MORE).named(&named);
         let more = more.icon(theme::MORE).weight(Weight::Quiet).ui(ui, look);
         kit::lasting_popup(&more).show(|ui| {
             ui.set_width(260.0);
-            let field = TextField::new(look.say(recordings::RENAME), NAME_MAX);
+            let field = TextField::new(look.tr(recordings::RENAME), NAME_MAX);
             let field = field.hint(look.tip(recordings::RENAME));
             if let Some(name) = field.ui(ui, pane, &item.about.name) {
                 let action = RecordingAction::Name(item.path.clone(), name.trim().to_owned());
@@ -288,12 +288,12 @@ fn star_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
     let look = pane.look;
     let star = item.about.star;
     let (icon, tip) = if star {
-        (theme::STAR, look.say(recordings::UNSTAR))
+        (theme::STAR, look.tr(recordings::UNSTAR))
     } else {
         (theme::NO_STAR, look.tip(recordings::STAR))
     };
-    let name = look.pair(look.say(recordings::STAR), &item.title());
-    let button = Button::new(look.say(recordings::STAR), tip).named(&name);
+    let name = look.pair(look.tr(recordings::STAR), &item.title());
+    let button = Button::new(look.tr(recordings::STAR), tip).named(&name);
     let button = button.icon(icon).weight(Weight::Quiet).selected(star);
     let action = RecordingAction::Star(item.path.clone(), !star);
     button.on_click(ui, pane, Action::Recording(action));
@@ -315,10 +315,7 @@ fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
             true => (None, look.palette.muted),
             false => (Some(recordings::UNCLOSED), look.palette.warn),
         };
-        let about = state
-            .into_iter()
-            .chain(simulated)
-            .map(|text| look.say(text));
+        let about = state.into_iter().chain(simulated).map(|text| look.tr(text));
         let about: Vec<&str> = about.chain([item.opening.hand.as_str()]).collect();
         let label = Label::new(&about.join("  "), color).small().ui(ui);
         if !item.closed {
@@ -357,7 +354,7 @@ fn moment_ui(ui: &mut Ui, look: Look, item: &RecordingItem, part: f64) {
         Some(match mark.kind {
             EventKind::Note => return None,
             EventKind::Fault => notices::fault_mark(look, &mark.words),
-            _ => look.say(text).to_owned(),
+            _ => look.tr(text).to_owned(),
         })
     });
     for words in marks.chain(notes.map(|note| note.words)).take(MARKS_TOLD) {

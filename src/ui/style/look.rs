@@ -32,13 +32,13 @@ impl Look {
     }
 
     /// A text in the window's language.
-    pub(crate) const fn say(self, text: Text) -> &'static str {
+    pub(crate) const fn tr(self, text: Text) -> &'static str {
         text.of(self.language)
     }
 
     /// The sentence, followed by `more`.
-    pub(crate) fn told(self, text: Text, more: impl Display) -> String {
-        format!("{} {more}", self.say(text))
+    pub(crate) fn tr_with(self, text: Text, more: impl Display) -> String {
+        format!("{} {more}", self.tr(text))
     }
 
     /// Name of a library entry in the window's language.
@@ -61,16 +61,16 @@ impl Look {
 
     /// The tooltip of a control in the window's language.
     pub(crate) const fn tip(self, text: Text) -> &'static str {
-        self.say(text.tip())
+        self.tr(text.tip())
     }
 
     /// A name and its description, separated by the language's colon.
-    pub(crate) fn pair(self, name: &str, said: &str) -> String {
+    pub(crate) fn pair(self, name: &str, description: &str) -> String {
         let colon = match self.language {
             Language::En => ": ",
             Language::Zh => "：",
         };
-        format!("{name}{colon}{said}")
+        format!("{name}{colon}{description}")
     }
 
     /// A sentence in the window's language with these parts inserted.

@@ -134,7 +134,7 @@ pub(crate) const fn part(of: HandPart) -> Text {
 /// Advice about a value, and its drift.
 pub(crate) fn to_do(look: Look, check: &Check) -> String {
     let what = check.measured.what;
-    let advice = (check.grade >= Grade::Watch).then(|| look.say(advice(what)).to_owned());
+    let advice = (check.grade >= Grade::Watch).then(|| look.tr(advice(what)).to_owned());
     let drift = check.drift().map(|drift| {
         let row = what.row();
         let [from, to] = [drift.from, drift.to].map(|value| row.text(value));
@@ -146,15 +146,15 @@ pub(crate) fn to_do(look: Look, check: &Check) -> String {
 
 /// Remarks on a check-up, in addition to its values.
 pub(crate) fn remarks(look: Look, report: &CheckupReport) -> Vec<String> {
-    let joint = |dof| look.say(words::dof(dof));
+    let joint = |dof| look.tr(words::dof(dof));
     let left_alone = report.left_alone.iter().map(|(dof, zero_g)| {
         let zero_g = format!("{zero_g:.0}");
         look.fill(LEFT_ALONE, &[&joint(*dof), &zero_g])
     });
     let keeping = match &report.keeping {
         Keeping::Kept { .. } => None,
-        Keeping::BuiltIn => Some(look.say(BUILT_IN).to_owned()),
-        Keeping::Partial => Some(look.say(PARTIAL_NOT_KEPT).to_owned()),
+        Keeping::BuiltIn => Some(look.tr(BUILT_IN).to_owned()),
+        Keeping::Partial => Some(look.tr(PARTIAL_NOT_KEPT).to_owned()),
         Keeping::NotAsFirst { dof } => Some(look.fill(NOT_AS_FIRST, &[&joint(*dof)])),
         Keeping::Failed { error } => Some(look.fill(NOT_KEPT, &[error])),
     };
@@ -164,12 +164,12 @@ pub(crate) fn remarks(look: Look, report: &CheckupReport) -> Vec<String> {
 /// Recorded usage of the hand.
 pub(crate) fn usage(look: Look, report: &CheckupReport) -> String {
     let Some(usage) = &report.usage else {
-        return look.say(NOT_RECORDED).into();
+        return look.tr(NOT_RECORDED).into();
     };
     let [read, moved] = usage.hours();
     let (dof, closes) = usage.most_closed();
     let since = day(Duration::from_secs(usage.since_1970_s));
-    let joint = look.say(words::dof(dof));
+    let joint = look.tr(words::dof(dof));
     let parts: [&dyn Display; 6] = [&since, &read, &moved, &joint, &closes, &usage.stalls];
     look.fill(USED, &parts)
 }

@@ -181,10 +181,10 @@ pub(crate) const fn name(id: ParamId) -> Text {
 
 /// Name of a row without its group: `Index speed`.
 pub(crate) fn whole_name(look: Look, id: ParamId) -> String {
-    let own = look.say(name(id));
+    let own = look.tr(name(id));
     match id {
-        ParamId::DefaultSpeed(_) => format!("{own} {}", look.say(main::NAME_SPEED)),
-        ParamId::DefaultForce(_) => format!("{own} {}", look.say(FORCE)),
+        ParamId::DefaultSpeed(_) => format!("{own} {}", look.tr(main::NAME_SPEED)),
+        ParamId::DefaultForce(_) => format!("{own} {}", look.tr(FORCE)),
         _ => own.to_owned(),
     }
 }
@@ -202,29 +202,29 @@ pub(crate) const fn about(id: ParamId) -> Text {
 
 /// Outcome for a row.
 pub(crate) fn row_end(look: Look, end: &RowOutcome) -> String {
-    let say = |text| look.say(text);
+    let tr = |text| look.tr(text);
     match &end.verdict {
-        RowVerdict::Applied => say(APPLIED).into(),
+        RowVerdict::Applied => tr(APPLIED).into(),
         RowVerdict::Refused { reason } => format!(
             "{}: {} ({} {})",
-            say(NOT_TAKEN),
+            tr(NOT_TAKEN),
             errors::reason(look, *reason),
-            say(WANTED),
+            tr(WANTED),
             end.wanted
         ),
-        RowVerdict::Dropped => format!("{} ({} {})", say(DROPPED), say(WANTED), end.wanted),
-        RowVerdict::Altered => format!("{} {}", say(ALTERED), end.wanted),
-        RowVerdict::PutBack => format!("{} {}", say(PUT_BACK), end.wanted),
+        RowVerdict::Dropped => format!("{} ({} {})", tr(DROPPED), tr(WANTED), end.wanted),
+        RowVerdict::Altered => format!("{} {}", tr(ALTERED), end.wanted),
+        RowVerdict::PutBack => format!("{} {}", tr(PUT_BACK), end.wanted),
         RowVerdict::Unverified(doubt) => {
             let why = match doubt {
                 Doubt::NotReadBack => DOUBT_NOT_READ,
                 Doubt::Ambiguous => DOUBT_AMBIGUOUS,
                 Doubt::LinkLost => SAVE_LINK,
             };
-            format!("{}: {}", say(UNVERIFIED), say(why))
+            format!("{}: {}", tr(UNVERIFIED), tr(why))
         }
         RowVerdict::NotSent(why) => {
-            format!("{}: {}", say(NOT_WRITTEN), not_sent(look, *why))
+            format!("{}: {}", tr(NOT_WRITTEN), not_sent(look, *why))
         }
     }
 }
@@ -237,23 +237,23 @@ fn not_sent(look: Look, why: NotSent) -> String {
         NotSent::RestUnknown => refusal(ParamRefusal::RestUnknown),
         NotSent::TooSoon { wait } => {
             let wait = wait.as_secs_f64().ceil();
-            return format!("{} {wait} s", look.say(TOO_SOON));
+            return format!("{} {wait} s", look.tr(TOO_SOON));
         }
     };
-    look.say(text).into()
+    look.tr(text).into()
 }
 
 /// Outcome of a SAVE.
 pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
     match end {
-        SaveEnd::Told(told) => saved(look, told),
-        SaveEnd::NoBackup(why) => look.told(SAVE_NO_BACKUP, errors::backup(look, why)),
-        SaveEnd::NotAsked(error) => look.told(SAVE_NOT_SENT, errors::request(look, error)),
-        SaveEnd::NotApplied => look.say(SAVE_NOT_APPLIED).into(),
-        SaveEnd::NotNoted(told, error) => format!(
+        SaveEnd::Told(result) => saved(look, result),
+        SaveEnd::NoBackup(why) => look.tr_with(SAVE_NO_BACKUP, errors::backup(look, why)),
+        SaveEnd::NotAsked(error) => look.tr_with(SAVE_NOT_SENT, errors::request(look, error)),
+        SaveEnd::NotApplied => look.tr(SAVE_NOT_APPLIED).into(),
+        SaveEnd::NotNoted(result, error) => format!(
             "{} {} {}",
-            saved(look, told),
-            look.say(SAVE_NOT_NOTED),
+            saved(look, result),
+            look.tr(SAVE_NOT_NOTED),
             errors::system_error(look, error)
         ),
     }
@@ -265,11 +265,11 @@ pub(crate) const fn is_saved(end: &SaveEnd) -> bool {
 }
 
 pub(crate) fn saved(look: Look, saved: &Saved) -> String {
-    let say = |text| look.say(text);
+    let tr = |text| look.tr(text);
     match saved {
-        Saved::Confirmed => say(SAVE_CONFIRMED).into(),
-        Saved::ReadBack => say(SAVE_READ_BACK).into(),
-        Saved::Failed { code } => format!("{} ({code})", say(SAVE_FAILED)),
+        Saved::Confirmed => tr(SAVE_CONFIRMED).into(),
+        Saved::ReadBack => tr(SAVE_READ_BACK).into(),
+        Saved::Failed { code } => format!("{} ({code})", tr(SAVE_FAILED)),
         Saved::Unknown { why } => {
             let why = match why {
                 SaveDoubt::NoResult => SAVE_NO_RESULT,
@@ -279,16 +279,16 @@ pub(crate) fn saved(look: Look, saved: &Saved) -> String {
             };
             format!(
                 "{} {} {}",
-                say(SAVE_UNKNOWN),
-                say(why),
-                say(SAVE_UNKNOWN_ADVICE)
+                tr(SAVE_UNKNOWN),
+                tr(why),
+                tr(SAVE_UNKNOWN_ADVICE)
             )
         }
         Saved::Refused { reason } => {
-            format!("{} {}", say(SAVE_REFUSED), errors::reason(look, *reason))
+            format!("{} {}", tr(SAVE_REFUSED), errors::reason(look, *reason))
         }
         Saved::NotSent(why) => {
-            format!("{} {}", say(SAVE_NOT_SENT), not_sent(look, *why))
+            format!("{} {}", tr(SAVE_NOT_SENT), not_sent(look, *why))
         }
     }
 }
@@ -302,7 +302,7 @@ pub(crate) fn why(look: Look, why: &str) -> String {
         WHY_BEFORE_RESET,
     ];
     let known = known.into_iter().find(|text| text.en == why);
-    known.map_or_else(|| why.to_owned(), |text| look.say(text).to_owned())
+    known.map_or_else(|| why.to_owned(), |text| look.tr(text).to_owned())
 }
 
 #[cfg(test)]
@@ -337,9 +337,9 @@ mod tests {
             (Saved::NotSent(NotSent::TooSoon { wait }), "wait 3 s", false),
         ] {
             let end = SaveEnd::Told(saved);
-            let told = save_end(look, &end);
-            assert!(told.contains(words), "{told}");
-            assert_eq!(is_saved(&end), is_ok, "{told}");
+            let text = save_end(look, &end);
+            assert!(text.contains(words), "{text}");
+            assert_eq!(is_saved(&end), is_ok, "{text}");
         }
     }
 }

@@ -24,7 +24,7 @@ use std::fmt::Display;
 use std::io::ErrorKind;
 
 /// The error's own text in English; else the result of `zh`.
-fn told<E: Display>(look: Look, error: &E, zh: impl FnOnce(&E) -> String) -> String {
+fn in_language<E: Display>(look: Look, error: &E, zh: impl FnOnce(&E) -> String) -> String {
     match look.language {
         Language::En => format::sentence(&error.to_string()),
         Language::Zh => zh(error),
@@ -33,7 +33,7 @@ fn told<E: Display>(look: Look, error: &E, zh: impl FnOnce(&E) -> String) -> Str
 
 /// Writes a table of errors as a function that returns the Chinese text, and one of another name for the window's language.
 macro_rules! chinese {
-    ($($(#[$doc:meta])* fn $name:ident($error:ty) $(as $said:ident)? { $($case:pat $(if $guard:expr)? => $words:literal $(, $part:expr)*;)* })*) => {$(
+    ($($(#[$doc:meta])* fn $name:ident($error:ty) $(as $text:ident)? { $($case:pat $(if $guard:expr)? => $words:literal $(, $part:expr)*;)* })*) => {$(
         $(#[$doc])*
         fn $name(error: $error) -> String {
             match error {
@@ -41,8 +41,8 @@ macro_rules! chinese {
             }
         }
         $(
-            pub(crate) fn $said(look: Look, error: $error) -> String {
-                told(look, error, $name)
+            pub(crate) fn $text(look: Look, error: $error) -> String {
+                in_language(look, error, $name)
             }
         )?
     )*};
@@ -292,7 +292,7 @@ pub(crate) fn trouble(look: Look, trouble: &LinkTrouble) -> String {
         (Language::En, LinkTrouble::NoAnswer { id }) => format!(
             "No answer from id {id}: check power, id, baud and protocol of the hand, or let 'Scan' in Connection try them all."
         ),
-        (_, trouble) => told(look, trouble, trouble_zh),
+        (_, trouble) => in_language(look, trouble, trouble_zh),
     }
 }
 
@@ -303,7 +303,7 @@ pub(crate) fn endpoint(look: Look, error: &EndpointError) -> String {
             let example = bare(example);
             format!("The port or address is missing: type for example {example}.")
         }
-        (_, error) => told(look, error, endpoint_zh),
+        (_, error) => in_language(look, error, endpoint_zh),
     }
 }
 
@@ -311,13 +311,13 @@ pub(crate) fn endpoint(look: Look, error: &EndpointError) -> String {
 pub(crate) fn typed(look: Look, error: &TypedError) -> String {
     match error {
         TypedError::Endpoint(error) => endpoint(look, error),
-        error => told(look, error, typed_zh),
+        error => in_language(look, error, typed_zh),
     }
 }
 
 /// Reason why a file was rejected.
 pub(crate) fn file(look: Look, error: &FileError) -> String {
-    told(look, error, |error| file_zh(error) + "。")
+    in_language(look, error, |error| file_zh(error) + "。")
 }
 
 const fn value_kind_zh(kind: ValueKind) -> &'static str {
@@ -451,8 +451,8 @@ mod tests {
 
     /// True if English words occur in a row, outside of commands, paths and register names.
     fn is_english(text: &str) -> bool {
-        let told: String = text.split('\'').step_by(2).collect();
-        told.split(|sign: char| !sign.is_ascii()).any(|part| {
+        let outside: String = text.split('\'').step_by(2).collect();
+        outside.split(|sign: char| !sign.is_ascii()).any(|part| {
             let words: Vec<&str> = part.split_whitespace().collect();
             let is_word =
                 |word: &str| word.len() > 1 && word.chars().all(|sign| sign.is_ascii_lowercase());
@@ -740,7 +740,7 @@ mod tests {
 
     #[test]
     fn chinese_does_not_depend_on_the_words_of_an_error() {
-        let said = |kind, words: &str| SystemError::from(std::io::Error::new(kind, words));
+        let error_of = |kind, words: &str| SystemError::from(std::io::Error::new(kind, words));
         for (kind, zh) in [
             (ErrorKind::PermissionDenied, "权限不足。"),
             (ErrorKind::NotFound, "文件或文件夹不存在。"),
@@ -748,7 +748,7 @@ mod tests {
             (ErrorKind::InvalidData, "不是文本文件。"),
             (ErrorKind::InvalidInput, "不是文件。"),
         ] {
-            let error = FileCause::Unreadable(said(kind, "mot inconnu")).into();
+            let error = FileCause::Unreadable(error_of(kind, "mot inconnu")).into();
             assert_eq!(file(chinese(), &error), zh);
         }
         let path = std::path::Path::new;

@@ -99,7 +99,7 @@ pub(crate) const fn fault_kind(what: FaultKind, language: Language) -> Words {
 /// Translated text of a fault's mark, `index: stall, over_current`.
 pub(crate) fn fault_mark(look: Look, mark: &str) -> String {
     let Some((joint, names)) = mark.split_once(": ") else {
-        return look.say(panels::MARK_FAULT).to_owned();
+        return look.tr(panels::MARK_FAULT).to_owned();
     };
     let dof = Dof::ALL.into_iter().find(|dof| dof.name() == joint);
     let titles = names.split(", ").map(|name| match FaultKind::named(name) {
@@ -107,14 +107,14 @@ pub(crate) fn fault_mark(look: Look, mark: &str) -> String {
         None => name,
     });
     let titles: Vec<&str> = titles.collect();
-    let joint = dof.map_or(joint, |dof| look.say(words::dof(dof)));
+    let joint = dof.map_or(joint, |dof| look.tr(words::dof(dof)));
     look.pair(joint, &titles.join(" + "))
 }
 
-fn asked(look: Look, what: RequestKind) -> String {
+fn request_text(look: Look, what: RequestKind) -> String {
     match what {
-        RequestKind::Gesture(gesture) => look.told(panels::GESTURE, gesture.get()),
-        RequestKind::ClearErrors => look.say(panels::CLEAR).into(),
+        RequestKind::Gesture(gesture) => look.tr_with(panels::GESTURE, gesture.get()),
+        RequestKind::ClearErrors => look.tr(panels::CLEAR).into(),
     }
 }
 
@@ -131,18 +131,18 @@ fn disarmed(look: Look, why: Disarmed) -> String {
 
 /// Effect of a latency timer, and the command line that fixes it.
 fn latency_timer(look: Look, port: &str, ms: Option<u16>) -> String {
-    let said = match ms {
-        Some(ms) => format!("{} {ms} ms.", look.say(panels::TIMER_TOLD)),
-        None => look.say(panels::TIMER_SEEN).to_owned(),
+    let cause = match ms {
+        Some(ms) => format!("{} {ms} ms.", look.tr(panels::TIMER_TOLD)),
+        None => look.tr(panels::TIMER_SEEN).to_owned(),
     };
     let name = port.rsplit('/').next().unwrap_or(port);
     let cure = if cfg!(windows) {
-        look.say(panels::TIMER_CURE_WINDOWS).to_owned()
+        look.tr(panels::TIMER_CURE_WINDOWS).to_owned()
     } else {
         let file = format!("/sys/bus/usb-serial/devices/{name}/latency_timer");
-        format!("{} echo 1 | sudo tee {file}", look.say(panels::TIMER_CURE))
+        format!("{} echo 1 | sudo tee {file}", look.tr(panels::TIMER_CURE))
     };
-    format!("{said} {cure}")
+    format!("{cause} {cure}")
 }
 
 fn place(path: Option<&Path>) -> String {
@@ -152,31 +152,31 @@ fn place(path: Option<&Path>) -> String {
 
 /// A message, preceded by its hand's name if there are several.
 pub(crate) fn notice_of(look: Look, notice: &Notice) -> String {
-    let said = self::notice(look, &notice.what);
+    let text = self::notice(look, &notice.what);
     match &notice.hand {
-        Some(hand) if !hand.name.is_empty() => look.pair(&hand.name, &said),
-        _ => said,
+        Some(hand) if !hand.name.is_empty() => look.pair(&hand.name, &text),
+        _ => text,
     }
 }
 
 /// A message as one or two sentences.
 #[expect(clippy::too_many_lines, reason = "one arm for each message")]
 pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
-    let said = |text| look.say(text).to_owned();
-    let told = |text: Text, more: &str| look.told(text, more);
+    let tr = |text| look.tr(text).to_owned();
+    let tr_with = |text: Text, more: &str| look.tr_with(text, more);
     let of = |text: Text, path: &Path, why: &str| {
-        look.pair(&told(text, &path.display().to_string()), why)
+        look.pair(&tr_with(text, &path.display().to_string()), why)
     };
     match what {
-        NoticeKind::LinkLost(why) => told(panels::NOTICE_LOST, &errors::trouble(look, why)),
-        NoticeKind::NoLink(why) => told(panels::NOTICE_NO_LINK, &errors::trouble(look, why)),
+        NoticeKind::LinkLost(why) => tr_with(panels::NOTICE_LOST, &errors::trouble(look, why)),
+        NoticeKind::NoLink(why) => tr_with(panels::NOTICE_NO_LINK, &errors::trouble(look, why)),
         NoticeKind::LatencyTimer { port, ms } => latency_timer(look, port, *ms),
-        NoticeKind::Reconnected => said(panels::NOTICE_RECONNECTED),
-        NoticeKind::HoldConfirmed { after } => told(panels::NOTICE_HELD, &format::age(*after)),
-        NoticeKind::HoldAlarm => said(main::ALARM_TITLE.tip()),
-        NoticeKind::StopNotSent => said(panels::NOTICE_STOP_NOT_SENT),
+        NoticeKind::Reconnected => tr(panels::NOTICE_RECONNECTED),
+        NoticeKind::HoldConfirmed { after } => tr_with(panels::NOTICE_HELD, &format::age(*after)),
+        NoticeKind::HoldAlarm => tr(main::ALARM_TITLE.tip()),
+        NoticeKind::StopNotSent => tr(panels::NOTICE_STOP_NOT_SENT),
         NoticeKind::TareUnderLoad { finger, newtons } => {
-            let finger = look.say(words::finger(*finger));
+            let finger = look.tr(words::finger(*finger));
             match look.language {
                 Language::En => format!(
                     "Not tared: {finger} is touched ({newtons:.1} N). Let go of everything, then tare."
@@ -191,38 +191,39 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             let what = words::setpoint(look, conflict);
             look.fill(panels::DISARMED_BY_OTHER, &[&what])
         }
-        NoticeKind::IdleDisarmed => said(inputs::IDLE_DISARMED),
+        NoticeKind::IdleDisarmed => tr(inputs::IDLE_DISARMED),
         NoticeKind::StepsLost(count) => look.fill(panels::STEPS_LOST, &[count]),
-        NoticeKind::LeaderStopped => said(panels::LEADER_STOPPED),
+        NoticeKind::LeaderStopped => tr(panels::LEADER_STOPPED),
         NoticeKind::SourceSilent(owner) => {
             look.fill(panels::SOURCE_SILENT, &[&words::owner(look, *owner)])
         }
-        NoticeKind::ArmRefused(why) => told(panels::NOTICE_ARM, &words::refusal(look, *why)),
+        NoticeKind::ArmRefused(why) => tr_with(panels::NOTICE_ARM, &words::refusal(look, *why)),
         NoticeKind::Fault { dof, what } => {
             let title = fault_kind(*what, look.language).title;
-            look.pair(look.say(words::dof(*dof)), title)
+            look.pair(look.tr(words::dof(*dof)), title)
         }
         NoticeKind::RequestFailed { what, error } => {
-            look.pair(&asked(look, *what), &errors::request(look, error))
+            look.pair(&request_text(look, *what), &errors::request(look, error))
         }
-        NoticeKind::Acknowledged { what } => {
-            look.pair(&asked(look, *what), look.say(panels::NOTICE_ACKNOWLEDGED))
-        }
+        NoticeKind::Acknowledged { what } => look.pair(
+            &request_text(look, *what),
+            look.tr(panels::NOTICE_ACKNOWLEDGED),
+        ),
         NoticeKind::GestureWouldMoveLocked { dof } => {
-            told(panels::NOTICE_LOCKED, look.say(words::dof(*dof)))
+            tr_with(panels::NOTICE_LOCKED, look.tr(words::dof(*dof)))
         }
-        NoticeKind::PoseUnknown => said(poses::CAPTURE_UNKNOWN),
-        NoticeKind::BlockNotTaken(BlockError::Size { .. }) => said(poses::BLOCK_SIZE),
-        NoticeKind::BlockNotTaken(BlockError::Unlikely { .. }) => said(poses::BLOCK_UNLIKELY),
-        NoticeKind::SeriesRuns => said(main::SERIES_RUNS),
-        NoticeKind::SeriesNotBegun => said(tune::NOT_BEGUN),
-        NoticeKind::ExhibitWantsOneHand => said(window::EXHIBIT_ONE_HAND),
+        NoticeKind::PoseUnknown => tr(poses::CAPTURE_UNKNOWN),
+        NoticeKind::BlockNotTaken(BlockError::Size { .. }) => tr(poses::BLOCK_SIZE),
+        NoticeKind::BlockNotTaken(BlockError::Unlikely { .. }) => tr(poses::BLOCK_UNLIKELY),
+        NoticeKind::SeriesRuns => tr(main::SERIES_RUNS),
+        NoticeKind::SeriesNotBegun => tr(tune::NOT_BEGUN),
+        NoticeKind::ExhibitWantsOneHand => tr(window::EXHIBIT_ONE_HAND),
         NoticeKind::OpenElsewhere { endpoint, hand } => {
             look.fill(window::OPEN_ELSEWHERE, &[endpoint, hand])
         }
-        NoticeKind::ExhibitNotBegun => said(main::EXHIBIT_NOT_BEGUN),
+        NoticeKind::ExhibitNotBegun => tr(main::EXHIBIT_NOT_BEGUN),
         NoticeKind::NotHolding { grip } => {
-            look.fill(poses::END_NOT_HOLDING, &[&look.say(panels::grip(*grip))])
+            look.fill(poses::END_NOT_HOLDING, &[&look.tr(panels::grip(*grip))])
         }
         NoticeKind::SeriesEnded { trials, aborted } => match aborted {
             None => look.fill(tune::ENDED, &[trials]),
@@ -236,27 +237,27 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             None => look.fill(checkup::ENDED, &[act, watch]),
             Some(why) => look.fill(checkup::ENDED_EARLY, &[&tune::abort(look, *why)]),
         },
-        NoticeKind::GesturesOff => said(panels::GESTURES_OFF),
+        NoticeKind::GesturesOff => tr(panels::GESTURES_OFF),
         // The graphics driver's text helps with the repair.
-        NoticeKind::Unguarded { why } => told(panels::NOTICE_UNGUARDED, why),
+        NoticeKind::Unguarded { why } => tr_with(panels::NOTICE_UNGUARDED, why),
         NoticeKind::DrawnWithoutOpenGl { reason } => match look.language {
-            Language::En => told(panels::NOTICE_WITHOUT_OPENGL, &format!("({reason})")),
-            Language::Zh => said(panels::NOTICE_WITHOUT_OPENGL),
+            Language::En => tr_with(panels::NOTICE_WITHOUT_OPENGL, &format!("({reason})")),
+            Language::Zh => tr(panels::NOTICE_WITHOUT_OPENGL),
         },
-        NoticeKind::NoFileChosen => said(window::NO_FILE),
+        NoticeKind::NoFileChosen => tr(window::NO_FILE),
         NoticeKind::HandDiffers {
             differences,
             last_seen,
         } => differing(look, differences, last_seen),
-        NoticeKind::EndpointIgnored { text } => told(panels::NOTICE_ENDPOINT, text),
+        NoticeKind::EndpointIgnored { text } => tr_with(panels::NOTICE_ENDPOINT, text),
         NoticeKind::PosesImported {
             poses: count,
             sequences,
         } => format!(
             "{} {count} {}, {sequences} {}",
-            look.say(poses::IMPORTED),
-            look.say(poses::COUNT_POSES),
-            look.say(poses::COUNT_SEQUENCES)
+            look.tr(poses::IMPORTED),
+            look.tr(poses::COUNT_POSES),
+            look.tr(poses::COUNT_SEQUENCES)
         ),
         NoticeKind::RecordingOpened { path, trials } => {
             look.fill(tune::OPENED, &[&path.display(), trials])
@@ -276,7 +277,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::Saved { path, entries } => {
             let path = path.display().to_string();
-            format!("{} ({entries})", told(window::SAVED, &path))
+            format!("{} ({entries})", tr_with(window::SAVED, &path))
         }
         NoticeKind::NotSaved { path, error } => {
             of(window::NOT_SAVED, path, &errors::system_error(look, error))
@@ -301,8 +302,8 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         ),
         NoticeKind::Recording(notice) => recording(look, notice),
         NoticeKind::RecordingStalled { why } => look.fill(recordings::STALLED, &[why]),
-        NoticeKind::NotReplayedNow => look.say(recordings::NOT_NOW).to_owned(),
-        NoticeKind::Recorded => look.say(recordings::IS_RECORDING).to_owned(),
+        NoticeKind::NotReplayedNow => look.tr(recordings::NOT_NOW).to_owned(),
+        NoticeKind::Recorded => look.tr(recordings::IS_RECORDING).to_owned(),
         NoticeKind::RecordingsPlanned {
             recordings: count,
             bytes,
@@ -313,9 +314,11 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
             look.fill(recordings::PLANNED, &[count, &size, first, last, due])
         }
         NoticeKind::RecordingsDeleted { recordings: count } => {
-            look.told(recordings::DELETED, count)
+            look.tr_with(recordings::DELETED, count)
         }
-        NoticeKind::PlanIgnored { error } => told(tune::PLAN_IGNORED, &errors::plan(look, error)),
+        NoticeKind::PlanIgnored { error } => {
+            tr_with(tune::PLAN_IGNORED, &errors::plan(look, error))
+        }
     }
 }
 
@@ -342,20 +345,20 @@ fn not_opened(look: Look, why: &OpenError) -> String {
         OpenError::NotAFile => recordings::NOT_A_FILE,
         OpenError::NotMcap => recordings::NOT_MCAP,
         OpenError::Foreign => recordings::FOREIGN,
-        OpenError::SeveralHands { hands } => return look.told(recordings::SEVERAL_HANDS, hands),
+        OpenError::SeveralHands { hands } => return look.tr_with(recordings::SEVERAL_HANDS, hands),
         OpenError::TooMuch { .. } => recordings::TOO_MUCH,
         OpenError::Empty => recordings::EMPTY,
     };
-    look.say(words).to_owned()
+    look.tr(words).to_owned()
 }
 
 fn differing(look: Look, differences: &[FactDifference], last_seen: &str) -> String {
     let facts = differences.iter().map(|difference| {
         let FactDifference { fact, before, now } = difference;
-        format!("{}: {before} -> {now}", look.say(scan::fact(*fact)))
+        format!("{}: {before} -> {now}", look.tr(scan::fact(*fact)))
     });
     let facts: Vec<String> = facts.collect();
-    let intro = look.say(scan::OTHER_HAND);
+    let intro = look.tr(scan::OTHER_HAND);
     format!("{intro} ({last_seen}) {}", facts.join("; "))
 }
 
@@ -367,18 +370,18 @@ mod tests {
     #[test]
     fn the_mark_of_a_fault_says_joint_and_fault_in_both_languages() {
         let mut state = State::default();
-        let mut told = |language, mark: &str| {
+        let mut mark_text = |language, mark: &str| {
             state.settings.language = language;
             fault_mark(Look::of(&state), mark)
         };
         let mark = "index: stall, over_current";
-        assert_eq!(told(Language::En, mark), "Index: Stall + Over-current");
-        assert_eq!(told(Language::Zh, mark), "食指：堵转故障 + 过流故障");
+        assert_eq!(mark_text(Language::En, mark), "Index: Stall + Over-current");
+        assert_eq!(mark_text(Language::Zh, mark), "食指：堵转故障 + 过流故障");
         assert_eq!(
-            told(Language::En, "thumb_bend: stalled"),
+            mark_text(Language::En, "thumb_bend: stalled"),
             "Thumb bend: Stalled"
         );
-        assert_eq!(told(Language::En, "index: other"), "Index: other");
-        assert_eq!(told(Language::En, ""), "Fault");
+        assert_eq!(mark_text(Language::En, "index: other"), "Index: other");
+        assert_eq!(mark_text(Language::En, ""), "Fault");
     }
 }

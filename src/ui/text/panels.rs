@@ -1,7 +1,7 @@
 //! Sentences of the plots, the fingertips, the fault list, the gestures and the connection.
 
 use crate::app::readings::friction::FrictionState;
-use crate::app::readings::tare::{Source, TareZero};
+use crate::app::readings::tare::{TareSource, TareZero};
 use crate::app::settings::Language;
 use crate::hand::grip::GripState;
 use crate::hand::{Moment, RateClass};
@@ -300,9 +300,9 @@ texts! {
 pub(crate) fn zero(look: Look, rest: TareZero, now: Moment) -> String {
     let since = now.since(rest.at);
     let (ago, kept) = match rest.source {
-        Source::First => return look.say(NOT_TARED).to_owned(),
-        Source::Person => (since, false),
-        Source::Kept(age) => (age + since, true),
+        TareSource::First => return look.tr(NOT_TARED).to_owned(),
+        TareSource::Person => (since, false),
+        TareSource::Kept(age) => (age + since, true),
     };
     let ago = format::age(ago);
     match (look.language, kept) {
@@ -314,7 +314,7 @@ pub(crate) fn zero(look: Look, rest: TareZero, now: Moment) -> String {
 }
 
 /// A stored taring.
-pub(crate) fn kept_tare(look: Look, age: Duration) -> String {
+pub(crate) fn stored_tare(look: Look, age: Duration) -> String {
     let age = format::age(age);
     match look.language {
         Language::En => format!("Taring of {age} ago"),

@@ -73,8 +73,8 @@ texts! {
     ROOM_NOW: "Delete now", "立即删除", "Deletes the oldest recordings without star, name or notes until the rest fits.", "删除最早的没有星标、名称或备注的录制，直到不超限额。";
     ROOM_KEEP: "Keep them", "全部保留", "Gives each of them a star, so that none is deleted by itself.", "为这些录制全部加星标，使其不会被自动删除。";
 
-    RECORDING: "Recording", "录制中", "What the hand says and what it is told goes to disk as it happens. Press to record no longer.", "灵巧手的反馈与指令正在实时写入磁盘。按下停止录制。";
-    NOT_RECORDING: "Not recording", "未录制", "Press to record what the hand says and what it is told.", "按下开始录制灵巧手的反馈与指令。";
+    RECORDING: "Recording", "录制中", "What the hand says and what it is text goes to disk as it happens. Press to record no longer.", "灵巧手的反馈与指令正在实时写入磁盘。按下停止录制。";
+    NOT_RECORDING: "Not recording", "未录制", "Press to record what the hand says and what it is text.", "按下开始录制灵巧手的反馈与指令。";
     STALLED: "Recording stalled, nothing of now is on disk: {}. It is tried again.", "录制受阻，当前数据没有写入磁盘：{}。程序会重试。";
     TROUBLE: "Recording stalled", "录制受阻", "The disk does not take what is recorded. It is tried again; what finds no room in memory is counted and said in the file.", "磁盘无法写入录制数据。程序会重试；内存中放不下的数据会被计数并在文件中注明。";
     FILE: "File: {}", "文件：{}";
@@ -111,7 +111,7 @@ texts! {
     FILE_RENAMED: "{} was renamed while it is recorded. It is written on under its new name; nothing is lost.", "正在录制的文件 {} 被改名，将以新名称继续写入，没有丢失内容。";
     FILE_REMOVED: "{} was removed while it was recorded: {} entries are gone with it. The recording goes on in a new file.", "正在录制的文件 {} 被删除：其中 {} 条记录已丢失。录制将在新文件中继续。";
     CLOCK_SET: "The computer's clock was set, or it slept: the recording goes on in {}.", "计算机时钟被调整或曾休眠：录制将在 {} 中继续。";
-    SEVERAL_HANDS: "it holds recordings of several hands, whose values cannot be told apart: {}", "其中混有多只灵巧手的录制，数值无法区分：{}";
+    SEVERAL_HANDS: "it holds recordings of several hands, whose values cannot be text apart: {}", "其中混有多只灵巧手的录制，数值无法区分：{}";
     TOO_MUCH: "it unpacks to more than any recording does", "解压后的数据量超过任何录制";
     EMPTY: "nothing in it can be read", "其中没有可读取的内容";
     IS_RECORDING: "This is a recording: nothing was sent. Go back to the live hand first.", "这是录制内容：没有发送任何指令。请先返回实时灵巧手。";
@@ -135,10 +135,10 @@ pub(crate) fn what(look: Look, settings: &Settings, item: &RecordingItem) -> Str
         return item.about.name.clone();
     }
     let joints = item.tried().into_iter();
-    let joints = joints.map(|dof| look.say(words::dof(dof)).to_owned());
+    let joints = joints.map(|dof| look.tr(words::dof(dof)).to_owned());
     let trials = match item.count(EventKind::Trial) {
         0 => None,
-        1 => Some(look.say(TRIAL_ONE).to_owned()),
+        1 => Some(look.tr(TRIAL_ONE).to_owned()),
         count => Some(look.fill(TRIALS_COUNT, &[&count])),
     };
     let all: Vec<String> = joints.chain(trials).collect();
@@ -152,7 +152,7 @@ pub(crate) fn what(look: Look, settings: &Settings, item: &RecordingItem) -> Str
         Side::Right => panels::RIGHT_HAND,
         Side::Left => panels::LEFT_HAND,
     };
-    name.unwrap_or(look.say(hand)).to_owned()
+    name.unwrap_or(look.tr(hand)).to_owned()
 }
 
 /// Local start time of a recording, `today 20:21`; `None` if it is unknown.
@@ -166,8 +166,8 @@ pub(crate) fn when(look: Look, item: &RecordingItem, now_since_1970: Duration) -
         calendar::local(then).0 == day
     };
     Some(match (is_day(0), is_day(1)) {
-        (true, _) => format!("{} {time}", look.say(TODAY)),
-        (_, true) => format!("{} {time}", look.say(YESTERDAY)),
+        (true, _) => format!("{} {time}", look.tr(TODAY)),
+        (_, true) => format!("{} {time}", look.tr(YESTERDAY)),
         _ => format!("{day} {time}"),
     })
 }
@@ -175,7 +175,7 @@ pub(crate) fn when(look: Look, item: &RecordingItem, now_since_1970: Duration) -
 /// Title and start time in one line.
 pub(crate) fn title(look: Look, state: &State, item: &RecordingItem) -> String {
     let what = what(look, &state.settings, item);
-    let when = when(look, item, state.recordings.looked_at);
+    let when = when(look, item, state.recordings.scanned_at);
     let all: Vec<String> = std::iter::once(what).chain(when).collect();
     listed(look, &all)
 }
@@ -225,19 +225,19 @@ mod tests {
     fn a_recording_is_named_by_what_was_done_and_when_on_the_clock_here() {
         const DAY_S: u64 = 24 * 3600;
         let mut state = State::default();
-        state.recordings.looked_at = Duration::from_secs(20_000 * DAY_S);
+        state.recordings.scanned_at = Duration::from_secs(20_000 * DAY_S);
         let look = Look::of(&state);
         let time = |began_s| calendar::local(Duration::from_secs(began_s)).1;
         let now = 20_000 * DAY_S;
         let all = item(now, &["1 of 2, index, middle", "2 of 2, index, middle"]);
-        let told = title(look, &state, &all);
+        let text = title(look, &state, &all);
         assert_eq!(
-            told,
+            text,
             format!("Middle, Index, 2 trials, today {}", time(now))
         );
         let one = item(now - DAY_S, &["1 of 1"]);
-        let told = title(look, &state, &one);
-        assert_eq!(told, format!("1 trial, yesterday {}", time(now)));
+        let text = title(look, &state, &one);
+        assert_eq!(text, format!("1 trial, yesterday {}", time(now)));
         let (day, hour) = calendar::local(Duration::from_secs(now - 9 * DAY_S));
         let mut none = item(now - 9 * DAY_S, &[]);
         assert_eq!(

@@ -97,7 +97,7 @@ pub(crate) fn mover(look: Look, owner: Owner) -> String {
     const THERE: Text = Text::new("moved by a person there", "由对方的人控制");
     const MOVED: Text = Text::new("moved by: {}", "控制者：{}");
     match owner {
-        Owner::Person | Owner::Task => look.say(THERE).into(),
+        Owner::Person | Owner::Task => look.tr(THERE).into(),
         owner => look.fill(MOVED, &[&words::owner(look, owner)]),
     }
 }
@@ -105,7 +105,7 @@ pub(crate) fn mover(look: Look, owner: Owner) -> String {
 /// Remark of a scan, as a sentence; empty for its results.
 pub(crate) fn remark(look: Look, remark: &ScanEvent) -> String {
     match remark {
-        ScanEvent::Held { place } => format!("{place}: {}", look.say(HELD)),
+        ScanEvent::Held { place } => format!("{place}: {}", look.tr(HELD)),
         ScanEvent::Trouble { error, .. } => errors::transport(look, error),
         ScanEvent::Hint(hint) => errors::hint(look, hint),
         ScanEvent::Begun { .. } | ScanEvent::Found(_) | ScanEvent::Done(_) => String::new(),
@@ -115,7 +115,7 @@ pub(crate) fn remark(look: Look, remark: &ScanEvent) -> String {
 pub(crate) fn progress(look: Look, book: &ScanState) -> String {
     let progress = book.progress;
     if progress.total == 0 {
-        return look.say(LISTING).into();
+        return look.tr(LISTING).into();
     }
     // Never less than a second: almost finished is not worth a flicker.
     let left = progress.left.as_secs() + 1;
@@ -123,8 +123,8 @@ pub(crate) fn progress(look: Look, book: &ScanState) -> String {
         "{} / {} {}, {} {left} s",
         progress.tried,
         progress.total,
-        look.say(ASKED),
-        look.say(TIME_LEFT)
+        look.tr(ASKED),
+        look.tr(TIME_LEFT)
     )
 }
 
@@ -135,7 +135,7 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
         ScanStage::Cancelled if book.found.is_empty() => return Err(CANCELLED),
         ScanStage::Cancelled => {
             let found = look.fill(FOUND, &[&book.found.len()]);
-            return Ok(look.told(CANCELLED, found));
+            return Ok(look.tr_with(CANCELLED, found));
         }
         ScanStage::Done(summary) => summary,
     };
@@ -158,14 +158,14 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
 
 /// Kind of a recognised address, with its settings and those that remain as delivered.
 pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
-    let kind = look.say(panels::kind(endpoint.kind()));
+    let kind = look.tr(panels::kind(endpoint.kind()));
     match endpoint {
         Endpoint::Sim { scenario, body, .. } => {
             let body = body.as_ref().map(|file| format!(", {file}"));
             let body = body.unwrap_or_default();
             match scenario.parse() {
                 Ok(scenario) => {
-                    format!("{kind}, {}{body}", look.say(panels::scenario(scenario)))
+                    format!("{kind}, {}{body}", look.tr(panels::scenario(scenario)))
                 }
                 Err(_) => format!("{kind}{body}"),
             }
@@ -182,7 +182,7 @@ pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
 
 /// Protocol, speed, and the id if known.
 pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String {
-    let kind = look.say(panels::kind(endpoint.kind()));
+    let kind = look.tr(panels::kind(endpoint.kind()));
     let speed = match endpoint {
         Endpoint::Sim { scenario, .. } => return format!("{kind}, {scenario}"),
         Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => Some(line.baud),

@@ -51,25 +51,25 @@ pub(crate) const fn disarmed_zh(why: Disarmed) -> &'static str {
 /// Reason why arming is refused, as a sentence.
 pub(crate) fn refusal(look: Look, reason: ArmRefusal) -> String {
     match reason {
-        ArmRefusal::Offline => look.say(main::REFUSED_OFFLINE).into(),
-        ArmRefusal::Holding => look.say(main::REFUSED_HOLDING).into(),
-        ArmRefusal::Fault => look.say(main::REFUSED_FAULT).into(),
-        ArmRefusal::HandBusy => look.say(main::REFUSED_BUSY).into(),
-        ArmRefusal::LetGo => look.say(main::REFUSED_LET_GO).into(),
-        ArmRefusal::Refused => look.say(main::REFUSED_AFAR).into(),
-        ArmRefusal::NoAnswer => look.say(main::REFUSED_NO_ANSWER).into(),
-        ArmRefusal::Replaced => look.say(main::REFUSED_REPLACED).into(),
-        ArmRefusal::NotRead => look.say(main::REFUSED_NOT_READ).into(),
+        ArmRefusal::Offline => look.tr(main::REFUSED_OFFLINE).into(),
+        ArmRefusal::Holding => look.tr(main::REFUSED_HOLDING).into(),
+        ArmRefusal::Fault => look.tr(main::REFUSED_FAULT).into(),
+        ArmRefusal::HandBusy => look.tr(main::REFUSED_BUSY).into(),
+        ArmRefusal::LetGo => look.tr(main::REFUSED_LET_GO).into(),
+        ArmRefusal::Refused => look.tr(main::REFUSED_AFAR).into(),
+        ArmRefusal::NoAnswer => look.tr(main::REFUSED_NO_ANSWER).into(),
+        ArmRefusal::Replaced => look.tr(main::REFUSED_REPLACED).into(),
+        ArmRefusal::NotRead => look.tr(main::REFUSED_NOT_READ).into(),
         ArmRefusal::UnknownPose { dof: joint } => {
-            look.told(main::REFUSED_POSE, look.say(dof(joint)))
+            look.tr_with(main::REFUSED_POSE, look.tr(dof(joint)))
         }
     }
 }
 
 /// Conflict between the hand's setpoint and the one written here.
 pub(crate) fn setpoint(look: Look, conflict: &SetpointConflict) -> String {
-    let (register, joint) = (conflict.register.name(), look.say(dof(conflict.dof)));
-    let outside = || look.say(main::SETPOINT_OUTSIDE).to_owned();
+    let (register, joint) = (conflict.register.name(), look.tr(dof(conflict.dof)));
+    let outside = || look.tr(main::SETPOINT_OUTSIDE).to_owned();
     let holds = conflict
         .holds
         .map_or_else(outside, |holds| holds.to_string());
@@ -151,14 +151,14 @@ pub(crate) fn owner(look: Look, owner: Owner) -> String {
     const GATEWAY: Text = Text::new("Gateway client", "网关程序");
     const MIRROR: Text = Text::new("Another hand", "另一只手");
     match owner {
-        Owner::Person => look.say(PERSON).into(),
-        Owner::Task => look.say(TASK).into(),
-        Owner::Exhibition => look.say(EXHIBITION).into(),
-        Owner::Gamepad => look.say(inputs::PAD).into(),
-        Owner::Stream(sender) => look.told(STREAM, sender),
+        Owner::Person => look.tr(PERSON).into(),
+        Owner::Task => look.tr(TASK).into(),
+        Owner::Exhibition => look.tr(EXHIBITION).into(),
+        Owner::Gamepad => look.tr(inputs::PAD).into(),
+        Owner::Stream(sender) => look.tr_with(STREAM, sender),
         Owner::Dds => "DDS".into(),
-        Owner::Mirror => look.say(MIRROR).into(),
-        Owner::Gateway(client) => look.told(GATEWAY, client),
+        Owner::Mirror => look.tr(MIRROR).into(),
+        Owner::Gateway(client) => look.tr_with(GATEWAY, client),
     }
 }
 

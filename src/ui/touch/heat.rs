@@ -24,7 +24,7 @@ pub(crate) fn scale_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let range = look.fill(panels::TOUCH_SCALE, &[&(FULL_COUNTS / 1000)]);
     let range = Label::new(&range, look.palette.muted).small();
-    let range = range.named(look.say(panels::TOUCH_SCALE_END)).ui(ui);
+    let range = range.named(look.tr(panels::TOUCH_SCALE_END)).ui(ui);
     range.on_hover_text(look.tip(panels::TOUCH));
     let (_, bar) = ui.allocate_space(egui::vec2(64.0, 8.0));
     let width = bar.width() / f32::from(STEPS);
@@ -44,7 +44,7 @@ pub(crate) fn no_zero_ui(ui: &mut Ui, pane: &Pane<'_>) {
         hand.readings.sample.tactile[finger].is_some() && hand.readings.tare.zero(finger).is_none()
     });
     if touched {
-        let label = Label::new(look.say(panels::TOUCH_NO_ZERO), look.palette.warn);
+        let label = Label::new(look.tr(panels::TOUCH_NO_ZERO), look.palette.warn);
         let label = label.small().ui(ui);
         label.on_hover_text(look.tip(panels::TOUCH_NO_ZERO));
     }

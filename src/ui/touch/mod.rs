@@ -43,7 +43,7 @@ impl TouchView {
     pub(crate) fn small_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         kit::full_card_ui(ui, look, |ui| {
-            kit::head_ui(ui, look, look.say(panels::HAND), |ui| {
+            kit::head_ui(ui, look, look.tr(panels::HAND), |ui| {
                 panel::side_ui(ui, pane);
                 heat::no_zero_ui(ui, pane);
             });
@@ -80,14 +80,14 @@ impl TouchView {
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.vertical_centered(|ui| {
             let color = look.palette.dof[finger.bend()];
-            let name = look.say(words::finger(finger));
+            let name = look.tr(words::finger(finger));
             Label::new(name, color).small().ui(ui);
             if let Some(height) = picture {
                 let size = vec2(ui.available_width(), height);
                 let (place, response) = ui.allocate_exact_size(size, Senses::click());
                 let fingertip = heat::tip(pane, finger).unwrap_or_default();
                 fingertip::paint(ui.painter(), look, place, &fingertip);
-                let name = format!("{}: {name}", look.say(panels::TIP));
+                let name = format!("{}: {name}", look.tr(panels::TIP));
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                 let tip = format!("{}\n{}", panel::felt(pane, finger), look.tip(panels::TOUCH));
                 let response = response.on_hover_cursor(CursorIcon::PointingHand);
@@ -116,7 +116,7 @@ impl TouchView {
         let upper = Panel::top("touch, upper");
         kit::bare(upper, height, Margin::ZERO).show(ui, |ui| {
             kit::card_ui(ui, look, |ui| {
-                kit::head_ui(ui, look, look.say(panels::TOUCH), |ui| {
+                kit::head_ui(ui, look, look.tr(panels::TOUCH), |ui| {
                     heat::scale_ui(ui, pane);
                 });
                 self.tare_ui(ui, pane);
@@ -148,8 +148,8 @@ impl TouchView {
     fn lower_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
         let finger = self.detail.finger;
-        let name = look.say(words::finger(finger));
-        let title = format!("{}: {name}", look.say(panels::TIP));
+        let name = look.tr(words::finger(finger));
+        let title = format!("{}: {name}", look.tr(panels::TIP));
         kit::head_ui(ui, look, &title, |ui| {
             let all = [(true, panels::NUMBERS), (false, panels::DETAIL)];
             Pick::new(look, panels::NUMBERS.tip()).ui(ui, &mut self.numbers, all);
@@ -157,11 +157,11 @@ impl TouchView {
             assumed.on_hover_text(look.tip(panels::ASSUMED));
             let zero = pane.hand().readings.tare.zero(finger);
             let tared = match zero {
-                None => look.say(panels::NO_ZERO).to_owned(),
+                None => look.tr(panels::NO_ZERO).to_owned(),
                 Some(zero) => panels::zero(look, zero, pane.state.now),
             };
             let tared = Label::new(&tared, look.palette.muted).small();
-            tared.named(look.say(panels::TARED_NAME)).ui(ui);
+            tared.named(look.tr(panels::TARED_NAME)).ui(ui);
         });
         if self.numbers {
             let area = ScrollArea::vertical().auto_shrink(false);
@@ -175,8 +175,8 @@ impl TouchView {
     fn tip_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, place: Rect, finger: Finger) {
         let look = pane.look;
         let tip = heat::tip(pane, finger).unwrap_or_default();
-        let name = look.say(words::finger(finger));
-        let label = format!("{}: {name}", look.say(panels::TIP));
+        let name = look.tr(words::finger(finger));
+        let label = format!("{}: {name}", look.tr(panels::TIP));
         let button = Button::new(name, look.tip(panels::TOUCH))
             .named(&label)
             .choice(self.detail.finger == finger);
@@ -187,10 +187,10 @@ impl TouchView {
         let block = pane.hand().readings.sample.tactile[finger];
         let block = block.map(|block| block.value);
         let (below, color) = match (tip.sense, self.detail.hold(finger)) {
-            (Sense::NoNumber, _) => (look.say(panels::NO_NUMBER).to_owned(), look.palette.warn),
-            (Sense::Beyond, _) => (look.say(panels::BEYOND).to_owned(), look.palette.warn),
+            (Sense::NoNumber, _) => (look.tr(panels::NO_NUMBER).to_owned(), look.palette.warn),
+            (Sense::Beyond, _) => (look.tr(panels::BEYOND).to_owned(), look.palette.warn),
             (Sense::Fine, FrictionState::Slips) => {
-                (look.say(panels::SLIP).to_owned(), look.palette.bad)
+                (look.tr(panels::SLIP).to_owned(), look.palette.bad)
             }
             (Sense::Fine, _) => {
                 let shear = format::newtons(block.map(|block| block.tangential_n));
@@ -203,7 +203,7 @@ impl TouchView {
             Sense::Fine => look.palette.text,
             _ => look.palette.warn,
         };
-        let meaning = look.say(match tip.sense {
+        let meaning = look.tr(match tip.sense {
             Sense::Beyond => panels::BEYOND.tip(),
             _ => panels::TOUCH.tip(),
         });
@@ -218,7 +218,7 @@ impl TouchView {
                 (normal, panels::TOUCH_NORMAL_NAME, theme::title(), strong),
             ];
             for (words, what, font, color) in figures {
-                let name = format!("{name} {}", look.say(what));
+                let name = format!("{name} {}", look.tr(what));
                 let label = Label::new(&words, look.value(freshness, color)).font(font);
                 label.named(&name).ui(ui).on_hover_text(meaning);
             }
@@ -234,13 +234,13 @@ impl TouchView {
         let look = pane.look;
         let hand = pane.hand();
         let offline =
-            (!hand.connection.status.state.is_live()).then(|| look.say(main::REFUSED_OFFLINE));
+            (!hand.connection.status.state.is_live()).then(|| look.tr(main::REFUSED_OFFLINE));
         let finger = self.detail.finger;
-        let name = look.say(words::finger(finger));
-        let one = look.told(panels::TARE_ONE, name);
-        let all = look.say(panels::TARE_ALL);
-        let nothing = (!hand.readings.tare.can_undo()).then(|| look.say(panels::TARE_NOTHING));
-        let undo = look.say(panels::TARE_UNDO);
+        let name = look.tr(words::finger(finger));
+        let one = look.tr_with(panels::TARE_ONE, name);
+        let all = look.tr(panels::TARE_ALL);
+        let nothing = (!hand.readings.tare.can_undo()).then(|| look.tr(panels::TARE_NOTHING));
+        let undo = look.tr(panels::TARE_UNDO);
         let offered = hand.readings.tare.offered(pane.state.now);
         ui.horizontal(|ui| {
             for (words, tip, disabled, action) in [
@@ -253,13 +253,13 @@ impl TouchView {
                 ),
                 (undo, panels::TARE_UNDO.tip(), nothing, Action::UndoTare),
             ] {
-                let button = Button::new(words, look.say(tip)).disabled(disabled);
+                let button = Button::new(words, look.tr(tip)).disabled(disabled);
                 button.on_click(ui, pane, action);
             }
             if let Some(age) = offered {
-                let words = panels::kept_tare(look, age);
+                let words = panels::stored_tare(look, age);
                 let kept = Button::new(&words, look.tip(panels::KEPT_TARE));
-                let kept = kept.named(look.say(panels::KEPT_TARE)).disabled(offline);
+                let kept = kept.named(look.tr(panels::KEPT_TARE)).disabled(offline);
                 kept.on_click(ui, pane, Action::TakeKeptTare);
             }
         });

@@ -45,7 +45,7 @@ const LINES: [TouchRow; 7] = [
             } else {
                 panels::TOUCH_DIFFERS
             };
-            look.say(word).into()
+            look.tr(word).into()
         },
     },
     TouchRow {
@@ -64,7 +64,7 @@ const LINES: [TouchRow; 7] = [
 fn direction(block: &TactileBlock, look: Look) -> String {
     match (block.direction_deg(), block.direction_raw) {
         (Some(degrees), _) => format!("{degrees}°"),
-        (None, u16::MAX) => look.say(panels::TOUCH_NO_CONTACT).into(),
+        (None, u16::MAX) => look.tr(panels::TOUCH_NO_CONTACT).into(),
         (None, raw) => format!("?{raw}"),
     }
 }
@@ -74,7 +74,7 @@ pub(crate) fn value_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, line: &Touc
     let look = pane.look;
     let block = pane.hand().readings.sample.tactile[finger];
     let text = block.map(|block| (line.value)(&block.value, look));
-    let name = look.told(words::finger(finger), look.say(line.name));
+    let name = look.tr_with(words::finger(finger), look.tr(line.name));
     number_ui(ui, color(pane, finger), &name, text);
 }
 
@@ -102,22 +102,22 @@ pub(crate) fn all_ui(ui: &mut Ui, pane: &Pane<'_>) {
         ui.label("");
         for finger in Finger::ALL {
             let color = look.palette.dof[finger.bend()];
-            Label::new(look.say(words::finger(finger)), color).ui(ui);
+            Label::new(look.tr(words::finger(finger)), color).ui(ui);
         }
         ui.end_row();
         for line in &LINES {
-            Label::new(look.say(line.caption), muted).ui(ui);
+            Label::new(look.tr(line.caption), muted).ui(ui);
             for finger in Finger::ALL {
                 value_ui(ui, pane, finger, line);
             }
             ui.end_row();
         }
         for channel in 0..8 {
-            let caption = look.told(panels::TOUCH_CHANNEL, channel + 1);
+            let caption = look.tr_with(panels::TOUCH_CHANNEL, channel + 1);
             Label::new(&caption, muted).ui(ui);
             for finger in Finger::ALL {
                 let text = channel_text(pane, finger, channel);
-                let name = look.told(words::finger(finger), &caption);
+                let name = look.tr_with(words::finger(finger), &caption);
                 number_ui(ui, color(pane, finger), &name, text);
             }
             ui.end_row();

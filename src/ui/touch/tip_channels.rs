@@ -89,14 +89,14 @@ impl TipChannels {
             let series = Series::Channel(channel, finger);
             ChartCurve {
                 zero: [0.0, zero.map_or(0.0, f64::from)],
-                told: Some(0),
+                decimals: Some(0),
                 ..ChartCurve::measured(history, series, color(look, number))
             }
         };
         let chart = Chart {
             curves: (0..8).zip(0..).map(curve).collect(),
             least: LEAST,
-            times: Times::From(now, look.say(panels::NOW)),
+            times: Times::From(now, look.tr(panels::NOW)),
             ..Chart::new(look, panels::CHANNELS, ui.available_height())
         };
         chart.ui(ui, &mut self.chart);

@@ -118,7 +118,7 @@ impl TipDetail {
         painter.circle_stroke(center, ring * (1.0 - NEAR), grid);
         let up = center - vec2(0.0, radius - theme::GAP);
         let up = Rect::from_center_size(up, vec2(40.0, 12.0));
-        let text = look.say(panels::TIP_UP);
+        let text = look.tr(panels::TIP_UP);
         let label = Label::new(text, palette.faint).small();
         label.center().paint(ui, up);
         let (block, freshness) = self.block(pane);
@@ -156,7 +156,7 @@ impl TipDetail {
                 Label::note(look, caption).ui(ui);
                 kit::right_ui(ui, |ui| {
                     let label = Label::new(&value, look.value(freshness, color)).number();
-                    label.named(look.say(caption)).ui(ui);
+                    label.named(look.tr(caption)).ui(ui);
                 });
             });
         }
@@ -173,13 +173,13 @@ impl TipDetail {
             let wash = look.palette.wash(color);
             ui.painter().rect_filled(ground, theme::STEP, wash);
         }
-        Label::new(look.say(panels::hold(hold)), color).put(ui, place);
+        Label::new(look.tr(panels::hold(hold)), color).put(ui, place);
     }
 
     fn friction_ui(&mut self, ui: &mut Ui, look: Look) {
-        let caption = format!("{} {:.2}", look.say(panels::TIP_FRICTION), self.friction());
+        let caption = format!("{} {:.2}", look.tr(panels::TIP_FRICTION), self.friction());
         Label::new(&caption, look.palette.muted).small().ui(ui);
-        let name = look.say(panels::TIP_FRICTION_NAME);
+        let name = look.tr(panels::TIP_FRICTION_NAME);
         let track = SlideTrack {
             tip: look.tip(panels::TIP_FRICTION),
             step: 1,
@@ -202,7 +202,7 @@ impl TipDetail {
             (Touch::Tangential, panels::TIP_SHEAR, look.palette.muted),
         ];
         let key = |(_, words, color): (Touch, Text, Color32)| LegendKey {
-            words: look.say(words).to_owned(),
+            words: look.tr(words).to_owned(),
             color,
             style: LineStyle::Solid,
         };
@@ -210,13 +210,13 @@ impl TipDetail {
         let now = pane.state.now.secs();
         self.chart.advance(history, now, 10.0);
         let curve = |(touch, _, color): (Touch, Text, Color32)| ChartCurve {
-            told: Some(2),
+            decimals: Some(2),
             ..ChartCurve::measured(history, Series::Tip(touch, self.finger), color)
         };
         let chart = Chart {
             curves: lines.map(curve).to_vec(),
             least: (0.0, 1.0),
-            times: Times::From(now, look.say(panels::NOW)),
+            times: Times::From(now, look.tr(panels::NOW)),
             ..Chart::new(look, panels::FORCES, ui.available_height())
         };
         chart.ui(ui, &mut self.chart);

@@ -14,7 +14,7 @@ const WIDTHS: [f32; 2] = [58.0, 150.0];
 
 /// Draws the frame, or a hint unless exactly one is selected.
 pub(crate) fn detail_ui(ui: &mut Ui, look: Look, chosen: &[&Frame]) {
-    let title = look.say(traffic::DETAIL);
+    let title = look.tr(traffic::DETAIL);
     let text = match chosen {
         [frame] => {
             kit::head_ui(ui, look, title, |ui| {
@@ -24,10 +24,10 @@ pub(crate) fn detail_ui(ui: &mut Ui, look: Look, chosen: &[&Frame]) {
             fields_ui(ui, look, frame);
             return;
         }
-        [] => look.say(traffic::DETAIL_HINT).to_owned(),
+        [] => look.tr(traffic::DETAIL_HINT).to_owned(),
         many => {
             let bytes: usize = many.iter().map(|frame| frame.bytes.len()).sum();
-            let chosen = look.say(traffic::DETAIL_MANY);
+            let chosen = look.tr(traffic::DETAIL_MANY);
             format!("{} {chosen}, {bytes} B", many.len())
         }
     };
@@ -36,16 +36,16 @@ pub(crate) fn detail_ui(ui: &mut Ui, look: Look, chosen: &[&Frame]) {
 }
 
 fn about(look: Look, frame: &Frame) -> String {
-    let kind = look.say(traffic::kind(frame.kind));
+    let kind = look.tr(traffic::kind(frame.kind));
     let text = format!("#{}  {:.6} s  {kind}", frame.number, frame.at.secs());
     let Some(took) = frame.took else { return text };
     let took = format::millis(Some(took));
-    format!("{text}  {} {took} ms", look.say(traffic::TOOK))
+    format!("{text}  {} {took} ms", look.tr(traffic::TOOK))
 }
 
 fn verdict_ui(ui: &mut Ui, look: Look, frame: &Frame) {
     let Some(wrong) = frame.wrong else {
-        Label::new(look.say(traffic::ALL_WELL), look.palette.ok).ui(ui);
+        Label::new(look.tr(traffic::ALL_WELL), look.palette.ok).ui(ui);
         return;
     };
     let color = if wrong.is_damage() {
@@ -92,7 +92,7 @@ fn field_ui(row: &mut TableRow<'_, '_>, look: Look, frame: &Frame, field: &Field
     };
     let name = match &field.register {
         Some(register) => register.as_str(),
-        None => look.say(traffic::field(field.name)),
+        None => look.tr(traffic::field(field.name)),
     };
     let bytes = frame.bytes.get(field.at.clone()).unwrap_or_default();
     let mut shown = hex(bytes.get(..HEX_MAX.min(bytes.len())).unwrap_or_default());

@@ -95,7 +95,7 @@ impl FrameList<'_> {
         let table = table.columns(rest, 2).header(theme::CONTROL, |mut row| {
             for head in heads {
                 row.col(|ui| {
-                    let text = head.map_or("", |head| look.say(head));
+                    let text = head.map_or("", |head| look.tr(head));
                     paint(ui, text, theme::small(), look.palette.muted);
                 });
             }
@@ -145,9 +145,9 @@ fn keys(ui: &Ui, frames: &VecDeque<Arc<Frame>>, choice: &mut ChosenFrames) {
 fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bool) -> bool {
     let look = pane.look;
     let palette = look.palette;
-    let said = said(look, frame);
+    let text = frame_text(look, frame);
     let strong = color_of(look, frame);
-    let kind = look.say(traffic::kind(frame.kind));
+    let kind = look.tr(traffic::kind(frame.kind));
     let arrow = frame.direction.arrow();
     let way = if frame.bytes.is_empty() { "--" } else { arrow };
     let time = format!("{:>9.3}", frame.at.secs());
@@ -158,7 +158,7 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bo
     let mut clicked = false;
     row.col(|ui| {
         let response = ground_ui(ui, look, frame, chosen);
-        let name = format!("{arrow} {kind} {said}");
+        let name = format!("{arrow} {kind} {text}");
         response.widget_info(|| WidgetInfo::selected(Role::Row, true, chosen, &name));
         clicked = response.clicked();
         if !frame.bytes.is_empty() {
@@ -173,7 +173,7 @@ fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, frame: &Frame, chosen: bo
             kit::warning_ui(ui, strong);
         }
     });
-    row.col(|ui| paint(ui, &said, font, color));
+    row.col(|ui| paint(ui, &text, font, color));
     row.col(|ui| paint(ui, &frame.hex(), theme::number(), palette.muted));
     clicked
 }
@@ -196,7 +196,7 @@ fn ground_ui(ui: &Ui, look: Look, frame: &Frame, chosen: bool) -> Response {
 
 /// Draws the menu that copies one frame, also as program code.
 fn menu_ui(ui: &mut Ui, pane: &Pane<'_>, frame: &Frame) {
-    ui.label(pane.look.say(traffic::COPY_AS));
+    ui.label(pane.look.tr(traffic::COPY_AS));
     let endpoint = pane.hand().connection.endpoint.as_ref();
     for form in SnippetFormat::ALL {
         if let Some(text) = form.text(&frame.bytes, endpoint)
@@ -212,7 +212,7 @@ fn paint(ui: &Ui, text: &str, font: FontId, color: Color32) {
 }
 
 /// Error of a frame with its meaning, or the meaning alone.
-fn said(look: Look, frame: &Frame) -> String {
+fn frame_text(look: Look, frame: &Frame) -> String {
     match frame.wrong {
         None => frame.meaning(),
         Some(wrong) => {

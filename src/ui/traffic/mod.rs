@@ -80,7 +80,7 @@ impl TrafficView {
     fn list_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ui.spacing_mut().item_spacing.y = theme::STEP;
-        kit::head_ui(ui, look, look.say(main::TAB_TRAFFIC), |ui| {
+        kit::head_ui(ui, look, look.tr(main::TAB_TRAFFIC), |ui| {
             Label::new(&self.count(pane), look.palette.muted).ui(ui);
         });
         ui.horizontal_wrapped(|ui| {
@@ -116,13 +116,13 @@ impl TrafficView {
         let look = pane.look;
         let live = &pane.hand().connection.traffic;
         let (shown, all) = (self.passed.len(), live.frames().len());
-        let of = look.say(traffic::SHOWN_OF);
-        let text = format!("{shown} {of} {all} {}", look.say(traffic::FRAMES));
+        let of = look.tr(traffic::SHOWN_OF);
+        let text = format!("{shown} {of} {all} {}", look.tr(traffic::FRAMES));
         let Some(paused) = &self.paused else {
             return text;
         };
         let since = live.newest().saturating_sub(paused.newest);
-        format!("{text}, {since} {}", look.say(traffic::CAME_SINCE))
+        format!("{text}, {since} {}", look.tr(traffic::CAME_SINCE))
     }
 
     fn buttons_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
@@ -133,8 +133,8 @@ impl TrafficView {
         } else {
             traffic::PAUSE
         };
-        let pause = Button::said(look, text);
-        let pause = pause.named(look.say(traffic::PAUSE_NAME)).switch(is_paused);
+        let pause = Button::text(look, text);
+        let pause = pause.named(look.tr(traffic::PAUSE_NAME)).switch(is_paused);
         if pause.ui(ui, look).clicked() {
             let live = &pane.hand().connection.traffic;
             self.paused = (!is_paused).then(|| Paused {
@@ -145,21 +145,21 @@ impl TrafficView {
             // The list shown from now on has other frames.
             self.update(pane);
         }
-        let follow = Button::said(look, traffic::FOLLOW).switch(!self.scrolls);
-        let follow = follow.named(look.say(traffic::FOLLOW_NAME));
-        follow.flips(ui, look, &mut self.scrolls);
+        let follow = Button::text(look, traffic::FOLLOW).switch(!self.scrolls);
+        let follow = follow.named(look.tr(traffic::FOLLOW_NAME));
+        follow.toggle(ui, look, &mut self.scrolls);
         let nothing = self.passed.is_empty();
-        let nothing = nothing.then(|| look.say(traffic::EXPORT_NONE));
-        let clear = Button::said(look, traffic::CLEAR);
-        let clear = clear.named(look.say(traffic::CLEAR_NAME)).disabled(nothing);
+        let nothing = nothing.then(|| look.tr(traffic::EXPORT_NONE));
+        let clear = Button::text(look, traffic::CLEAR);
+        let clear = clear.named(look.tr(traffic::CLEAR_NAME)).disabled(nothing);
         if clear.ui(ui, look).clicked() {
             let newest = pane.hand().connection.traffic.newest();
             self.filter.cleared = self.paused.as_ref().map_or(newest, |paused| paused.newest);
             self.choice = ChosenFrames::default();
         }
         let none = self.choice.numbers.is_empty();
-        let copy = Button::said(look, traffic::COPY);
-        let copy = copy.disabled(none.then(|| look.say(traffic::COPY_NONE)));
+        let copy = Button::text(look, traffic::COPY);
+        let copy = copy.disabled(none.then(|| look.tr(traffic::COPY_NONE)));
         if copy.ui(ui, look).clicked() {
             self.copy(ui);
         }
@@ -167,7 +167,7 @@ impl TrafficView {
             (traffic::EXPORT_CSV, TrafficForm::Csv),
             (traffic::EXPORT_JSON, TrafficForm::JsonLines),
         ] {
-            let button = Button::said(look, text);
+            let button = Button::text(look, text);
             if button.disabled(nothing).ui(ui, look).clicked() {
                 let frames = self.passed.iter().cloned().collect();
                 let content = Export::Traffic(form, frames);
@@ -180,7 +180,7 @@ impl TrafficView {
         let look = pane.look;
         let filter = &mut self.filter;
         ui.allocate_ui(vec2(220.0, theme::CONTROL), |ui| {
-            kit::edit_said_ui(ui, look, traffic::FILTER, &mut filter.text);
+            kit::translated_edit_ui(ui, look, traffic::FILTER, &mut filter.text);
         });
         let ways = [
             (None, traffic::WAY_ALL),
@@ -192,7 +192,7 @@ impl TrafficView {
             (traffic::WRONG_ONLY, &mut filter.wrong_only),
             (traffic::HIDE_POLLING, &mut filter.hide_polling),
         ] {
-            Button::said(look, text).switch(*on).flips(ui, look, on);
+            Button::text(look, text).switch(*on).toggle(ui, look, on);
         }
     }
 

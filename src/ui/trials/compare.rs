@@ -6,7 +6,7 @@ use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
 use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{
-    self, Button, ButtonRole, Card, Choice, Label, Look, Pane, Pick, TextField, Weight,
+    self, Button, ButtonRole, Card, CardButton, Label, Look, Pane, Pick, TextField, Weight,
 };
 use crate::ui::text::{notices, tune};
 use crate::ui::theme;
@@ -60,7 +60,7 @@ impl ResultsView {
             let focus = self.chosen.focus.and_then(|id| trials.session(id));
             ui.horizontal(|ui| {
                 fold_ui(ui, pane);
-                kit::head_ui(ui, look, look.say(tune::RESULTS), |ui| {
+                kit::head_ui(ui, look, look.tr(tune::RESULTS), |ui| {
                     if let Some(session) = focus.filter(|_| !self.is_of_hand) {
                         self.files_ui(ui, pane, session);
                     }
@@ -74,7 +74,7 @@ impl ResultsView {
                 return self.map.ui(ui, pane);
             }
             if let Some(refused) = &trials.refused {
-                kit::say_ui(ui, &notices::notice(look, refused), look.palette.warn);
+                kit::small_text_ui(ui, &notices::notice(look, refused), look.palette.warn);
             }
             if trials.asks_path
                 && let Some(path) = path_ui(ui, look, "session")
@@ -162,7 +162,7 @@ impl ResultsView {
         let trials = &pane.state.trials;
         let shown = &self.chosen.shown;
         let former = self.comparison.take();
-        if let Some(former) = former.filter(|own| own.stands(trials, shown, focus)) {
+        if let Some(former) = former.filter(|own| own.is_current(trials, shown, focus)) {
             return former;
         }
         self.curves.forget();
@@ -174,12 +174,12 @@ impl ResultsView {
     fn files_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
         let look = pane.look;
         let runs = pane.state.trials.running == Some(session.id);
-        let runs = runs.then(|| look.say(tune::SAVE_RUNS));
-        let forget = Button::said(look, tune::FORGET).disabled(runs);
+        let runs = runs.then(|| look.tr(tune::SAVE_RUNS));
+        let forget = Button::text(look, tune::FORGET).disabled(runs);
         let forget = forget.weight(Weight::Quiet);
         forget.on_click(ui, pane, Action::Trial(TrialAction::Forget(session.id)));
         self.place_ui(ui, pane, session, runs);
-        let open = Button::said(look, tune::OPEN).weight(Weight::Quiet);
+        let open = Button::text(look, tune::OPEN).weight(Weight::Quiet);
         open.on_click(ui, pane, Action::Trial(TrialAction::Open(None)));
     }
 
@@ -193,17 +193,17 @@ impl ResultsView {
     ) {
         let look = pane.look;
         let (words, read) = match &session.origin {
-            SessionOrigin::Unsaved => (look.say(tune::SAVE).to_owned(), None),
+            SessionOrigin::Unsaved => (look.tr(tune::SAVE).to_owned(), None),
             SessionOrigin::Saved(place) => (look.fill(tune::SAVED_IN, &[&place.display()]), None),
             SessionOrigin::Folder(place) => {
                 let words = look.fill(tune::READ_FROM, &[&place.display()]);
-                (words, Some(look.say(tune::SAVE_READ)))
+                (words, Some(look.tr(tune::SAVE_READ)))
             }
         };
         let tip = format!("{words}\n{}", look.tip(tune::SAVE));
         let is_saved = session.origin.is_in_files();
         let button = Button::new(&words, if is_saved { &tip } else { look.tip(tune::SAVE) });
-        let button = button.named(look.say(tune::SAVE)).disabled(runs.or(read));
+        let button = button.named(look.tr(tune::SAVE)).disabled(runs.or(read));
         let width = kit::text_width(ui, &words, theme::body()) + 2.0 * theme::PAD;
         let most = (ui.available_width() * 0.5).min(PLACE);
         let (id, place) = ui.allocate_space(vec2(width.min(most), theme::CONTROL));
@@ -221,7 +221,7 @@ impl ResultsView {
 fn end_ui(ui: &mut Ui, pane: &Pane<'_>, session: &TrialSession) {
     let (look, palette) = (pane.look, pane.look.palette);
     let (ended, color) = match &session.head.aborted {
-        None => (look.say(tune::ALL_DONE).to_owned(), palette.ok),
+        None => (look.tr(tune::ALL_DONE).to_owned(), palette.ok),
         Some(why) => (tune::ended(look, why), palette.warn),
     };
     let is_last = pane.state.trials.last == Some(session.id);
@@ -230,7 +230,7 @@ fn end_ui(ui: &mut Ui, pane: &Pane<'_>, session: &TrialSession) {
     } else {
         ended
     };
-    kit::say_ui(ui, &words, color);
+    kit::small_text_ui(ui, &words, color);
 }
 
 /// Draws note and tags of the current session, side by side.
@@ -244,7 +244,7 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
         (tune::NOTE, &head.note, note),
         (tune::TAGS, &tags, TrialAction::Tags),
     ] {
-        let field = TextField::new(look.say(name), NOTE_CHARS).hint(look.tip(name));
+        let field = TextField::new(look.tr(name), NOTE_CHARS).hint(look.tip(name));
         let size = vec2(share - theme::GAP, theme::CONTROL);
         ui.push_id((id, name.en), |ui| {
             kit::cell_ui(ui, size, |ui| {
@@ -263,7 +263,7 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     ui.vertical_centered(|ui| {
         no_trials_ui(ui, look, tune::IDLE_TITLE, tune::IDLE_BODY);
         ui.add_space(theme::GAP);
-        let open = Button::said(look, tune::OPEN_EARLIER).large();
+        let open = Button::text(look, tune::OPEN_EARLIER).large();
         open.on_click(ui, pane, Action::Trial(TrialAction::Open(None)));
     });
 }
@@ -273,9 +273,9 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
     let session = state.trials.session(state.trials.to_confirm?)?;
     let loses = look.fill(tune::FORGET_LOSES, &[&session.trials.len()]);
     let keep = Action::Trial(TrialAction::CancelForget);
-    let back = Choice::new(tune::FORGET_NOT, ButtonRole::Safe, keep);
+    let back = CardButton::new(tune::FORGET_NOT, ButtonRole::Safe, keep);
     let forget = Action::Trial(TrialAction::ConfirmForget);
-    let forget = Choice::new(tune::FORGET_SURE, ButtonRole::Danger, forget);
+    let forget = CardButton::new(tune::FORGET_SURE, ButtonRole::Danger, forget);
     let card = Card::new(look, tune::FORGET_TITLE).words(compare_list::name(look, session.id));
     Some(card.warning(loses).choice(back).choice(forget))
 }

@@ -26,7 +26,7 @@ const GAP: f32 = 2.0;
 
 /// Criterion chosen by the user.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-enum Wanted {
+enum CriterionChoice {
     #[default]
     LeastOvershoot,
     Fastest,
@@ -35,7 +35,7 @@ enum Wanted {
 /// View state of the best setting.
 #[derive(Debug, Default)]
 pub(crate) struct BestView {
-    wanted: Wanted,
+    criterion: CriterionChoice,
     steady_g: f64,
 }
 
@@ -43,9 +43,9 @@ impl BestView {
     /// Criterion of the best setting.
     pub(crate) fn criterion(&self) -> Criterion {
         let steady_g = self.steady_g;
-        match self.wanted {
-            Wanted::LeastOvershoot => Criterion::LeastOvershoot { steady_g },
-            Wanted::Fastest => Criterion::Fastest {
+        match self.criterion {
+            CriterionChoice::LeastOvershoot => Criterion::LeastOvershoot { steady_g },
+            CriterionChoice::Fastest => Criterion::Fastest {
                 overshoot_g: OVERSHOOT_G,
                 steady_g,
             },
@@ -66,7 +66,7 @@ impl BestView {
         let own = pane.hand().connection.name();
         if focus.head.hand != own {
             let words = look.fill(tune::TRIED_ON, &[&focus.head.hand]);
-            kit::say_ui(ui, &words, look.palette.warn);
+            kit::small_text_ui(ui, &words, look.palette.warn);
         }
         if comparison.sessions().len() > 1 {
             of_ui(ui, pane, comparison, focus);
@@ -81,15 +81,15 @@ impl BestView {
         let look = pane.look;
         ui.horizontal_wrapped(|ui| {
             let all = [
-                (Wanted::LeastOvershoot, tune::LEAST_OVER),
-                (Wanted::Fastest, tune::FASTEST),
+                (CriterionChoice::LeastOvershoot, tune::LEAST_OVER),
+                (CriterionChoice::Fastest, tune::FASTEST),
             ];
-            Pick::new(look, tune::BEST.tip()).ui(ui, &mut self.wanted, all);
+            Pick::new(look, tune::BEST.tip()).ui(ui, &mut self.criterion, all);
         });
         ui.horizontal(|ui| {
-            let name = look.say(tune::HOLD_AT_LEAST);
+            let name = look.tr(tune::HOLD_AT_LEAST);
             Label::new(name, look.palette.muted).small().ui(ui);
-            let field = NumberField::new(name, look.say(tune::HOLD_TIP), 0.0..=4000.0);
+            let field = NumberField::new(name, look.tr(tune::HOLD_TIP), 0.0..=4000.0);
             if let Some(steady_g) = field.ui(ui, pane, Some(self.steady_g)) {
                 self.steady_g = steady_g;
             }
@@ -101,7 +101,7 @@ impl BestView {
 pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison) {
     let (look, palette) = (pane.look, pane.look.palette);
     let best = comparison.best.as_ref();
-    let none = look.say(tune::BEST_NONE);
+    let none = look.tr(tune::BEST_NONE);
     let (text, color) = match best {
         Some(best) => (setting_words(best.setting), palette.ok),
         None => (none.to_owned(), palette.muted),
@@ -112,15 +112,15 @@ pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison)
     ui.horizontal_wrapped(|ui| {
         if best.is_some() {
             let star = Label::new(theme::BEST, color).font(theme::icon());
-            star.named(look.say(tune::BEST_SIGN)).ui(ui);
+            star.named(look.tr(tune::BEST_SIGN)).ui(ui);
         }
-        let label = Label::new(&text, color).named(look.say(tune::BEST));
+        let label = Label::new(&text, color).named(look.tr(tune::BEST));
         label.title().ui(ui);
         promotion.button_ui(ui, pane, tune::PROMOTE);
     });
     if let Some(over) = best.and_then(|best| best.overshoot_g) {
         let words = look.fill(tune::BEST_OVER, &[&format!("{:.0}", over.max)]);
-        kit::say_ui(ui, &words, palette.text);
+        kit::small_text_ui(ui, &words, palette.text);
     }
     promotion.end_ui(ui, pane);
 }
@@ -130,7 +130,7 @@ fn of_ui(ui: &mut Ui, pane: &Pane<'_>, comparison: &Comparison, focus: &TrialSes
     let look = pane.look;
     let differences = comparison.differences.iter();
     let words: Vec<&str> = differences
-        .map(|difference| look.say(tune::difference(*difference)))
+        .map(|difference| look.tr(tune::difference(*difference)))
         .collect();
     if words.is_empty() {
         Label::note(look, tune::TOGETHER).ui(ui);
@@ -260,7 +260,7 @@ fn scale_ui(ui: &mut Ui, pane: &Pane<'_>, span: MetricSpread) {
         ui.add_space(HEAD.x + GAP);
         Label::new(&least, palette.muted).small().ui(ui);
         let (bar, response) = ui.allocate_exact_size(SCALE, Sense::hover());
-        let name = format!("{}: {least} .. {most}", look.say(tune::MAP));
+        let name = format!("{}: {least} .. {most}", look.tr(tune::MAP));
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
         let mut mesh = Mesh::default();
         for step in 0..=SCALE_STEPS {

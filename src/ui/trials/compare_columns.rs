@@ -46,7 +46,7 @@ pub(crate) fn end_words(look: Look, name: Option<&str>) -> String {
         return format::UNKNOWN.to_owned();
     };
     if name == DEAD_DRIVE {
-        return look.say(tune::END_DEAD_DRIVE).to_owned();
+        return look.tr(tune::END_DEAD_DRIVE).to_owned();
     }
     let mut known = (0..=u8::MAX).map(Status::from_raw);
     known

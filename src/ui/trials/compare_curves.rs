@@ -149,7 +149,7 @@ impl CurvesView {
                 (Align::Command, tune::ON_COMMAND),
                 (Align::Contact, tune::ON_CONTACT),
             ] {
-                let button = Button::new(look.say(text), look.say(tune::ALIGN_TIP));
+                let button = Button::new(look.tr(text), look.tr(tune::ALIGN_TIP));
                 if button.choice(self.align == align).ui(ui, look).clicked() {
                     self.align = align;
                     self.chart.time.follow();
@@ -160,7 +160,7 @@ impl CurvesView {
                 Label::new(text, look.palette.warn).small().ui(ui);
             };
             if let Some(few) = picture.filter(|picture| picture.lines.len() < picture.all) {
-                let of = look.say(tune::OF_ALL);
+                let of = look.tr(tune::OF_ALL);
                 warn(ui, &format!("{} {of} {}", few.lines.len(), few.all));
             }
             let missed = picture.map_or(0, |picture| {
@@ -227,9 +227,9 @@ impl<'a> DrawnTrials<'a> {
         };
         let look = self.pane.look;
         let name = compare_list::name(look, seen.session.id);
-        let (trial, number) = (look.say(tune::COLUMN_TRIAL), seen.trial.number);
+        let (trial, number) = (look.tr(tune::COLUMN_TRIAL), seen.trial.number);
         let setting = setting_words(seen.trial.setting);
-        let joint = look.say(words::dof(seen.joint.dof));
+        let joint = look.tr(words::dof(seen.joint.dof));
         vec![LegendKey {
             words: format!("{name}  {trial} {number}  {setting}  {joint}"),
             color: color(self.pane, self.comparison, meant, seen),
@@ -256,7 +256,7 @@ impl<'a> DrawnTrials<'a> {
         }
         for group in groups {
             let words = match group {
-                LineGroup::Joint(dof) => look.say(words::dof(dof)).to_owned(),
+                LineGroup::Joint(dof) => look.tr(words::dof(dof)).to_owned(),
                 LineGroup::Setting(at) => {
                     let setting = self.comparison.settings.get(at);
                     setting.map_or_else(String::new, |own| setting_words(*own))

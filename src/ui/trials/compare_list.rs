@@ -60,7 +60,7 @@ pub(crate) fn list_ui(ui: &mut Ui, sheet: SessionSheet<'_>, chosen: &mut ShownSe
     });
     if sessions.iter().any(|session| session.lost > 0) {
         let look = sheet.look;
-        kit::say_ui(ui, look.say(tune::LOST_WHY), look.palette.warn);
+        kit::small_text_ui(ui, look.tr(tune::LOST_WHY), look.palette.warn);
     }
 }
 
@@ -114,7 +114,7 @@ fn tick_ui(ui: &mut Ui, sheet: SessionSheet<'_>, id: SessionId, chosen: &mut Sho
     }
     match reason {
         None => tick.on_hover_text(look.tip(tune::SHOW)),
-        Some(reason) => tick.on_disabled_hover_text(look.say(reason)),
+        Some(reason) => tick.on_disabled_hover_text(look.tr(reason)),
     };
 }
 
@@ -139,5 +139,5 @@ fn state(sheet: SessionSheet<'_>, session: &TrialSession) -> (String, Color32) {
         SessionOrigin::Saved(_) => (tune::SAVED, palette.ok),
         SessionOrigin::Folder(_) => (tune::READ, palette.muted),
     };
-    (look.say(text).into(), color)
+    (look.tr(text).into(), color)
 }

@@ -195,7 +195,7 @@ impl<'a> TrialSheet<'a, '_> {
     /// All values of a row, including those without a column.
     fn figures(&self, seen: ComparedRow<'_>) -> String {
         let figure = |(column, title): (&TrialColumn, Text)| {
-            format!("{}: {}", self.pane.look.say(title), column.text(seen.joint))
+            format!("{}: {}", self.pane.look.tr(title), column.text(seen.joint))
         };
         shown().map(figure).collect::<Vec<_>>().join("\n")
     }
@@ -212,15 +212,15 @@ impl<'a> TrialSheet<'a, '_> {
     /// Column heading above its unit. A click sorts by it.
     fn head_cell_ui(&self, ui: &mut Ui, by: By, title: Text, sorting: &mut Sorting) {
         let look = self.pane.look;
-        let text = look.say(title);
+        let text = look.tr(title);
         let is_own = sorting.by == by;
         // The unit below its quantity, or an empty line, so that all headings have two lines.
         let unit = text.split_once(", ").or_else(|| text.split_once(' '));
         let (name, unit) = unit.unwrap_or((text, ""));
         let (arrow, way) = match (is_own, sorting.falling) {
             (false, _) => ("", ""),
-            (true, true) => (" ▼", look.say(tune::FALLING)),
-            (true, false) => (" ▲", look.say(tune::RISING)),
+            (true, true) => (" ▼", look.tr(tune::FALLING)),
+            (true, false) => (" ▲", look.tr(tune::RISING)),
         };
         let words = RichText::new(format!("{name}\n{unit}{arrow}")).small();
         let button = egui::Button::selectable(is_own, words.color(look.palette.muted));
@@ -229,7 +229,7 @@ impl<'a> TrialSheet<'a, '_> {
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_own, text));
         ui.ctx()
             .accesskit_node_builder(response.id, |node| node.set_value(way));
-        let tip = format!("{}\n{}", look.tip(title), look.say(tune::COLUMN_TIP));
+        let tip = format!("{}\n{}", look.tip(title), look.tr(tune::COLUMN_TIP));
         let response = response.on_hover_text(tip.trim());
         if response.clicked() {
             *sorting = Sorting {
@@ -247,11 +247,11 @@ impl<'a> TrialSheet<'a, '_> {
         let is_chosen = *pressed.strong == key;
         row.set_selected(is_chosen);
         let kind = if tried.is_probe() {
-            look.say(tune::PROBE).to_owned()
+            look.tr(tune::PROBE).to_owned()
         } else {
             setting_words(tried.setting)
         };
-        let joint = look.say(words::dof(seen.joint.dof));
+        let joint = look.tr(words::dof(seen.joint.dof));
         let (text, number) = (look.palette.text, tried.number);
         let short = if self.several() {
             format!("{}: {number}", session.0)
@@ -269,13 +269,13 @@ impl<'a> TrialSheet<'a, '_> {
             if self.comparison.is_best(tried.setting) && tried.counts() {
                 let star = Label::new(theme::BEST, look.palette.ok);
                 let star = star.font(theme::icon_high(theme::SIGN_SMALL));
-                star.named(look.say(tune::BEST_SIGN)).ui(ui);
+                star.named(look.tr(tune::BEST_SIGN)).ui(ui);
             }
             let label = Label::new(&whole, text).small().ui(ui);
             label.on_hover_text(self.figures(seen));
         });
         for (column, title) in shown().take(self.columns) {
-            let label = format!("{short} {}", look.say(title));
+            let label = format!("{short} {}", look.tr(title));
             row.col(|ui| number_ui(ui, &label, &column.text(seen.joint), text));
         }
         row.col(|ui| {

@@ -80,9 +80,9 @@ impl OvershootView {
     /// Draws the actions on all measurements, from right to left.
     fn use_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let quiet = |text| Button::said(look, text).weight(Weight::Quiet);
+        let quiet = |text| Button::text(look, text).weight(Weight::Quiet);
         if self.asks {
-            let sure = Button::said(look, tune::MAP_FORGET_SURE).weight(Weight::Danger);
+            let sure = Button::text(look, tune::MAP_FORGET_SURE).weight(Weight::Danger);
             sure.on_click(ui, pane, Action::Trial(TrialAction::ForgetOvershoot));
             if quiet(tune::MAP_FORGET_NOT).ui(ui, look).clicked() {
                 self.asks = false;
@@ -109,7 +109,7 @@ pub(crate) fn no_trials_ui(ui: &mut Ui, look: Look, title: Text, body: Text) {
     let sign = Label::new(theme::TUNE, look.palette.faint);
     let sign = sign.font(theme::icon_high(size.y)).center();
     sign.paint(ui, place);
-    Label::said(look, title).title().ui(ui);
+    Label::text(look, title).title().ui(ui);
     Label::muted(look, body).wrap().ui(ui);
 }
 
@@ -137,7 +137,7 @@ fn plot_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
     ui.horizontal_wrapped(|ui| {
         for stiffness in Stiffness::ALL {
             if kinds.iter().any(|own| own.kind.stiffness == stiffness) {
-                let name = look.say(tune::stiffness(stiffness));
+                let name = look.tr(tune::stiffness(stiffness));
                 let text = format!("{} {name}", sign(stiffness));
                 Label::new(&text, palette.text).small().ui(ui);
             }
@@ -187,7 +187,7 @@ fn plot_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
         }
     });
     let response = shown.response;
-    let name = look.say(tune::MAP_NAME);
+    let name = look.tr(tune::MAP_NAME);
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, name));
     if let Some(own) = pointed {
         response.on_hover_text_at_pointer(words_of(pane, own));
@@ -200,9 +200,9 @@ fn words_of(pane: &Pane<'_>, own: &MeasuredCloses) -> String {
     let [most, mean] = [own.most_over_g, own.mean_over_g].map(|over| format!("{over:+.0}"));
     let what = format!(
         "{}, {}, {}",
-        look.say(words::dof(kind.dof)),
+        look.tr(words::dof(kind.dof)),
         look.fill(tune::SETTING, &[&kind.speed.get(), &kind.threshold.get()]),
-        look.say(tune::stiffness(kind.stiffness)),
+        look.tr(tune::stiffness(kind.stiffness)),
     );
     let figures = look.fill(tune::MAP_POINT, &[&own.closes, &most, &mean, &own.last]);
     format!("{what}\n{figures}")
@@ -257,16 +257,16 @@ fn table_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
 
 fn row_ui(row: &mut TableRow<'_, '_>, pane: &Pane<'_>, own: &MeasuredCloses) {
     let (look, palette, kind) = (pane.look, pane.look.palette, own.kind);
-    let name = look.say(words::dof(kind.dof));
+    let name = look.tr(words::dof(kind.dof));
     let name = match kind.stages {
         Stages::One => name.to_owned(),
-        Stages::Two => format!("{name}, {}", look.say(tune::MAP_TWO)),
+        Stages::Two => format!("{name}, {}", look.tr(tune::MAP_TWO)),
     };
     Label::new(&name, palette.dof[kind.dof]).column_ui(row);
     let figures = [
         kind.speed.get().to_string(),
         format!("{} g", kind.threshold.get()),
-        look.say(tune::stiffness(kind.stiffness)).to_owned(),
+        look.tr(tune::stiffness(kind.stiffness)).to_owned(),
         own.closes.to_string(),
         format!("{:+.0} g", own.most_over_g),
         format!("{:+.0} g", own.mean_over_g),

@@ -38,7 +38,7 @@ impl<'a> Promotion<'a> {
             .save_refusal_with(&values, &hand.connection.status);
         // A hand just used for a trial is soon known to be at rest.
         let passes = refusal == Some(ParamRefusal::Moving);
-        let refusal = refusal.map(|why| pane.look.say(device::refusal(why)));
+        let refusal = refusal.map(|why| pane.look.tr(device::refusal(why)));
         Self {
             values,
             refusal: pane.recorded().or(none).or(refusal),
@@ -48,7 +48,7 @@ impl<'a> Promotion<'a> {
 
     /// Draws the button, which asks for confirmation with the card of a save.
     pub(crate) fn button_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, text: Text) {
-        let button = Button::said(pane.look, text).weight(Weight::Strong);
+        let button = Button::text(pane.look, text).weight(Weight::Strong);
         if button.disabled(self.refusal).ui(ui, pane.look).clicked() {
             let save = ParamAction::SaveWith(self.values.clone());
             pane.actions.push(Action::Param(save));
@@ -62,14 +62,14 @@ impl<'a> Promotion<'a> {
         let is_held =
             !self.values.is_empty() && book.live_params().with(&self.values) == book.live_params();
         if let Some(writing) = flash::writing(pane) {
-            kit::say_ui(ui, writing, palette.accent);
+            kit::small_text_ui(ui, writing, palette.accent);
         } else if let Some((words, color)) = flash::save_end(pane).filter(|_| is_held) {
-            kit::say_ui(ui, &words, color);
+            kit::small_text_ui(ui, &words, color);
         } else if let Some(refusal) = self
             .refusal
             .filter(|_| !self.passes && !self.values.is_empty())
         {
-            kit::say_ui(ui, refusal, palette.muted);
+            kit::small_text_ui(ui, refusal, palette.muted);
         }
     }
 }

@@ -34,8 +34,8 @@ pub(crate) fn ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
     let look = pane.look;
     let mut goal = pane.state.trials.goal.clone();
-    let disabled = runs.then(|| look.say(main::SERIES_RUNS));
-    kit::say_ui(ui, look.say(search::OBJECT), look.palette.muted);
+    let disabled = runs.then(|| look.tr(main::SERIES_RUNS));
+    kit::small_text_ui(ui, look.tr(search::OBJECT), look.palette.muted);
     let takes_part = goal.close.map(|target| target.is_some());
     if let Some(dof) = joints_ui(ui, look, &takes_part, disabled) {
         goal.start[dof] = (!takes_part[dof]).then_some(Angle::MAX);
@@ -43,7 +43,7 @@ fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
     }
     let rated = Force::RATED.get();
     let whole = |closes: usize| i16::try_from(closes).unwrap_or(i16::MAX);
-    let sentence = Sentence::new(look.say(search::GOAL), &[theme::FIELD; 3]);
+    let sentence = Sentence::new(look.tr(search::GOAL), &[theme::FIELD; 3]);
     sentence.ui(ui, look, |ui, number| match number {
         0 => {
             let limit = GoalNumber(search::LIMIT, LIMIT_MIN_G..=rated);
@@ -68,7 +68,7 @@ fn goal_ui(ui: &mut Ui, pane: &mut Pane<'_>, runs: bool) {
     });
     kit::tick_ui(ui, look, search::FREE, &mut goal.distribution_free);
     if let Err(wrong) = goal.check() {
-        kit::say_ui(ui, &search::goal_error(look, wrong), look.palette.bad);
+        kit::small_text_ui(ui, &search::goal_error(look, wrong), look.palette.bad);
     }
     if goal != pane.state.trials.goal && !runs {
         *pane.typing = Typing::default();
@@ -86,7 +86,7 @@ impl GoalNumber {
         let look = pane.look;
         let Self(name, range) = self;
         let (least, most) = range.into_inner();
-        let field = NumberField::new(look.say(name), look.tip(name), least.into()..=most.into());
+        let field = NumberField::new(look.tr(name), look.tip(name), least.into()..=most.into());
         let typed = field.whole_ui(ui, pane, Some(value));
         typed.and_then(|typed| i16::try_from(typed).ok())
     }
@@ -101,12 +101,12 @@ fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
             match &finding.result {
                 Ok(claim) => claim_ui(ui, pane, search, claim),
                 Err(why) => {
-                    kit::say_ui(ui, &search::no_claim(look, *why), palette.warn);
+                    kit::small_text_ui(ui, &search::no_claim(look, *why), palette.warn);
                 }
             }
             for own in &finding.compared {
                 if let Some(words) = search::compared(look, own) {
-                    kit::say_ui(ui, &words, palette.muted);
+                    kit::small_text_ui(ui, &words, palette.muted);
                 }
             }
             if !finding.open_questions.is_empty() {
@@ -114,18 +114,18 @@ fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
                 let untold = untold.map(|what| search::untold(look, *what));
                 let untold: Vec<String> = untold.collect();
                 let words = look.fill(search::UNTOLD, &[&look.list(&untold)]);
-                kit::say_ui(ui, &words, palette.muted);
+                kit::small_text_ui(ui, &words, palette.muted);
             }
         }
         (None, Some(progress)) if runs => {
-            kit::say_ui(ui, &search::stage(look, progress.stage), palette.text);
+            kit::small_text_ui(ui, &search::stage(look, progress.stage), palette.text);
             let tried = progress.tried.len();
             let left = look.fill(search::LEFT, &[&tried, &progress.closes_left]);
             let time = look.fill(tune::LEFT, &[&format::duration(progress.left)]);
-            kit::say_ui(ui, &format!("{left} {time}"), palette.muted);
+            kit::small_text_ui(ui, &format!("{left} {time}"), palette.muted);
         }
         (None, _) if !runs => {
-            kit::say_ui(ui, look.say(search::NONE), palette.muted);
+            kit::small_text_ui(ui, look.tr(search::NONE), palette.muted);
         }
         (None, _) => {}
     }
@@ -134,7 +134,7 @@ fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
 /// Draws the result, with its actions.
 fn claim_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search, claim: &Claim) {
     let (look, palette) = (pane.look, pane.look.palette);
-    kit::say_ui(ui, &search::claim(look, claim), palette.ok);
+    kit::small_text_ui(ui, &search::claim(look, claim), palette.ok);
     let setting = claim.setting;
     let (speed, force) = (setting.speed.get(), setting.force.get());
     let words = match claim.approach {
@@ -143,18 +143,18 @@ fn claim_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search, claim: &Claim) {
             look.fill(search::TWO, &[&fast_speed, &margin, &speed, &force])
         }
     };
-    kit::say_ui(ui, &words, palette.text);
+    kit::small_text_ui(ui, &words, palette.text);
     let joints = claim.joints.iter();
     let promotion = Promotion::of(pane, joints.map(|joint| (joint.dof, setting)), None);
     let is_full = !pane.state.poses.library.has_room();
-    let full = is_full.then(|| look.say(search::FULL));
+    let full = is_full.then(|| look.tr(search::FULL));
     ui.horizontal_wrapped(|ui| {
         promotion.button_ui(ui, pane, search::AS_DEFAULT);
         let text = match claim.approach {
             FoundApproach::OneStage => search::AS_POSE,
             FoundApproach::TwoStage { .. } => search::AS_SEQUENCE,
         };
-        let button = Button::said(look, text).disabled(full);
+        let button = Button::text(look, text).disabled(full);
         let poses = poses(pane, search, claim);
         button.on_click(ui, pane, Action::Library(LibraryEdit::Add(poses)));
     });

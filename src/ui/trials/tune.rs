@@ -33,10 +33,10 @@ impl TuneView {
         let width = (ui.available_width() * 0.34).clamp(348.0, 424.0);
         kit::bare(Panel::left("plan"), width, theme::GAP_RIGHT).show(ui, |ui| {
             kit::full_card_ui(ui, look, |ui| {
-                kit::head_ui(ui, look, look.say(tune::PLAN), |ui| {
-                    let fold = Button::said(look, tune::HIDE_PLAN).icon(theme::TO_LEFT);
+                kit::head_ui(ui, look, look.tr(tune::PLAN), |ui| {
+                    let fold = Button::text(look, tune::HIDE_PLAN).icon(theme::TO_LEFT);
                     let fold = fold.weight(Weight::Quiet);
-                    fold.opens(ui, pane, ViewRequest::View(View::Compare));
+                    fold.navigate(ui, pane, ViewRequest::View(View::Compare));
                 });
                 ui.horizontal(|ui| {
                     let all = [
@@ -70,9 +70,9 @@ impl TuneView {
     /// Draws the results over all of `ui`, with the plan collapsed.
     pub(crate) fn results_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         self.results.ui(ui, pane, |ui, pane| {
-            let unfold = Button::said(pane.look, tune::SHOW_PLAN).icon(theme::TO_RIGHT);
+            let unfold = Button::text(pane.look, tune::SHOW_PLAN).icon(theme::TO_RIGHT);
             let unfold = unfold.weight(Weight::Quiet);
-            unfold.opens(ui, pane, ViewRequest::View(View::Tune));
+            unfold.navigate(ui, pane, ViewRequest::View(View::Tune));
         });
     }
 }
@@ -103,9 +103,9 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (count, time) = estimate::series(plan);
     let mut words = look.fill(tune::WILL, &[&count, &format::duration(time)]);
     if count > plan.grid.settings().len() {
-        words = format!("{words} {}", look.say(tune::WILL_PROBE));
+        words = format!("{words} {}", look.tr(tune::WILL_PROBE));
     }
-    kit::say_ui(ui, &words, palette.text);
+    kit::small_text_ui(ui, &words, palette.text);
     if let Some((setting, expected)) = plan.expected(&pane.hand().overshoot.map) {
         let peak = expected.over_g;
         let (peak_g, force) = (format!("{peak:.0}"), setting.force.get());
@@ -115,7 +115,7 @@ fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>) {
         } else {
             palette.muted
         };
-        let label = kit::say_ui(ui, &words, color);
+        let label = kit::small_text_ui(ui, &words, color);
         let measured = tune::measured_on(look, &expected.on);
         label.on_hover_text(format!("{}\n{measured}", look.tip(tune::EXPECT)));
     }

@@ -3,7 +3,7 @@
 
 use crate::app::action::Action;
 use crate::app::trials::TrialAction;
-use crate::app::trials::form::{PlanSide, approaches, list, set_target, tags, take_pose};
+use crate::app::trials::form::{PlanSide, approaches, copy_pose, list, set_target, tags};
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::trials::plan::PlanField;
 use crate::trials::{Approach, TrialPlan, Until};
@@ -73,16 +73,16 @@ pub(crate) fn joints_ui(
 ) -> Option<Dof> {
     let mut pressed = None;
     let mut joint_ui = |ui: &mut Ui, dof: Dof, width: f32| {
-        let joint = look.say(words::dof(dof));
+        let joint = look.tr(words::dof(dof));
         let name = look.fill(tune::JOINT_NAME, &[&joint]);
-        let button = Button::new(joint, look.say(tune::JOINT_TIP)).named(&name);
+        let button = Button::new(joint, look.tr(tune::JOINT_TIP)).named(&name);
         let button = button.disabled(disabled).switch(takes_part[dof]);
         let (id, place) = ui.allocate_space(vec2(width, theme::CONTROL));
         if button.put(ui, look, place, id).clicked() {
             pressed = Some(dof);
         }
     };
-    Label::new(look.say(tune::JOINTS), look.palette.text).ui(ui);
+    Label::new(look.tr(tune::JOINTS), look.palette.text).ui(ui);
     let width = (ui.available_width() - 2.0 * theme::STEP) / 3.0;
     for row in Dof::ALL.chunks(3) {
         ui.horizontal(|ui| {
@@ -118,7 +118,7 @@ impl TuneForm {
             pane,
             form: self,
             plan,
-            disabled: runs.then(|| look.say(main::SERIES_RUNS)),
+            disabled: runs.then(|| look.tr(main::SERIES_RUNS)),
         };
         kit::put_scroll_bar_in_margin(ui);
         let area = ScrollArea::vertical().id_salt("plan").auto_shrink(false);
@@ -171,7 +171,7 @@ impl Pass<'_, '_> {
             set_target(&mut self.plan, dof, angle);
         }
         if let Some((_, why)) = self.wrong_of(&[PlanField::Joints]) {
-            kit::say_ui(ui, &why, self.pane.look.palette.bad);
+            kit::small_text_ui(ui, &why, self.pane.look.palette.bad);
         }
     }
 
@@ -187,7 +187,7 @@ impl Pass<'_, '_> {
             } else {
                 continue;
             };
-            let words = look.say(text).replacen("{}", look.say(words::dof(dof)), 1);
+            let words = look.tr(text).replacen("{}", look.tr(words::dof(dof)), 1);
             let widths = [theme::FIELD, width];
             let sentence = Sentence::new(&words, &widths);
             let sentence = sentence.wrong(self.wrong_of(&[PlanField::Way(dof); 2]));
@@ -201,7 +201,7 @@ impl Pass<'_, '_> {
 
     fn leave_ui(&mut self, ui: &mut Ui, dof: Dof) {
         let look = self.pane.look;
-        let name = look.fill(tune::LEAVE, &[&look.say(words::dof(dof))]);
+        let name = look.fill(tune::LEAVE, &[&look.tr(words::dof(dof))]);
         let button = Button::new(&name, look.tip(tune::LEAVE)).icon(theme::CLOSE);
         let button = button.weight(Weight::Quiet).disabled(self.disabled);
         if button.ui(ui, look).clicked() {
@@ -217,7 +217,7 @@ impl Pass<'_, '_> {
             PlanSide::Start => (tune::START_NAME, tune::START, &mut self.plan.start[dof]),
             PlanSide::Close => (tune::CLOSE_NAME, tune::CLOSE, &mut self.plan.close[dof]),
         };
-        let name = look.fill(name, &[&look.say(words::dof(dof))]);
+        let name = look.fill(name, &[&look.tr(words::dof(dof))]);
         let field = NumberField::new(&name, look.tip(of), 0.0..=1000.0).disabled(self.disabled);
         let field = field.wrong(is_wrong);
         if let Some(typed) = field.whole_ui(ui, self.pane, angle.map(Angle::get)) {
@@ -232,13 +232,13 @@ impl Pass<'_, '_> {
             (PlanSide::Start, tune::TAKE_START),
             (PlanSide::Close, tune::TAKE_CLOSE),
         ] {
-            let button = Button::said(look, text).tip(look.say(tune::TAKE_TIP));
+            let button = Button::text(look, text).tip(look.tr(tune::TAKE_TIP));
             let response = button.disabled(self.disabled).ui(ui, look);
             let mut taken = None;
             egui::Popup::menu(&response).show(|ui| {
                 ui.set_width(220.0);
                 let now = state.hand().pose_now(state.now);
-                let button = egui::Button::new(look.say(tune::TAKE_NOW));
+                let button = egui::Button::new(look.tr(tune::TAKE_NOW));
                 if ui.add_enabled(now.is_some(), button).clicked() {
                     taken = now.map(|angles| angles.map(Some));
                 }
@@ -249,7 +249,7 @@ impl Pass<'_, '_> {
                 }
             });
             if let Some(angles) = taken {
-                take_pose(&mut self.plan, side, &angles);
+                copy_pose(&mut self.plan, side, &angles);
             }
         }
     }
@@ -271,7 +271,7 @@ impl Pass<'_, '_> {
         };
         let widths = [width(&speeds), width(&forces), theme::FIELD];
         let fields = [PlanField::Speeds, PlanField::Forces, PlanField::Repeats];
-        let sentence = Sentence::new(look.say(tune::GRID), &widths);
+        let sentence = Sentence::new(look.tr(tune::GRID), &widths);
         let sentence = sentence.wrong(self.wrong_of(&fields));
         sentence.ui(ui, look, |ui, number| match number {
             0 => {
@@ -296,7 +296,7 @@ impl Pass<'_, '_> {
     fn list_ui(&mut self, ui: &mut Ui, number: &PlanNumber, numbers: &str) -> Option<Vec<i16>> {
         let look = self.pane.look;
         let &PlanNumber(field, name, ref range) = number;
-        let text = TextField::new(look.say(name), LIST_CHARS).hint(look.tip(name));
+        let text = TextField::new(look.tr(name), LIST_CHARS).hint(look.tip(name));
         let text = text.wrong(self.is_wrong(field));
         let most = i16::try_from(*range.end()).unwrap_or(i16::MAX);
         let read = |text: &str| list(text, most).map_err(|why| tune::list_error(look, why));
@@ -319,7 +319,7 @@ impl Pass<'_, '_> {
     fn field(&self, PlanNumber(field, name, range): &PlanNumber) -> NumberField<'static> {
         let look = self.pane.look;
         let (from, to) = (f64::from(*range.start()), f64::from(*range.end()));
-        let number = NumberField::new(look.say(*name), look.tip(*name), from..=to);
+        let number = NumberField::new(look.tr(*name), look.tip(*name), from..=to);
         let number = number.disabled(self.disabled);
         number.wrong(self.is_wrong(*field))
     }
@@ -330,14 +330,14 @@ impl Pass<'_, '_> {
         let name = |approach: Approach| approach.until().map(Until::name);
         let all = approaches(self.form.fast).map(|usual| {
             if name(usual) == name(now) {
-                (now, look.say(tune::approach(now)))
+                (now, look.tr(tune::approach(now)))
             } else {
-                (usual, look.say(tune::approach(usual)))
+                (usual, look.tr(tune::approach(usual)))
             }
         });
         ui.scope(|ui| {
             ui.spacing_mut().combo_width = ui.available_width();
-            let name = look.say(tune::APPROACH);
+            let name = look.tr(tune::APPROACH);
             kit::choose_ui(ui, name, &mut self.plan.approach, &all);
         });
         let Approach::TwoStage {
@@ -354,7 +354,7 @@ impl Pass<'_, '_> {
             Until::Touch(_) => (tune::TOUCH, tune::UNTIL_TOUCH, 3000),
         };
         let slows = PlanNumber(PlanField::Until, name, 0..=most);
-        let sentence = Sentence::new(look.say(words), &[theme::FIELD; 2]);
+        let sentence = Sentence::new(look.tr(words), &[theme::FIELD; 2]);
         let sentence = sentence.wrong(self.wrong_of(&[PlanField::Fast, PlanField::Until]));
         sentence.ui(ui, look, |ui, number| match number {
             0 => {
@@ -375,7 +375,7 @@ impl Pass<'_, '_> {
         let look = self.pane.look;
         let (dwell, rest, limits) = (self.plan.dwell, self.plan.grid.rest, self.plan.limits);
         let celsius = |typed: i64| u8::try_from(typed).unwrap_or(u8::MAX);
-        let sentence = Sentence::new(look.say(tune::TIMES), &[theme::FIELD; 5]);
+        let sentence = Sentence::new(look.tr(tune::TIMES), &[theme::FIELD; 5]);
         let numbers = [DWELL, REST, CEILING, START_C, STOP_C];
         let sentence = sentence.wrong(self.wrong_of(&numbers.map(|PlanNumber(field, ..)| field)));
         sentence.ui(ui, look, |ui, number| match number {
@@ -413,7 +413,7 @@ impl Pass<'_, '_> {
     /// Draws a text field beside its name.
     fn text_ui(&mut self, ui: &mut Ui, name: Text, value: &str, max: usize) -> Option<String> {
         let look = self.pane.look;
-        let field = TextField::new(look.say(name), max).hint(look.tip(name));
+        let field = TextField::new(look.tr(name), max).hint(look.tip(name));
         let row = ui.horizontal(|ui| {
             Label::note(look, name).cell_ui(ui, theme::FIELD);
             field.ui(ui, self.pane, value)

@@ -25,11 +25,11 @@ pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         return;
     };
     let (number, total) = (run.view.number, run.view.total);
-    let stage = look.say(tune::stage(run.view.stage));
+    let stage = look.tr(tune::stage(run.view.stage));
     let trial = look.fill(tune::TRIAL, &[&number, &total, &stage]);
-    let name = look.say(tune::PROGRESS);
+    let name = look.tr(tune::PROGRESS);
     ui.horizontal(|ui| {
-        let button = Button::said(look, tune::STOP_SERIES).weight(Weight::Stop);
+        let button = Button::text(look, tune::STOP_SERIES).weight(Weight::Stop);
         let response = button.large().ui(ui, look);
         if kit::pressed(ui, &response) {
             pane.actions.push(Action::Stop);
@@ -43,12 +43,12 @@ pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             let left = format::duration(left);
             let left = look.fill(tune::LEFT, &[&left]);
             let setting = match run.view.setting {
-                Some(_) if run.view.is_probing => look.say(tune::PROBE).to_owned(),
+                Some(_) if run.view.is_probing => look.tr(tune::PROBE).to_owned(),
                 Some(own) => look.fill(tune::SETTING, &[&own.speed.get(), &own.force.get()]),
                 None => String::new(),
             };
             ui.horizontal(|ui| {
-                for text in [setting.as_str(), &left, look.say(tune::ANY_KEY)] {
+                for text in [setting.as_str(), &left, look.tr(tune::ANY_KEY)] {
                     Label::new(text, palette.muted).small().ui(ui);
                 }
             });
@@ -100,7 +100,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &Pane<'_>, chart: &mut LiveChart) {
 fn levels_ui(ui: &mut Ui, pane: &Pane<'_>, run: &SeriesRun) {
     let (look, palette) = (pane.look, pane.look.palette);
     for dof in run.plan.joints() {
-        let joint = Label::new(look.say(words::dof(dof)), palette.dof[dof]);
+        let joint = Label::new(look.tr(words::dof(dof)), palette.dof[dof]);
         joint.small().ui(ui);
     }
     if let Some(setting) = run.view.setting {

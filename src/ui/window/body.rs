@@ -3,7 +3,7 @@
 use crate::app::layout::WindowRoom;
 use crate::app::slot::SlotId;
 use crate::app::state::State;
-use crate::ui::checkup::CheckupView;
+use crate::ui::checkup::CheckupPanel;
 use crate::ui::connection::ConnectionForm;
 use crate::ui::faults::FaultsView;
 use crate::ui::hands::beside::BesideView;
@@ -21,7 +21,7 @@ use crate::ui::theme;
 use crate::ui::touch::TouchView;
 use crate::ui::traffic::TrafficView;
 use crate::ui::trials::tune::TuneView;
-use crate::ui::view::{Place, View};
+use crate::ui::view::{Tab, View};
 use crate::ui::window::rooms::{RoomSize, Rooms};
 use crate::ui::window::status::StatusLine;
 use egui::{Align, Layout, Panel, Rect, Ui, UiBuilder, vec2};
@@ -45,7 +45,7 @@ const STRIP_LEAST: f32 = 88.0;
 
 /// All views, and the open one.
 #[derive(Debug, Default)]
-pub(super) struct Body {
+pub(super) struct WindowViews {
     pub(super) view: View,
     /// View opened last in the Hand tab.
     hand_view: Option<View>,
@@ -72,14 +72,14 @@ pub(super) struct HandViews {
     pub(super) faults: FaultsView,
     pub(super) status: StatusLine,
     pub(super) device: DeviceView,
-    pub(super) checkup: CheckupView,
+    pub(super) checkup: CheckupPanel,
     pub(super) connection: ConnectionForm,
     pub(super) inputs: InputsView,
     pub(super) touch: TouchView,
     pub(super) traffic: TrafficView,
 }
 
-impl Body {
+impl WindowViews {
     /// Switches to the view state of the shown hand. True if another hand is shown now.
     pub(super) fn follow_shown(&mut self, state: &State) -> bool {
         let slot = state.hand().label.slot;
@@ -115,15 +115,15 @@ impl Body {
             self.before_faults = self.view;
         }
         self.view = view;
-        if view.place() == Place::Hand {
+        if view.tab() == Tab::Hand {
             self.hand_view = Some(view);
         }
     }
 
     /// Opens a tab at its first view; the Hand tab at its last one.
-    pub(super) fn show_place(&mut self, place: Place) {
-        let first = place.views().first().copied().unwrap_or_default();
-        let last = self.hand_view.filter(|_| place == Place::Hand);
+    pub(super) fn show_tab(&mut self, tab: Tab) {
+        let first = tab.views().first().copied().unwrap_or_default();
+        let last = self.hand_view.filter(|_| tab == Tab::Hand);
         self.show(last.unwrap_or(first));
     }
 
@@ -148,7 +148,7 @@ impl Body {
 
     /// Draws the joints at the left of `ui`: in full where they can be set, else as a rail with their main values.
     fn joints_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let sets_joints = self.view.place() == Place::Live;
+        let sets_joints = self.view.tab() == Tab::Live;
         if self.rooms.is_shut(WindowRoom::Joints) || !sets_joints {
             let rail = Panel::left("rail");
             let rail = kit::bare(rail, 144.0 + theme::GAP, theme::GAP_RIGHT);
@@ -167,11 +167,11 @@ impl Body {
     }
 
     fn view_ui(&mut self, ui: &mut Ui, rect: Rect, pane: &mut Pane<'_>) {
-        fade_in(ui, self.view.place());
+        fade_in(ui, self.view.tab());
         if self.view != View::Recordings {
             self.recordings.leave();
         }
-        if self.view.place() == Place::Hand {
+        if self.view.tab() == Tab::Hand {
             self.hand_views_ui(ui, pane);
         }
         match self.view {
@@ -193,10 +193,10 @@ impl Body {
     /// Draws the buttons for the views of the Hand tab.
     fn hand_views_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         ui.horizontal(|ui| {
-            for view in Place::Hand.views() {
-                let button = Button::said(pane.look, view.title());
+            for view in Tab::Hand.views() {
+                let button = Button::text(pane.look, view.title());
                 let button = button.choice(*view == self.view).large();
-                button.opens(ui, pane, ViewRequest::View(*view));
+                button.navigate(ui, pane, ViewRequest::View(*view));
             }
         });
         ui.add_space(theme::STEP);
@@ -261,11 +261,11 @@ impl Body {
 }
 
 /// Fades in the tab that was just opened, over the animation time of the style; at once if that is zero.
-fn fade_in(ui: &mut Ui, open: Place) {
-    for place in Place::ALL {
-        let id = ui.scope_id().with(("fade", place));
-        let share = ui.ctx().animate_bool(id, place == open);
-        if place == open {
+fn fade_in(ui: &mut Ui, open: Tab) {
+    for tab in Tab::ALL {
+        let id = ui.scope_id().with(("fade", tab));
+        let share = ui.ctx().animate_bool(id, tab == open);
+        if tab == open {
             ui.multiply_opacity(share);
         }
     }
@@ -276,8 +276,8 @@ fn to_plots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let size = vec2(ui.available_width(), theme::CONTROL);
     let row = Layout::right_to_left(Align::Center);
     ui.allocate_ui_with_layout(size, row, |ui| {
-        let back = Button::said(pane.look, window::TO_PLOTS).weight(Weight::Quiet);
-        back.opens(ui, pane, ViewRequest::View(View::Live));
+        let back = Button::text(pane.look, window::TO_PLOTS).weight(Weight::Quiet);
+        back.navigate(ui, pane, ViewRequest::View(View::Live));
     });
 }
 

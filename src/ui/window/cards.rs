@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::state::State;
-use crate::ui::kit::{ButtonRole, Card, Choice, Look};
+use crate::ui::kit::{ButtonRole, Card, CardButton, Look};
 use crate::ui::params::card as device_card;
 use crate::ui::params::procedures;
 use crate::ui::recordings;
@@ -36,7 +36,7 @@ fn leave_card(state: &State, look: Look) -> Option<Card> {
     if question.edits > 0 {
         card = card.warning(look.fill(window::LEAVE_EDITS, &[&question.edits]));
     }
-    let stay = Choice::new(window::STAY, ButtonRole::Safe, Action::Stay);
-    let leave = Choice::new(window::LEAVE, ButtonRole::Danger, Action::Leave);
+    let stay = CardButton::new(window::STAY, ButtonRole::Safe, Action::Stay);
+    let leave = CardButton::new(window::LEAVE, ButtonRole::Danger, Action::Leave);
     Some(card.choice(stay).choice(leave))
 }

@@ -10,7 +10,7 @@ use crate::ui::faults::entry as fault_entry;
 use crate::ui::kit::{self, Button, Label, Look, Pane, ViewRequest, Weight, format};
 use crate::ui::text::{inputs, main, notices, recordings, words};
 use crate::ui::theme;
-use crate::ui::view::{Place, View};
+use crate::ui::view::{Tab, View};
 use crate::ui::window::rooms;
 use egui::{Color32, Rect, Response, Ui, pos2, vec2};
 
@@ -37,8 +37,8 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View, is_free: b
         kit::left_ui(ui, |ui| {
             // Drawn first, so that they do not move when the hand's state changes.
             let gap = std::mem::take(&mut ui.spacing_mut().item_spacing.x);
-            for place in Place::ALL {
-                place_ui(ui, pane, place, view.place() == place);
+            for tab in Tab::ALL {
+                tab_ui(ui, pane, tab, view.tab() == tab);
             }
             ui.spacing_mut().item_spacing.x = gap;
             ui.add_space(theme::PAD);
@@ -50,14 +50,14 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View, is_free: b
 
 fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let button = Button::said(look, main::STOP).weight(Weight::Stop);
+    let button = Button::text(look, main::STOP).weight(Weight::Stop);
     let (id, rect) = ui.allocate_space(vec2(STOP, ui.available_height()));
     let response = button.ground(ui, look, rect, id);
     let strong = look.palette.on_strong;
     let (upper, lower) = rect.shrink(theme::BAR).split_top_bottom_at_fraction(0.6);
-    let word = Label::new(look.say(main::STOP), strong).center();
+    let word = Label::new(look.tr(main::STOP), strong).center();
     word.font(theme::large()).paint(ui, upper);
-    let keys = Label::new(look.say(main::STOP_KEYS), strong).center();
+    let keys = Label::new(look.tr(main::STOP_KEYS), strong).center();
     keys.small().paint(ui, lower);
     if kit::pressed(ui, &response) {
         pane.actions.push(Action::Stop);
@@ -84,8 +84,8 @@ fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             (text, name, why)
         }
     };
-    let button = Button::said(look, text)
-        .named(look.say(name))
+    let button = Button::text(look, text)
+        .named(look.tr(name))
         .disabled(refusal.as_deref())
         .selected(armed)
         .weight(weight);
@@ -104,7 +104,7 @@ fn back_ui(ui: &mut Ui, pane: &mut Pane<'_>, needs_eyes: bool) {
     } else {
         recordings::BACK
     };
-    let button = Button::new(look.say(text), look.tip(recordings::BACK));
+    let button = Button::new(look.tr(text), look.tip(recordings::BACK));
     let button = button.weight(Weight::Strong).large();
     button.on_click(ui, pane, Action::Recording(RecordingAction::Close));
 }
@@ -128,7 +128,7 @@ fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
             (text, color, recording_words(look, status))
         }
     };
-    let name = look.say(text);
+    let name = look.tr(text);
     let tip = format!("{}{tip}", look.tip(text));
     let words = if is_wide { name } else { "" };
     let button = Button::new(words, &tip).named(name).weight(Weight::Quiet);
@@ -185,12 +185,12 @@ fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     let look = pane.look;
     let pressed = match fault_entry::unseen_color(pane) {
         None => {
-            let button = Button::said(look, main::TAB_FAULTS);
+            let button = Button::text(look, main::TAB_FAULTS);
             button.weight(Weight::Quiet).ui(ui, look)
         }
         Some(color) => {
             let count = pane.hand().readings.faults.unseen().count();
-            let (before, after) = (look.say(notices::UNSEEN_BEFORE), look.say(notices::UNSEEN));
+            let (before, after) = (look.tr(notices::UNSEEN_BEFORE), look.tr(notices::UNSEEN));
             let name = format!("{before} {count} {after}");
             let words = if is_wide {
                 name.clone()
@@ -211,8 +211,8 @@ fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     badge_ui(ui, pane);
     let look = pane.look;
     let (word, color) = link_words(pane);
-    let word = look.say(word);
-    let name = format!("{}: {word}", look.say(main::LINK_BUTTON));
+    let word = look.tr(word);
+    let name = format!("{}: {word}", look.tr(main::LINK_BUTTON));
     let tip = link_tip(pane);
     let button = Button::new(word, &tip).named(&name).weight(Weight::Quiet);
     if lamp_button_ui(ui, look, button, color).clicked() {
@@ -220,7 +220,7 @@ fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
     let errors = errors(pane);
     if errors > 0 && pane.state.timeline.is_none() {
-        let words = format!("{} {errors}", look.say(main::ERRORS));
+        let words = format!("{} {errors}", look.tr(main::ERRORS));
         let label = Label::new(&words, look.palette.warn).small();
         label.ui(ui).on_hover_text(look.tip(main::ERRORS));
     }
@@ -241,12 +241,12 @@ fn link_tip(pane: &Pane<'_>) -> String {
     let stats = &connection.stats;
     format!(
         "{}\n{} {}, {} {}, {} {}",
-        look.say(main::LINK_TIP),
-        look.say(main::RATE_STATE),
+        look.tr(main::LINK_TIP),
+        look.tr(main::RATE_STATE),
         rate(stats.state_hz),
-        look.say(main::TAB_TOUCH),
+        look.tr(main::TAB_TOUCH),
         rate(stats.tactile_hz),
-        look.say(main::ERRORS),
+        look.tr(main::ERRORS),
         errors(pane),
     )
 }
@@ -264,7 +264,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
         (Some(_), _) => (main::REAL_HAND, palette.control, palette.text),
         (None, _) => (main::NO_HAND, palette.control, palette.muted),
     };
-    let text = look.say(text);
+    let text = look.tr(text);
     let width = kit::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
     let (_, place) = ui.allocate_space(vec2(width, theme::CONTROL));
     ui.painter().rect_filled(place, 12.0, fill);
@@ -279,7 +279,7 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
         let width = kit::text_width(ui, &text, theme::number());
         if width + LINK < ui.available_width() {
             let label = Label::new(&text, palette.muted).number().ui(ui);
-            label.on_hover_text(look.say(main::ENDPOINT_TIP));
+            label.on_hover_text(look.tr(main::ENDPOINT_TIP));
         }
     }
 }
@@ -288,9 +288,9 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
 const LINK: f32 = 220.0;
 
 /// A tab button, marked while its tab is open.
-fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, place: Place, is_open: bool) {
+fn tab_ui(ui: &mut Ui, pane: &mut Pane<'_>, tab: Tab, is_open: bool) {
     let look = pane.look;
-    let button = Button::said(look, place.title()).weight(Weight::Quiet);
+    let button = Button::text(look, tab.title()).weight(Weight::Quiet);
     let response = button.selected(is_open).large().ui(ui, look);
     let rect = response.rect;
     if is_open {
@@ -300,7 +300,7 @@ fn place_ui(ui: &mut Ui, pane: &mut Pane<'_>, place: Place, is_open: bool) {
         ui.painter().rect_filled(under, 1.0, look.palette.accent);
     }
     if response.clicked() {
-        pane.open(ViewRequest::Place(place));
+        pane.open(ViewRequest::Tab(tab));
     }
 }
 
@@ -318,7 +318,7 @@ fn sharing_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         (open.pad_view.is_some(), inputs::PAD),
     ];
     let words = parts.iter().filter(|(is_open, _)| *is_open);
-    let words: Vec<&str> = words.map(|(_, text)| look.say(*text)).collect();
+    let words: Vec<&str> = words.map(|(_, text)| look.tr(*text)).collect();
     if words.is_empty() {
         return;
     }

@@ -38,7 +38,7 @@ impl KeyList {
         }
         let edge = Stroke::new(theme::LINE, look.palette.accent);
         let frame = Frame::window(ui.style()).stroke(edge);
-        let window = Window::new(look.say(window::KEYS))
+        let window = Window::new(look.tr(window::KEYS))
             .id(Id::unique("key list"))
             .title_bar(false)
             .resizable(false)
@@ -87,22 +87,22 @@ fn rows(group: Text) -> Vec<(String, Text)> {
 /// Draws the list. True if the user closes it.
 fn list_ui(ui: &mut Ui, look: Look) -> bool {
     let palette = look.palette;
-    let shut = kit::head_ui(ui, look, look.say(window::KEYS), |ui| {
-        let shut = Button::new(look.say(main::DISMISS), "").weight(Weight::Quiet);
-        let shut = shut.named(look.say(window::KEYS_CLOSE));
+    let shut = kit::head_ui(ui, look, look.tr(window::KEYS), |ui| {
+        let shut = Button::new(look.tr(main::DISMISS), "").weight(Weight::Quiet);
+        let shut = shut.named(look.tr(window::KEYS_CLOSE));
         shut.ui(ui, look).clicked()
     });
     ui.columns_const(|all: &mut [Ui; 3]| {
         for (ui, parts) in all.iter_mut().zip(COLUMNS) {
             for title in parts {
-                Label::new(look.say(*title), palette.accent).small().ui(ui);
+                Label::new(look.tr(*title), palette.accent).small().ui(ui);
                 let grid = Grid::new(title.en).num_columns(2).min_col_width(98.0);
                 grid.min_row_height(20.0).show(ui, |ui| {
                     for (keys, words) in rows(*title) {
                         ui.horizontal(|ui| {
                             keys.split(", ").for_each(|key| cap_ui(ui, look, key));
                         });
-                        Label::said(look, words).wrap().ui(ui);
+                        Label::text(look, words).wrap().ui(ui);
                         ui.end_row();
                     }
                 });

@@ -6,7 +6,7 @@ use crate::hand::Dof;
 use crate::poses::library::EntryKey;
 use crate::ui::kit::ViewRequest;
 use crate::ui::text::{Text, main, panels, window, words};
-use crate::ui::view::{Place, View};
+use crate::ui::view::{Tab, View};
 use egui::{Event, InputState, Key, Modifiers, Ui};
 
 /// Effect of a key.
@@ -94,11 +94,11 @@ pub(crate) static ROWS: [KeyRow; 38] = [
     row(SHIFT, Key::O, Wish::Open),
     row(SHIFT, Key::H, Wish::Half),
     row(SHIFT, Key::C, Wish::Close),
-    opens(COMMAND, Key::Num1, ViewRequest::Place(Place::Live)),
-    opens(COMMAND, Key::Num2, ViewRequest::Place(Place::Tune)),
-    opens(COMMAND, Key::Num3, ViewRequest::Place(Place::Recordings)),
-    opens(COMMAND, Key::Num4, ViewRequest::Place(Place::Hand)),
-    opens(COMMAND, Key::Num5, ViewRequest::Place(Place::Share)),
+    opens(COMMAND, Key::Num1, ViewRequest::Tab(Tab::Live)),
+    opens(COMMAND, Key::Num2, ViewRequest::Tab(Tab::Tune)),
+    opens(COMMAND, Key::Num3, ViewRequest::Tab(Tab::Recordings)),
+    opens(COMMAND, Key::Num4, ViewRequest::Tab(Tab::Hand)),
+    opens(COMMAND, Key::Num5, ViewRequest::Tab(Tab::Share)),
     opens(COMMAND, Key::Num6, ViewRequest::Faults),
     row(ALT, Key::Num1, Wish::Hand(0)),
     row(ALT, Key::Num2, Wish::Hand(1)),
@@ -196,7 +196,7 @@ impl Wish {
             Self::Language => window::KEY_LANGUAGE,
             Self::Theme => main::THEME,
             Self::Opens(ViewRequest::View(view)) => view.title(),
-            Self::Opens(ViewRequest::Place(place)) => place.title(),
+            Self::Opens(ViewRequest::Tab(tab)) => tab.title(),
             Self::Opens(ViewRequest::Faults) => View::Faults.title(),
             Self::Opens(ViewRequest::Note) => window::KEY_NOTE,
             Self::Opens(ViewRequest::Keys) => window::KEY_LIST,
@@ -250,9 +250,9 @@ impl Wish {
 
 /// Removes the keys that work everywhere from the input before any control sees them. Returns their effects, in order.
 /// Letters and Space go to a focused text field; Esc only while the hand is at rest.
-pub(crate) fn take(ui: &Ui, escape: Escape) -> Vec<Wish> {
+pub(crate) fn consume(ui: &Ui, escape: Escape) -> Vec<Wish> {
     let typing = ui.ctx().text_edit_focused();
-    ui.input_mut(|input| take_from(input, typing, escape))
+    ui.input_mut(|input| consume_from(input, typing, escape))
 }
 
 /// State of the hold-to-run key.
@@ -270,11 +270,11 @@ pub(crate) fn hold_key(ui: &Ui, wishes: &[Wish]) -> HoldKey {
 
 /// While a series of trials runs, any key is a stop: removes all keys from the input. Auto-repeat of a key held before does
 /// not count, and Esc stays in the input to close what is open.
-pub(crate) fn take_any(ui: &Ui) -> Vec<Wish> {
-    ui.input_mut(take_any_from)
+pub(crate) fn consume_any(ui: &Ui) -> Vec<Wish> {
+    ui.input_mut(consume_any_from)
 }
 
-fn take_any_from(input: &mut InputState) -> Vec<Wish> {
+fn consume_any_from(input: &mut InputState) -> Vec<Wish> {
     let mut wishes = Vec::new();
     input.events.retain(|event| match event {
         Event::Key {
@@ -296,7 +296,7 @@ fn take_any_from(input: &mut InputState) -> Vec<Wish> {
     wishes
 }
 
-fn take_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> {
+fn consume_from(input: &mut InputState, typing: bool, escape: Escape) -> Vec<Wish> {
     let mut wishes = Vec::new();
     let mut opens_a_field = false;
     input.events.retain(|event| {
@@ -368,7 +368,7 @@ mod tests {
     fn taken(events: Vec<Event>, typing: bool) -> (Vec<Wish>, usize) {
         let mut input = InputState::default();
         input.events = events;
-        let wishes = take_from(&mut input, typing, Escape::Stops);
+        let wishes = consume_from(&mut input, typing, Escape::Stops);
         (wishes, input.events.len())
     }
 
@@ -419,7 +419,7 @@ mod tests {
         input.events = [Key::Escape, Key::Space]
             .map(|key| event(row(NONE, key, Wish::Stop), false))
             .to_vec();
-        let wishes = take_from(&mut input, false, Escape::Closes);
+        let wishes = consume_from(&mut input, false, Escape::Closes);
         assert_eq!((wishes, input.events.len()), (vec![Wish::Stop], 1));
     }
 
@@ -449,7 +449,7 @@ mod tests {
         ] {
             let mut input = InputState::default();
             input.events.clone_from(&events);
-            assert_eq!(take_any_from(&mut input), wishes, "{events:?}");
+            assert_eq!(consume_any_from(&mut input), wishes, "{events:?}");
         }
     }
 

@@ -38,12 +38,12 @@ use crate::ui::kit::{self, CardView, Look, Pane, Typing, ViewRequest};
 use crate::ui::poses::tiles::press;
 use crate::ui::theme;
 use crate::ui::view::View;
-use crate::ui::window::body::Body;
+use crate::ui::window::body::WindowViews;
 use crate::ui::window::cards::{card_of, is_covered};
 use crate::ui::window::key_actions::{held_key_action, key_action, zoom_action};
 use crate::ui::window::key_list::KeyList;
 use crate::ui::window::keys::{Escape, Wish};
-use crate::ui::window::palette::{Command, CommandPalette};
+use crate::ui::window::palette::{CommandPalette, PaletteCommand};
 use crate::ui::window::stop_first::stop_first;
 use egui::{Frame, Key, Margin, Panel, Stroke, Ui};
 use std::time::Duration;
@@ -54,7 +54,7 @@ const ASTRAY: Duration = Duration::from_secs(1);
 /// View state of the window between frames: the open tab, text in progress, hidden parts.
 #[derive(Debug, Default)]
 pub struct Window {
-    body: Body,
+    body: WindowViews,
     installed: Option<(Theme, Language)>,
     /// Last time at which a field had the focus, in seconds of the window's time.
     typed_at: Option<f64>,
@@ -125,14 +125,14 @@ impl Window {
         }
         if self.body.follow_shown(state) {
             self.typing = Typing::default();
-            let_go(ui);
+            cancel_interactions(ui);
         }
         let mut actions = Vec::from_iter(zoomed);
         let escape = self.escape(ui, state);
         let mut wishes = if state.hands.iter().any(Hand::runs_series) {
-            keys::take_any(ui)
+            keys::consume_any(ui)
         } else {
-            keys::take(ui, escape)
+            keys::consume(ui, escape)
         };
         if self.may_be_typed(ui) {
             wishes.retain(|wish| !wish.moves());
@@ -153,19 +153,19 @@ impl Window {
             opens: &mut opens,
         };
         for wish in wishes {
-            self.obey(ui, &mut pane, wish);
+            self.execute(ui, &mut pane, wish);
         }
         let view = self.body.view;
         match self.parts_ui(ui, &mut pane) {
-            Some(Command::Wish(wish)) => {
+            Some(PaletteCommand::Wish(wish)) => {
                 stopped |= wish == Wish::Stop;
-                self.obey(ui, &mut pane, wish);
+                self.execute(ui, &mut pane, wish);
             }
-            Some(Command::Entry(entry)) if pane.unready().is_none() => {
+            Some(PaletteCommand::Entry(entry)) if pane.unready().is_none() => {
                 pane.actions.push(press(state, entry));
             }
-            Some(Command::Act(action)) => pane.actions.push(action),
-            Some(Command::Entry(_)) | None => {}
+            Some(PaletteCommand::Act(action)) => pane.actions.push(action),
+            Some(PaletteCommand::Entry(_)) | None => {}
         }
         typing.after(&actions);
         if view != self.body.view && typing.refused.is_some() {
@@ -212,7 +212,7 @@ impl Window {
     }
 
     /// Executes the effect of a key or command.
-    fn obey(&mut self, ui: &Ui, pane: &mut Pane<'_>, wish: Wish) {
+    fn execute(&mut self, ui: &Ui, pane: &mut Pane<'_>, wish: Wish) {
         if let Wish::Opens(opens) = wish {
             self.open(opens, pane.state.now);
         }
@@ -224,7 +224,7 @@ impl Window {
         match opens {
             ViewRequest::Faults => self.body.toggle_faults(),
             ViewRequest::View(view) => self.body.show(view),
-            ViewRequest::Place(place) => self.body.show_place(place),
+            ViewRequest::Tab(tab) => self.body.show_tab(tab),
             ViewRequest::Drive(dof) => {
                 self.body.own.faults.choose(Some(dof));
                 self.body.show(View::Faults);
@@ -250,7 +250,7 @@ impl Window {
     }
 
     /// Draws all parts; returns the command chosen in the palette.
-    fn parts_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<Command> {
+    fn parts_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<PaletteCommand> {
         let palette = pane.look.palette;
         ui.painter().rect_filled(ui.max_rect(), 0.0, palette.window);
         let is_free = !is_covered(pane.state);
@@ -343,7 +343,7 @@ fn dropped_recording(ui: &Ui) -> Option<Action> {
 }
 
 /// Cancels drags, focus and popups, so that nothing begun on one hand continues on another.
-fn let_go(ui: &Ui) {
+fn cancel_interactions(ui: &Ui) {
     ui.ctx().stop_dragging();
     ui.memory_mut(|memory| {
         if let Some(focused) = memory.focused() {

@@ -11,7 +11,7 @@ use crate::ui::kit::{self, Button, Look, Pane, ViewRequest, Weight};
 use crate::ui::plots::head::span_text;
 use crate::ui::text::{Text, exhibit, inputs, panels, window};
 use crate::ui::theme;
-use crate::ui::view::{Place, View};
+use crate::ui::view::{Tab, View};
 use crate::ui::window::header::toggle_recording;
 use crate::ui::window::key_list::cap_ui;
 use crate::ui::window::keys::{ROWS, Wish};
@@ -24,7 +24,7 @@ const WIDTH: f32 = 520.0;
 
 /// A command chosen in the palette.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Command {
+pub(super) enum PaletteCommand {
     /// Effect of a key.
     Wish(Wish),
     /// A pose, demo or reaction.
@@ -36,7 +36,7 @@ pub(super) enum Command {
 /// A command as listed.
 #[derive(Debug)]
 struct Listed {
-    command: Command,
+    command: PaletteCommand,
     /// Name in the window's language.
     name: String,
     /// Names in both languages and lower case, for searching.
@@ -49,11 +49,11 @@ struct Listed {
 /// The palette, shown or hidden.
 #[derive(Debug, Default)]
 pub(super) struct CommandPalette {
-    query: Option<Query>,
+    query: Option<PaletteQuery>,
 }
 
 #[derive(Debug, Default)]
-struct Query {
+struct PaletteQuery {
     text: String,
     /// Index of the command that Enter chooses.
     chosen: usize,
@@ -65,7 +65,7 @@ impl CommandPalette {
     /// Shows or hides the palette.
     pub(super) fn toggle(&mut self) {
         self.query = match self.query {
-            None => Some(Query::default()),
+            None => Some(PaletteQuery::default()),
             Some(_) => None,
         };
     }
@@ -81,7 +81,7 @@ impl CommandPalette {
     }
 
     /// Draws it at the top of `place`, if it is shown. Returns the chosen command.
-    pub(super) fn ui(&mut self, ui: &Ui, place: Rect, pane: &Pane<'_>) -> Option<Command> {
+    pub(super) fn ui(&mut self, ui: &Ui, place: Rect, pane: &Pane<'_>) -> Option<PaletteCommand> {
         let query = self.query.as_mut()?;
         let (look, unready) = (pane.look, pane.unready());
         let [down, up, enters] = ui.input_mut(|input| {
@@ -92,7 +92,7 @@ impl CommandPalette {
         let last = found.len().saturating_sub(1);
         query.chosen = (query.chosen + down).saturating_sub(up).min(last);
         let edge = Stroke::new(theme::LINE, look.palette.accent);
-        let window = Window::new(look.say(window::COMMANDS))
+        let window = Window::new(look.tr(window::COMMANDS))
             .id(Id::unique("command palette"))
             .title_bar(false)
             .resizable(false)
@@ -117,7 +117,7 @@ impl CommandPalette {
     }
 }
 
-impl Query {
+impl PaletteQuery {
     /// Draws the query field and the results. Returns the command clicked.
     fn ui(
         &mut self,
@@ -125,14 +125,14 @@ impl Query {
         look: Look,
         unready: Option<&str>,
         found: &[Listed],
-    ) -> Option<Command> {
-        let field = kit::edit_said_ui(ui, look, window::COMMANDS, &mut self.text);
+    ) -> Option<PaletteCommand> {
+        let field = kit::translated_edit_ui(ui, look, window::COMMANDS, &mut self.text);
         field.request_focus();
         if field.changed() {
             self.chosen = 0;
         }
         if found.is_empty() {
-            kit::say_ui(ui, look.say(window::COMMANDS_NONE), look.palette.muted);
+            kit::small_text_ui(ui, look.tr(window::COMMANDS_NONE), look.palette.muted);
         }
         let (mut clicked, mut why_not) = (None, None);
         // Scrolls so that the selected command is visible.
@@ -159,13 +159,13 @@ impl Query {
             });
         }
         if let Some(why_not) = why_not {
-            kit::say_ui(ui, why_not, look.palette.warn);
+            kit::small_text_ui(ui, why_not, look.palette.warn);
         }
         clicked
     }
 }
 
-impl Command {
+impl PaletteCommand {
     /// True for commands that require an armed hand.
     const fn needs_arming(&self) -> bool {
         matches!(
@@ -219,7 +219,7 @@ fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
 fn about(wish: Wish) -> String {
     let more = match wish {
         Wish::Opens(ViewRequest::View(view)) => view_words(view),
-        Wish::Opens(ViewRequest::Place(place)) => place_words(place),
+        Wish::Opens(ViewRequest::Tab(tab)) => tab_words(tab),
         Wish::Language => window::LANGUAGE_WORDS,
         Wish::Theme => window::THEME_WORDS,
         _ => return String::new(),
@@ -244,13 +244,13 @@ const fn view_words(view: View) -> Text {
     }
 }
 
-const fn place_words(place: Place) -> Text {
-    match place {
-        Place::Live => view_words(View::Live),
-        Place::Tune => view_words(View::Tune),
-        Place::Recordings => view_words(View::Recordings),
-        Place::Hand => window::HAND_WORDS,
-        Place::Share => view_words(View::Inputs),
+const fn tab_words(tab: Tab) -> Text {
+    match tab {
+        Tab::Live => view_words(View::Live),
+        Tab::Tune => view_words(View::Tune),
+        Tab::Recordings => view_words(View::Recordings),
+        Tab::Hand => window::HAND_WORDS,
+        Tab::Share => view_words(View::Inputs),
     }
 }
 
@@ -258,20 +258,20 @@ const fn place_words(place: Place) -> Text {
 fn found(ui: &Ui, pane: &Pane<'_>, typed: &str) -> Vec<Listed> {
     let look = pane.look;
     let (poses, settings) = (&pane.state.poses, &pane.state.settings);
-    let said = |wish: Wish| {
+    let listed = |wish: Wish| {
         let text = name(wish);
         Listed {
-            command: Command::Wish(wish),
-            name: look.say(text).to_owned(),
+            command: PaletteCommand::Wish(wish),
+            name: look.tr(text).to_owned(),
             names: format!("{} {}", text.en, text.zh).to_lowercase(),
             about: about(wish).to_lowercase(),
             keys: wish.keys(),
         }
     };
-    let places = Place::ALL.map(|place| Wish::Opens(ViewRequest::Place(place)));
+    let tabs = Tab::ALL.map(|tab| Wish::Opens(ViewRequest::Tab(tab)));
     let views = View::ALL.into_iter();
     // The faults have a key, and a tab shares the name of its first view.
-    let views = views.filter(|view| *view != View::Faults && view.place().title() != view.title());
+    let views = views.filter(|view| *view != View::Faults && view.tab().title() != view.title());
     let views = views.map(|view| Wish::Opens(ViewRequest::View(view)));
     let views: Vec<Wish> = views.collect();
     // Hold-to-run, keys that represent many, and focus changes are available as keys only.
@@ -284,18 +284,18 @@ fn found(ui: &Ui, pane: &Pane<'_>, typed: &str) -> Vec<Listed> {
                 | Wish::Joint(_)
                 | Wish::Opens(ViewRequest::Palette)
         ) && !views.contains(wish)
-            && !places.contains(wish)
+            && !tabs.contains(wish)
     };
     let mut acts: Vec<Wish> = ROWS.iter().map(|row| row.wish).filter(is_act).collect();
     acts.dedup();
-    let wishes = acts.into_iter().chain(places).chain(views);
-    let wishes = wishes.map(said);
+    let wishes = acts.into_iter().chain(tabs).chain(views);
+    let wishes = wishes.map(listed);
     let entries = poses.ready(&settings.hidden_poses).into_iter();
     let entries = entries.filter_map(|entry| {
         let names = poses.named(entry)?;
         let key = names.key.map(|key| format!("Shift+{}", key.get()));
         Some(Listed {
-            command: Command::Entry(entry),
+            command: PaletteCommand::Entry(entry),
             name: look.entry_name(poses, entry).to_owned(),
             names: format!("{} {}", names.text, names.zh).to_lowercase(),
             about: String::new(),
@@ -309,8 +309,8 @@ fn found(ui: &Ui, pane: &Pane<'_>, typed: &str) -> Vec<Listed> {
     };
     let unkeyed = unkeyed(ui, pane).into_iter();
     let unkeyed = unkeyed.map(|(text, which, action)| Listed {
-        command: Command::Act(action),
-        name: format!("{} {which}", look.say(text)).trim().to_owned(),
+        command: PaletteCommand::Act(action),
+        name: format!("{} {which}", look.tr(text)).trim().to_owned(),
         names: format!("{} {} {which}", text.en, text.zh).to_lowercase(),
         about: String::new(),
         keys: String::new(),

@@ -92,13 +92,13 @@ impl Rooms {
         } else if let Some(shown) = shown {
             let now = along(shown.response.rect.size(), is_upright);
             let place = shown.response.rect.expand(2.0 * theme::GAP);
-            let let_go = ui.input(|input| {
+            let released = ui.input(|input| {
                 let pointer = &input.pointer;
                 let is_drag = pointer.any_released() && !pointer.any_click();
                 let at = pointer.interact_pos().filter(|_| is_drag);
                 at.is_some_and(|at| place.contains(at))
             });
-            if let_go && (now - begun).abs() > 1.0 {
+            if released && (now - begun).abs() > 1.0 {
                 let standing = standing.with_share(now / extent);
                 pane.lay_out(ui, self.layouts.with(room, standing));
             }
@@ -113,7 +113,7 @@ fn along(size: egui::Vec2, is_upright: bool) -> f32 {
 /// The window's menu: open panels, colours, language, keys, exhibitions.
 pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    let button = Button::said(look, window::MENU)
+    let button = Button::text(look, window::MENU)
         .icon(theme::MENU)
         .weight(Weight::Quiet);
     let response = button.ui(ui, look);
@@ -122,7 +122,7 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let mut after = before;
         for room in WindowRoom::ALL {
             let mut open = !before.room(room).shut;
-            if ui.checkbox(&mut open, look.say(title(room))).changed() {
+            if ui.checkbox(&mut open, look.tr(title(room))).changed() {
                 after = before.toggled(room);
             }
         }
@@ -142,7 +142,7 @@ pub(crate) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             Language::Zh => "English",
         };
         let button = ui.button(other);
-        let tip = look.say(window::KEY_LANGUAGE);
+        let tip = look.tr(window::KEY_LANGUAGE);
         if button.on_hover_text(tip).clicked() {
             pane.actions.push(Action::Language(language.other()));
         }

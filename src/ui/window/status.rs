@@ -76,10 +76,10 @@ impl Warning {
     fn retried(mut self, pane: &Pane<'_>) -> Self {
         self.aside = match pane.hand().connection.status.dialling {
             Dialling::Idle => String::new(),
-            Dialling::Trying { attempt } => pane.look.told(main::LOST_TRYING, attempt),
+            Dialling::Trying { attempt } => pane.look.tr_with(main::LOST_TRYING, attempt),
             Dialling::Waiting { until, .. } => {
                 let left = until.since(pane.state.now).as_secs_f64();
-                format!("{} {left:.1} s", pane.look.say(main::LOST_RETRY_IN))
+                format!("{} {left:.1} s", pane.look.tr(main::LOST_RETRY_IN))
             }
         };
         self
@@ -166,12 +166,12 @@ fn faults(pane: &Pane<'_>) -> Option<Warning> {
     let faults = sample.faults.filter(|_| sample.has_fault())?;
     let mut list = Vec::new();
     for dof in Dof::ALL {
-        let name = look.say(words::dof(dof));
+        let name = look.tr(words::dof(dof));
         let titles = faults.value[dof].iter();
         let titles = titles.map(|fault| words::fault(fault, look.language).title);
         list.extend(titles.map(|title| format!("{name}: {title}")));
     }
-    let (list, end) = (list.join(" · "), look.say(main::LIST_END));
+    let (list, end) = (list.join(" · "), look.tr(main::LIST_END));
     let color = look.value(pane.freshness(Some(faults.asked)), look.palette.bad);
     let warning = Warning::new(pane, main::FAULT_TITLE, color);
     Some(Warning {
@@ -246,21 +246,21 @@ fn idle(pane: &Pane<'_>) -> Option<Warning> {
 /// Description of the mover of the hand, and the action that ends it; `None` if nothing moves the hand.
 fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
     let look = pane.look;
-    let say = |text: Text| look.say(text).to_owned();
+    let tr = |text: Text| look.tr(text).to_owned();
     Some(match Mover::of(pane.hand(), pane.state.now)? {
-        Mover::Stop => (say(window::MOVES_STOP), None),
-        Mover::Calibration => (say(window::MOVES_CALIBRATION), None),
+        Mover::Stop => (tr(window::MOVES_STOP), None),
+        Mover::Calibration => (tr(window::MOVES_CALIBRATION), None),
         Mover::Series(number, total) => {
-            let words = format!("{} {number} / {total}", look.say(tune::COLUMN_TRIAL));
+            let words = format!("{} {number} / {total}", look.tr(tune::COLUMN_TRIAL));
             (words, Some(Action::Stop))
         }
         Mover::Checkup(step, total) => {
-            let words = format!("{} {step} / {total}", look.say(checkup::TITLE));
+            let words = format!("{} {step} / {total}", look.tr(checkup::TITLE));
             (words, Some(Action::Stop))
         }
         Mover::Playing(entry, step) => {
             let name = look.entry_name(&pane.state.poses, entry);
-            let title = look.say(match entry {
+            let title = look.tr(match entry {
                 EntryId::Pose(_) => poses::POSE,
                 EntryId::Sequence(_) => poses::SEQUENCE,
                 EntryId::Reaction(_) => poses::REACTION,
@@ -269,14 +269,14 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
             if let EntryId::Sequence(id) = entry {
                 let sequence = pane.state.poses.sequence(id);
                 let steps = sequence.map_or(0, |own| own.steps.len());
-                let (of, step) = (look.say(window::MOVES_STEP), step + 1);
+                let (of, step) = (look.tr(window::MOVES_STEP), step + 1);
                 words = look.pair(&words, &format!("{of} {step} / {steps}"));
             }
             (words, Some(Action::Play(Play::End)))
         }
         Mover::Gesture(gesture) => {
             let name = pane.state.settings.gesture_name(gesture);
-            let (title, name) = (look.say(panels::GESTURE), name.unwrap_or_default());
+            let (title, name) = (look.tr(panels::GESTURE), name.unwrap_or_default());
             let words = format!("{title} {} {name}", gesture.get());
             (words.trim().to_owned(), None)
         }
@@ -284,11 +284,11 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
             let words = owner_words(pane, owner);
             (words, Some(Action::Input(InputAction::TakeBack)))
         }
-        Mover::Setpoints => (say(window::MOVES_SETPOINTS), None),
-        Mover::Task => (say(window::MOVES_TASK), None),
-        Mover::Exhibition => (say(window::MOVES_EXHIBIT), None),
-        Mover::Unrecorded => (say(window::MOVES_UNRECORDED), None),
-        Mover::Unknown => (say(window::MOVES_UNKNOWN), None),
+        Mover::Setpoints => (tr(window::MOVES_SETPOINTS), None),
+        Mover::Task => (tr(window::MOVES_TASK), None),
+        Mover::Exhibition => (tr(window::MOVES_EXHIBIT), None),
+        Mover::Unrecorded => (tr(window::MOVES_UNRECORDED), None),
+        Mover::Unknown => (tr(window::MOVES_UNKNOWN), None),
     })
 }
 
@@ -349,11 +349,11 @@ impl StatusLine {
     fn note_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let Some(at) = self.note_at else { return };
         let look = pane.look;
-        let cancel = Button::said(look, panels::NOTE_CANCEL);
+        let cancel = Button::text(look, panels::NOTE_CANCEL);
         let cancelled = cancel.ui(ui, look).clicked();
-        let keep = Button::said(look, panels::NOTE_KEEP);
+        let keep = Button::text(look, panels::NOTE_KEEP);
         let kept = keep.weight(Weight::Strong).ui(ui, look).clicked();
-        let title = look.told(panels::NOTE_AT, clock(at.secs(), 0.01));
+        let title = look.tr_with(panels::NOTE_AT, clock(at.secs(), 0.01));
         let words = kit::text_width(ui, &title, theme::body()) + theme::GAP;
         let hint = if rests(pane.hand(), pane.state.now) {
             panels::NOTE_HINT
@@ -362,11 +362,11 @@ impl StatusLine {
         };
         let edit = TextEdit::singleline(&mut self.note)
             .char_limit(NOTE_MAX)
-            .hint_text(look.say(hint))
+            .hint_text(look.tr(hint))
             .margin(theme::FIELD_INSET)
             .desired_width((440.0 - words).max(theme::FIELD));
         let response = ui.add(edit);
-        kit::named_field(&response, look.say(panels::NOTE_FIELD), true, &self.note);
+        kit::named_field(&response, look.tr(panels::NOTE_FIELD), true, &self.note);
         Label::new(&title, look.palette.text).ui(ui);
         if std::mem::take(&mut self.is_new) {
             response.request_focus();
@@ -389,8 +389,8 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
         return;
     };
     if let Some(end) = end {
-        let button = Button::said(look, window::END);
-        let name = format!("{}: {words}", look.say(window::END));
+        let button = Button::text(look, window::END);
+        let name = format!("{}: {words}", look.tr(window::END));
         button.named(&name).on_click(ui, pane, end);
     }
     if is_aside {
@@ -418,8 +418,8 @@ fn news_ui(ui: &mut Ui, pane: &Pane<'_>, news: Option<&Notice>) {
     let palette = look.palette;
     let (words, color) = match (news, mover(pane)) {
         (Some(newest), _) => {
-            let said = notices::notice_of(look, newest);
-            (said, look.level(newest.level))
+            let text = notices::notice_of(look, newest);
+            (text, look.level(newest.level))
         }
         (None, Some((words, _))) => (words, palette.armed),
         (None, None) => {
@@ -450,7 +450,7 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
             help_ui(ui, pane, help);
         }
         for other in all.iter().skip(1).rev() {
-            let label = Label::new(look.say(other.title), other.color).ui(ui);
+            let label = Label::new(look.tr(other.title), other.color).ui(ui);
             label.on_hover_text(&other.body);
         }
         if !worst.aside.is_empty() {
@@ -463,7 +463,7 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
 /// Draws title and sentence as far as they fit, with the whole text in the tooltip.
 fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     let look = pane.look;
-    let title = Label::new(look.say(warning.title), warning.color);
+    let title = Label::new(look.tr(warning.title), warning.color);
     title.title().ui(ui);
     let width = kit::text_width(ui, &warning.body, theme::body());
     let words = Label::new(&warning.body, look.palette.text);
@@ -475,11 +475,11 @@ fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
 fn help_ui(ui: &mut Ui, pane: &mut Pane<'_>, help: &Help) {
     match help {
         Help::View(view, text) => {
-            let button = Button::said(pane.look, *text);
-            button.opens(ui, pane, ViewRequest::View(*view));
+            let button = Button::text(pane.look, *text);
+            button.navigate(ui, pane, ViewRequest::View(*view));
         }
         Help::Dismiss(id) => {
-            let button = Button::said(pane.look, window::UNDERSTOOD);
+            let button = Button::text(pane.look, window::UNDERSTOOD);
             button.on_click(ui, pane, Action::Dismiss(*id));
         }
     }

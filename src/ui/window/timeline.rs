@@ -69,11 +69,11 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
             RecordingAction::Step(true),
         ),
     ] {
-        let button = Button::said(look, text).icon(icon);
+        let button = Button::text(look, text).icon(icon);
         button.on_click(ui, pane, Action::Recording(action));
     }
     let mut pace = line.pace;
-    let name = look.say(recordings::PACE);
+    let name = look.tr(recordings::PACE);
     ui.scope(|ui| {
         ui.spacing_mut().combo_width = 64.0;
         if kit::choose_ui(ui, name, &mut pace, &PACES) {
@@ -81,7 +81,7 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
         }
     });
     if line.looped.is_some() {
-        let off = Button::said(look, recordings::LOOP_OFF);
+        let off = Button::text(look, recordings::LOOP_OFF);
         off.on_click(ui, pane, Action::Recording(RecordingAction::Loop(None)));
     }
     let at = clock(line.at.since(line.first));
@@ -95,10 +95,10 @@ fn controls_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     Label::new(&words, color).number().ui(ui);
     marks_ui(ui, pane, line);
     beside::beside_ui(ui, pane, line);
-    let note = Button::said(look, recordings::NOTE_HERE);
-    note.opens(ui, pane, kit::ViewRequest::Note);
+    let note = Button::text(look, recordings::NOTE_HERE);
+    note.navigate(ui, pane, kit::ViewRequest::Note);
     if line.damaged {
-        kit::warning_ui(ui, look.palette.warn).on_hover_text(look.say(recordings::DAMAGED));
+        kit::warning_ui(ui, look.palette.warn).on_hover_text(look.tr(recordings::DAMAGED));
     }
 }
 
@@ -123,10 +123,10 @@ impl TimelineEntry<'_> {
         self.kind == EventKind::Note
     }
 
-    fn say(self, look: Look) -> String {
+    fn text(self, look: Look) -> String {
         match shown(look, self.kind).filter(|_| !self.is_note()) {
-            Some((text, _)) if self.words.is_empty() => look.say(text).to_owned(),
-            Some((text, _)) => look.pair(look.say(text), self.words),
+            Some((text, _)) if self.words.is_empty() => look.tr(text).to_owned(),
+            Some((text, _)) => look.pair(look.tr(text), self.words),
             None => self.words.to_owned(),
         }
     }
@@ -178,7 +178,7 @@ fn columns(look: Look, place: Rect, line: &Timeline) -> BTreeMap<i32, (u8, Color
 
 fn marks_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let look = pane.look;
-    let button = Button::said(look, recordings::EVENTS).ui(ui, look);
+    let button = Button::text(look, recordings::EVENTS).ui(ui, look);
     Popup::menu(&button).show(|ui| {
         ui.set_min_width(320.0);
         let mut all: Vec<_> = entries(look, line).collect();
@@ -201,11 +201,14 @@ fn entry_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline, entry: TimelineEn
     ui.horizontal(|ui| {
         kit::lamp_ui(ui, Some(entry.color));
         let clock = clock(entry.at.since(line.first));
-        if ui.button(format!("{clock}  {}", entry.say(look))).clicked() {
+        if ui
+            .button(format!("{clock}  {}", entry.text(look)))
+            .clicked()
+        {
             recording(pane, RecordingAction::Seek(entry.at));
         }
         if entry.is_note() {
-            let delete = Button::said(look, panels::NOTE_DELETE).icon(theme::CLOSE);
+            let delete = Button::text(look, panels::NOTE_DELETE).icon(theme::CLOSE);
             let none = RecordingAction::EditNote(entry.at, String::new());
             let delete = delete.weight(Weight::Quiet);
             delete.on_click(ui, pane, Action::Recording(none));
@@ -220,7 +223,7 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
     let (place, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     let at_s = line.at.since(line.first).as_secs_f64();
     response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::Slider, true, look.say(recordings::LINE));
+        let mut info = WidgetInfo::labeled(Role::Slider, true, look.tr(recordings::LINE));
         info.value = Some(at_s);
         info
     });
@@ -246,7 +249,7 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
         let near = entries(look, line).filter(|entry| away(entry) < theme::STEP);
         let near = near.min_by(|one, other| away(one).total_cmp(&away(other)));
         let clock = clock(here.since(line.first));
-        let words = near.map(|entry| entry.say(look));
+        let words = near.map(|entry| entry.text(look));
         let words = words.unwrap_or_else(|| look.tip(recordings::LINE).to_owned());
         response.on_hover_text(format!("{clock}\n{words}"));
     }
@@ -255,7 +258,7 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, line: &Timeline) {
 /// Position to which the user drags, or at which the button was released. In a slow frame the pointer may have moved since then.
 fn dragged_to(ui: &Ui, response: &Response) -> Option<Pos2> {
     let now = response.interact_pointer_pos()?;
-    let let_go = ui.input(|input| {
+    let released = ui.input(|input| {
         input.events.iter().find_map(|event| match event {
             Event::PointerButton {
                 pos,
@@ -266,7 +269,7 @@ fn dragged_to(ui: &Ui, response: &Response) -> Option<Pos2> {
             _ => None,
         })
     });
-    Some(let_go.unwrap_or(now))
+    Some(released.unwrap_or(now))
 }
 
 fn paint(ui: &Ui, look: Look, place: Rect, line: &Timeline) {

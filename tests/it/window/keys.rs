@@ -391,7 +391,7 @@ fn the_palette_finds_what_a_view_holds_and_what_a_setting_is_called() {
         bench.type_into("Commands", typed);
         bench.key(Key::Enter);
         bench.run(100);
-        assert_eq!(bench.view().place(), view.place(), "{typed}");
+        assert_eq!(bench.view().tab(), view.tab(), "{typed}");
     }
     for typed in ["language", "语言", "theme", "add a hand", "index", "速度"] {
         bench.key_with(Modifiers::COMMAND, Key::K);

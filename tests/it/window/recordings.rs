@@ -180,7 +180,7 @@ fn the_list_finds_names_stars_and_deletes_after_a_question() {
     let mut bench = bench(Scenario::Grasp);
     let path = ended(&mut bench);
     bench.show(View::Recordings);
-    settle(&mut bench, |bench| bench.state().recordings.looked > 0);
+    settle(&mut bench, |bench| bench.state().recordings.scans > 0);
     let title = read_item(&path).unwrap().title();
     let listed = format!("Keep: {title}");
     assert!(bench.shows(&listed), "{:?}", bench.texts());
@@ -364,7 +364,7 @@ fn an_export_that_fails_says_why() {
 fn an_empty_place_says_what_comes_there_and_leads_to_a_hand() {
     let mut bench = Bench::keeping(SimConfig::default());
     bench.show(View::Recordings);
-    settle(&mut bench, |bench| bench.state().recordings.looked > 0);
+    settle(&mut bench, |bench| bench.state().recordings.scans > 0);
     bench.run(60);
     assert!(bench.shows("No recordings yet"));
     bench.click_button("Connect a hand");
@@ -740,7 +740,7 @@ fn a_folder_is_chosen_for_the_next_recording_and_the_running_one_stays() {
     let default = bench.folder().join("documents/Handscope");
     assert!(first.starts_with(&default));
     bench.show(View::Recordings);
-    settle(&mut bench, |bench| bench.state().recordings.looked > 0);
+    settle(&mut bench, |bench| bench.state().recordings.scans > 0);
     assert_eq!(bench.reading("Folder"), default.display().to_string());
     assert!(bench.is_disabled(egui::accesskit::Role::Button, "Default"));
     // In the place of a folder there is a file: it is told, and a path can be typed.

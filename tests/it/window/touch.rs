@@ -2,7 +2,7 @@
 
 use crate::setup::window::{Bench, LARGE, Role};
 use handscope::app::action::Action;
-use handscope::app::readings::tare::Source;
+use handscope::app::readings::tare::TareSource;
 use handscope::hand::Finger;
 use handscope::poses::Preset;
 use handscope::sim::{Scenario, SimConfig};
@@ -74,7 +74,7 @@ fn taring_counts_all_tips_from_now_and_writes_nothing() {
     bench.run(60);
     let is_kept = |finger| {
         let rest = bench.state().hand().readings.tare.zero(finger);
-        rest.is_some_and(|rest| rest.source == Source::Person)
+        rest.is_some_and(|rest| rest.source == TareSource::Person)
     };
     assert!(Finger::ALL.into_iter().all(is_kept));
     for finger in Finger::ALL {

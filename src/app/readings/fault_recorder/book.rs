@@ -86,14 +86,14 @@ impl FaultRecorder {
 
     fn note(&mut self, at: Moment, what: FaultEventKind) {
         if self.events.len() >= EVENTS_MAX {
-            self.let_go();
+            self.drop_oldest();
             self.events_lost += 1;
         }
         self.events.push_back(FaultEvent { at, what });
     }
 
     /// Drops the oldest event and applies it to the initial state.
-    fn let_go(&mut self) {
+    fn drop_oldest(&mut self) {
         match self.events.pop_front().map(|event| event.what) {
             Some(FaultEventKind::Status(dof, status)) => self.before[dof].status = Some(status),
             Some(FaultEventKind::Faults(dof, faults)) => self.before[dof].faults = Some(faults),
@@ -129,7 +129,7 @@ impl FaultRecorder {
         while let Some(oldest) = self.events.front()
             && first.since(oldest.at) > BEFORE
         {
-            self.let_go();
+            self.drop_oldest();
         }
     }
 

@@ -277,23 +277,23 @@ pub(crate) fn ended(look: Look, why: &EarlyEnd) -> String {
 
 /// Reason why a trial ended early.
 pub(crate) fn abort(look: Look, why: Abort) -> String {
-    let joint = |dof: Dof| look.say(words::dof(dof));
+    let joint = |dof: Dof| look.tr(words::dof(dof));
     match why {
-        Abort::Person => look.say(BY_PERSON).into(),
-        Abort::ArmedAnew => look.say(ARMED_ANEW).into(),
-        Abort::Disarmed { why: None } => look.say(NOT_ARMED).into(),
+        Abort::Person => look.tr(BY_PERSON).into(),
+        Abort::ArmedAnew => look.tr(ARMED_ANEW).into(),
+        Abort::Disarmed { why: None } => look.tr(NOT_ARMED).into(),
         Abort::Disarmed { why: Some(why) } => match look.language {
             Language::En => look.fill(DISARMED, &[&why]),
             Language::Zh => words::disarmed_zh(why).into(),
         },
-        Abort::OtherController { wrote: None } => look.say(OTHER_CONTROLLER).into(),
+        Abort::OtherController { wrote: None } => look.tr(OTHER_CONTROLLER).into(),
         Abort::OtherController { wrote: Some(wrote) } => {
             look.fill(OTHER_WROTE, &[&words::setpoint(look, &wrote)])
         }
-        Abort::LinkLost => look.say(LINK_LOST).into(),
-        Abort::NotKept => look.say(NOT_KEPT).into(),
-        Abort::TakenOver => look.say(TAKEN_OVER).into(),
-        Abort::Fault { joint: None } => look.say(DRIVE_FAULT).into(),
+        Abort::LinkLost => look.tr(LINK_LOST).into(),
+        Abort::NotKept => look.tr(NOT_KEPT).into(),
+        Abort::TakenOver => look.tr(TAKEN_OVER).into(),
+        Abort::Fault { joint: None } => look.tr(DRIVE_FAULT).into(),
         Abort::Fault {
             joint: Some((dof, faults)),
         } => {
@@ -314,7 +314,7 @@ pub(crate) fn abort(look: Look, why: Abort) -> String {
         Abort::Unreached { dof, target } => look.fill(UNREACHED, &[&joint(dof), &target]),
         Abort::LimitsRefused { dof } => look.fill(LIMITS_REFUSED, &[&joint(dof)]),
         Abort::NotRead { what, age, stall } => not_read(look, what, (age, stall)),
-        Abort::Blind { what, dof } => look.fill(BLIND, &[&joint(dof), &look.say(group(what))]),
+        Abort::Blind { what, dof } => look.fill(BLIND, &[&joint(dof), &look.tr(group(what))]),
         Abort::TooWarm {
             dof,
             celsius,
@@ -334,7 +334,7 @@ fn not_read(
     (age, stall): (Option<Duration>, Option<Duration>),
 ) -> String {
     let seconds = |time: Duration| format!("{:.1}", time.as_secs_f64());
-    let what = look.say(group(what));
+    let what = look.tr(group(what));
     match (age.map(seconds), stall.map(seconds)) {
         (None, _) => look.fill(NOT_READ, &[&what]),
         (Some(age), None) => look.fill(GREW_OLD, &[&what, &age]),
@@ -344,16 +344,16 @@ fn not_read(
 
 /// Reason why a plan cannot be run.
 pub(crate) fn plan_error(look: Look, error: &PlanError) -> String {
-    let joint = |dof: Dof| look.say(words::dof(dof));
+    let joint = |dof: Dof| look.tr(words::dof(dof));
     match *error {
-        PlanError::NoJoint => look.say(NO_JOINT).into(),
+        PlanError::NoJoint => look.tr(NO_JOINT).into(),
         PlanError::NoWay { dof, .. } => look.fill(NO_WAY, &[&joint(dof)]),
         PlanError::NoStart { dof } => look.fill(NO_START, &[&joint(dof)]),
         PlanError::Stage {
             dof, start, close, ..
         } => look.fill(BAD_STAGE, &[&joint(dof), &start, &close]),
         PlanError::SlowApproach { speed, .. } => look.fill(SLOW_APPROACH, &[&speed]),
-        PlanError::Empty => look.say(NOTHING_TO_TRY).into(),
+        PlanError::Empty => look.tr(NOTHING_TO_TRY).into(),
         PlanError::Range {
             field: PlanField::Repeats,
             got,
@@ -361,8 +361,8 @@ pub(crate) fn plan_error(look: Look, error: &PlanError) -> String {
         } => look.fill(TOO_MANY, &[&got]),
         PlanError::Range {
             field, least, most, ..
-        } => look.fill(BAD_NUMBER, &[&look.say(plan_field(field)), &least, &most]),
-        PlanError::Temperature { .. } => look.say(BAD_HEAT).into(),
+        } => look.fill(BAD_NUMBER, &[&look.tr(plan_field(field)), &least, &most]),
+        PlanError::Temperature { .. } => look.tr(BAD_HEAT).into(),
     }
 }
 
@@ -386,15 +386,15 @@ const fn plan_field(field: PlanField) -> Text {
 pub(crate) fn list_error(look: Look, error: ListError) -> String {
     match error {
         ListError::NotInRange { most } => look.fill(LIST_RANGE, &[&most]),
-        ListError::TooLong => look.say(LIST_LONG).into(),
-        ListError::Empty => look.say(LIST_EMPTY).into(),
+        ListError::TooLong => look.tr(LIST_LONG).into(),
+        ListError::Empty => look.tr(LIST_EMPTY).into(),
     }
 }
 
 /// Hand on which a value was measured.
 pub(crate) fn measured_on(look: Look, on: &MeasuredOn) -> String {
     match on {
-        MeasuredOn::AnotherHand => look.say(MEASURED_ELSEWHERE).to_owned(),
+        MeasuredOn::AnotherHand => look.tr(MEASURED_ELSEWHERE).to_owned(),
         MeasuredOn::ThisHand { closes, last } => look.fill(MEASURED_HERE, &[closes, last]),
     }
 }

@@ -71,10 +71,10 @@ texts! {
 /// Error in a goal.
 pub(crate) fn goal_error(look: Look, error: GoalError) -> String {
     match error {
-        GoalError::Limit { .. } => look.say(BAD_LIMIT).into(),
+        GoalError::Limit { .. } => look.tr(BAD_LIMIT).into(),
         GoalError::Hold { most, .. } => look.fill(BAD_HOLD, &[&most]),
-        GoalError::Closes { .. } => look.say(BAD_CLOSES).into(),
-        GoalError::TooFew { .. } => look.say(FEW_CLOSES).into(),
+        GoalError::Closes { .. } => look.tr(BAD_CLOSES).into(),
+        GoalError::TooFew { .. } => look.tr(FEW_CLOSES).into(),
         GoalError::Plan(error) => tune::plan_error(look, &error),
     }
 }
@@ -82,10 +82,10 @@ pub(crate) fn goal_error(look: Look, error: GoalError) -> String {
 /// Stage of a search.
 pub(crate) fn stage(look: Look, stage: SearchStage) -> String {
     match stage {
-        SearchStage::Probing => look.say(PROBING).into(),
-        SearchStage::Rising => look.say(RISING).into(),
+        SearchStage::Probing => look.tr(PROBING).into(),
+        SearchStage::Rising => look.tr(RISING).into(),
         SearchStage::Confirming { done, of } => look.fill(CONFIRMING, &[&done, &of]),
-        SearchStage::Over => look.say(OVER).into(),
+        SearchStage::Over => look.tr(OVER).into(),
     }
 }
 
@@ -94,7 +94,7 @@ pub(crate) fn claim(look: Look, claim: &Claim) -> String {
     let names: Vec<&str> = claim
         .joints
         .iter()
-        .map(|own| look.say(words::dof(own.dof)))
+        .map(|own| look.tr(words::dof(own.dof)))
         .collect();
     let percent = |share: f64| format!("{:.0}", share * 100.0);
     let assumed = if claim.distribution_free {
@@ -108,7 +108,7 @@ pub(crate) fn claim(look: Look, claim: &Claim) -> String {
         &format!("{:.0}", claim.peak_bound_g().ceil()),
         &percent(claim.assurance.coverage),
         &percent(claim.assurance.confidence),
-        &look.say(assumed),
+        &look.tr(assumed),
         &claim.closes,
     ];
     look.fill(CLAIM, &parts)
@@ -116,7 +116,7 @@ pub(crate) fn claim(look: Look, claim: &Claim) -> String {
 
 /// Reason why nothing was found.
 pub(crate) fn no_claim(look: Look, why: NoClaim) -> String {
-    let joint = |dof: Dof| look.say(words::dof(dof));
+    let joint = |dof: Dof| look.tr(words::dof(dof));
     let grams = |grams: f64| format!("{grams:.0}");
     match why {
         NoClaim::Dead { dof } => look.fill(DEAD, &[&joint(dof)]),
@@ -159,7 +159,7 @@ pub(crate) fn no_claim(look: Look, why: NoClaim) -> String {
 
 /// Question that the measurements left open.
 pub(crate) fn untold(look: Look, what: OpenQuestion) -> String {
-    let joint = |dof: Dof| look.say(words::dof(dof));
+    let joint = |dof: Dof| look.tr(words::dof(dof));
     match what {
         OpenQuestion::Slips { dof } => look.fill(UNTOLD_SLIPS, &[&joint(dof)]),
         OpenQuestion::Stiffness { dof } => look.fill(UNTOLD_STIFFNESS, &[&joint(dof)]),
@@ -171,7 +171,7 @@ pub(crate) fn untold(look: Look, what: OpenQuestion) -> String {
             let grams = format!("{offset_g:.0}");
             look.fill(UNTOLD_OFFSET, &[&joint(dof), &grams])
         }
-        OpenQuestion::Distribution => look.say(UNTOLD_DISTRIBUTION).into(),
+        OpenQuestion::Distribution => look.tr(UNTOLD_DISTRIBUTION).into(),
         OpenQuestion::OtherSpeeds { closes } => look.fill(UNTOLD_SPEEDS, &[&closes]),
     }
 }
@@ -184,5 +184,5 @@ pub(crate) fn compared(look: Look, own: &ComparedThreshold) -> Option<String> {
         ThresholdReference::Unknown => return None,
     };
     let grams = format!("{:.0}", own.offset_g);
-    Some(look.fill(sentence, &[&look.say(words::dof(own.dof)), &grams]))
+    Some(look.fill(sentence, &[&look.tr(words::dof(own.dof)), &grams]))
 }
