@@ -12,48 +12,48 @@ use crate::poses::Play;
 
 /// Effect of an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effect {
+pub enum ActionEffect {
     /// Holds every hand.
-    StopsAll,
+    StopAll,
     /// Stops or disarms a hand, or revokes control of it.
-    Stops,
+    Stop,
     /// Moves a hand, or permits the user or a program to move it.
-    Moves,
+    Motion,
     /// Changes the parameters of later motion, or clears errors.
-    Adjusts,
+    Adjustment,
     /// Writes persistent parameters, or starts a calibration.
-    WritesKept,
+    PersistentWrite,
     /// Opens or answers a card. Sends only what the card has asked about.
-    Asks,
+    Dialog,
     /// Scans for hands, connects or disconnects one, opens or closes an interface for programs, none of which has
     /// control yet.
-    Connects,
+    Connection,
     /// Changes the program's knowledge, storage or display of a live hand. Sends only reads.
-    Keeps,
+    LocalState,
     /// Concerns recordings.
-    Records,
+    Recording,
     /// Belongs to an exhibition, which has rules of its own.
-    Exhibits,
+    Exhibition,
     /// Changes the content of the screen, or exports it.
-    Shows,
+    View,
     /// Sets the theme or the language.
-    Dresses,
+    Appearance,
 }
 
-impl Effect {
+impl ActionEffect {
     /// True for actions permitted while a series of trials runs. All others would interfere with its motion.
     pub const fn passes_in_series(self) -> bool {
         matches!(
             self,
-            Self::StopsAll
-                | Self::Stops
-                | Self::Asks
-                | Self::Connects
-                | Self::Keeps
-                | Self::Records
-                | Self::Exhibits
-                | Self::Shows
-                | Self::Dresses
+            Self::StopAll
+                | Self::Stop
+                | Self::Dialog
+                | Self::Connection
+                | Self::LocalState
+                | Self::Recording
+                | Self::Exhibition
+                | Self::View
+                | Self::Appearance
         )
     }
 
@@ -62,27 +62,27 @@ impl Effect {
     const fn passes_in_replay(self) -> bool {
         matches!(
             self,
-            Self::StopsAll | Self::Records | Self::Shows | Self::Dresses
+            Self::StopAll | Self::Recording | Self::View | Self::Appearance
         )
     }
 
     /// True for actions permitted during an exhibition; its page offers no others.
     pub const fn passes_in_exhibit(self) -> bool {
-        matches!(self, Self::StopsAll | Self::Exhibits | Self::Dresses)
+        matches!(self, Self::StopAll | Self::Exhibition | Self::Appearance)
     }
 
     /// True for actions permitted after a stop in the same frame: none that moves a hand or writes its persistent parameters.
     pub const fn passes_with_stop(self) -> bool {
         matches!(
             self,
-            Self::Stops
-                | Self::Adjusts
-                | Self::Asks
-                | Self::Connects
-                | Self::Keeps
-                | Self::Records
-                | Self::Shows
-                | Self::Dresses
+            Self::Stop
+                | Self::Adjustment
+                | Self::Dialog
+                | Self::Connection
+                | Self::LocalState
+                | Self::Recording
+                | Self::View
+                | Self::Appearance
         )
     }
 }
@@ -95,15 +95,15 @@ impl Action {
 
     /// Effect of this action.
     #[expect(clippy::too_many_lines, reason = "one list of all actions")]
-    pub const fn effect(&self) -> Effect {
+    pub const fn effect(&self) -> ActionEffect {
         match self {
-            Self::Stop => Effect::StopsAll,
+            Self::Stop => ActionEffect::StopAll,
             Self::Disarm
             | Self::HoldToRun(true)
             | Self::HoldKey(HoldKey::LetGo)
             | Self::Play(Play::Pause | Play::End)
             | Self::Input(InputAction::TakeBack)
-            | Self::Hands(HandsAction::StopOne(_)) => Effect::Stops,
+            | Self::Hands(HandsAction::StopOne(_)) => ActionEffect::Stop,
             Self::Arm
             | Self::HoldKey(HoldKey::Pressed)
             | Self::Target(..)
@@ -115,14 +115,14 @@ impl Action {
             | Self::Input(InputAction::Grant(_) | InputAction::GrantClient(_))
             | Self::Trial(TrialAction::Start(_) | TrialAction::ArmAndStart(_))
             | Self::Checkup(CheckupAction::Start(_) | CheckupAction::ArmAndStart(_)) => {
-                Effect::Moves
+                ActionEffect::Motion
             }
             Self::HoldToRun(false)
             | Self::Force(..)
             | Self::Speed(..)
             | Self::Lock(..)
             | Self::Input(InputAction::Limit(_))
-            | Self::ClearErrors => Effect::Adjusts,
+            | Self::ClearErrors => ActionEffect::Adjustment,
             Self::Param(
                 ParamAction::Apply
                 | ParamAction::Undo
@@ -132,7 +132,7 @@ impl Action {
             )
             | Self::Procedure(
                 ProcedureAction::Begin | ProcedureAction::GoBack | ProcedureAction::Save,
-            ) => Effect::WritesKept,
+            ) => ActionEffect::PersistentWrite,
             Self::ChangePlace(..)
             | Self::FactoryReset
             | Self::CalibrateForce
@@ -140,7 +140,7 @@ impl Action {
                 ProcedureAction::Keep | ProcedureAction::LeaveUnsaved | ProcedureAction::Close,
             )
             | Self::Stay
-            | Self::Leave => Effect::Asks,
+            | Self::Leave => ActionEffect::Dialog,
             Self::Connect(_)
             | Self::Disconnect
             | Self::Hands(HandsAction::Add | HandsAction::Show(_) | HandsAction::Remove(_))
@@ -155,7 +155,7 @@ impl Action {
                 | InputAction::Show(_)
                 | InputAction::JoinDds(_)
                 | InputAction::Mirror(_),
-            ) => Effect::Connects,
+            ) => ActionEffect::Connection,
             // A repeated press changes nothing.
             Self::HoldKey(HoldKey::Held)
             | Self::DisarmIdle(_)
@@ -206,9 +206,9 @@ impl Action {
             | Self::Tare(_)
             | Self::UndoTare
             | Self::TakeKeptTare
-            | Self::Stage(..) => Effect::Keeps,
-            Self::Recording(_) => Effect::Records,
-            Self::Exhibit(_) => Effect::Exhibits,
+            | Self::Stage(..) => ActionEffect::LocalState,
+            Self::Recording(_) => ActionEffect::Recording,
+            Self::Exhibit(_) => ActionEffect::Exhibition,
             Self::Save(_)
             | Self::SavePicture(_)
             | Self::Layout(_)
@@ -216,8 +216,8 @@ impl Action {
             | Self::AngleUnit(_)
             | Self::PlotWindow(_)
             | Self::ShowPlot(..)
-            | Self::GrowPlot(_) => Effect::Shows,
-            Self::Theme(_) | Self::Language(_) => Effect::Dresses,
+            | Self::GrowPlot(_) => ActionEffect::View,
+            Self::Theme(_) | Self::Language(_) => ActionEffect::Appearance,
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::app::env::day_folder;
 use crate::app::layout::Layout;
-use crate::app::readings::tare::KeptTare;
+use crate::app::readings::tare::StoredTare;
 use crate::hand::gap::SizeBlocks;
 use crate::hand::kinematics::Side;
 use crate::hand::{Gesture, GestureRoute};
@@ -369,7 +369,7 @@ pub struct Settings {
     pub layout: Layout,
     pub zoom: Zoom,
     /// Last tare of each hand, by its address and ID.
-    pub tares: BTreeMap<String, KeptTare>,
+    pub tares: BTreeMap<String, StoredTare>,
     /// Group that is polled first during motion.
     pub read_first: PollPriority,
     #[serde(rename = "sessions")]
@@ -477,7 +477,7 @@ impl Settings {
     }
 
     /// Stores the tare of a hand; `None` removes it.
-    pub(crate) fn keep_tare(&mut self, hand: String, kept: Option<KeptTare>) {
+    pub(crate) fn keep_tare(&mut self, hand: String, kept: Option<StoredTare>) {
         match kept {
             Some(kept) => self.tares.insert(hand, kept),
             None => self.tares.remove(&hand),
@@ -583,9 +583,9 @@ mod tests {
     fn the_tarings_of_the_last_hands_are_kept() {
         let mut settings = Settings::default();
         for unix_s in 0..25 {
-            let kept = KeptTare {
+            let kept = StoredTare {
                 unix_s,
-                ..KeptTare::default()
+                ..StoredTare::default()
             };
             settings.keep_tare(format!("hand {unix_s}"), Some(kept));
         }

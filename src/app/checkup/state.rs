@@ -14,7 +14,7 @@ use std::time::Duration;
 use tokio::sync::oneshot;
 
 /// Result of reading the last stored check-up and the folder of its report; `None` if there is none.
-pub(crate) type KeptCheckup = io::Result<Option<(CheckupReport, Option<PathBuf>)>>;
+pub(crate) type LastCheckupResult = io::Result<Option<(CheckupReport, Option<PathBuf>)>>;
 
 #[derive(Debug, Default)]
 pub struct HandCheckup {
@@ -22,7 +22,7 @@ pub struct HandCheckup {
     pub last: Option<ShownCheckup>,
     /// Reason why the stored check-ups cannot be read.
     pub unread: Option<String>,
-    pub(crate) reading: Option<BackgroundJob<KeptCheckup>>,
+    pub(crate) reading: Option<BackgroundJob<LastCheckupResult>>,
     /// True once stored check-ups have been requested.
     pub(crate) is_read: bool,
 }

@@ -2,8 +2,8 @@
 
 use crate::app::env::Env;
 use crate::app::env::running::Running;
-use crate::app::exhibit::kept_report::KeptReport;
 use crate::app::exhibit::state::{ExhibitAction, ExhibitState, Exhibition, StaffPanel};
+use crate::app::exhibit::stored_report::StoredReport;
 use crate::app::exhibit::wrong_pins_file;
 use crate::app::hands::Hand;
 use crate::app::settings::Language;
@@ -60,7 +60,7 @@ impl ExhibitState {
             plan: start.plan,
             logo: start.logo,
             view: ExhibitView::default(),
-            report: KeptReport::new(env.documents.clone(), env.runtime.clone()),
+            report: StoredReport::new(env.documents.clone(), env.runtime.clone()),
             gate,
             wrong_pins: Saver::new(
                 wrong_path,

@@ -1,7 +1,7 @@
 //! State of an exhibition as plain values, and the user's actions.
 
 use crate::app::env::running::Running;
-use crate::app::exhibit::kept_report::KeptReport;
+use crate::app::exhibit::stored_report::StoredReport;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate, WrongPins};
 use crate::exhibit::plan::ExhibitPlan;
@@ -87,7 +87,7 @@ pub struct ExhibitState {
     pub view: ExhibitView,
     pub staff: StaffPanel,
     /// Today's counts and their file.
-    pub report: KeptReport,
+    pub report: StoredReport,
     pub(crate) gate: Option<PinGate>,
     /// File in which wrong PINs outlast a restart.
     pub(crate) wrong_pins: Saver<WrongPins>,

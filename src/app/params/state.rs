@@ -72,7 +72,7 @@ pub enum WriteRequest {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum SaveEnd {
     /// SAVE was sent, with or without a reply from the hand.
-    Told(Saved),
+    Reported(Saved),
     /// The backup or the record could not be written: no SAVE was sent.
     NoBackup(BackupError),
     /// The hand was not reachable: no SAVE was sent.

@@ -325,7 +325,7 @@ impl ParamsState {
     fn save_ended(&mut self, end: Result<SaveReport, TaskError>, now: Moment) {
         let end = match end {
             Ok(report) => match report.not_noted {
-                None => SaveEnd::Told(report.saved),
+                None => SaveEnd::Reported(report.saved),
                 Some(error) => SaveEnd::NotNoted(report.saved, error),
             },
             Err(TaskError::NoBackup(why)) => SaveEnd::NoBackup(why),

@@ -127,7 +127,7 @@ pub struct CalibrateProcedure {
 #[derive(Debug, Default)]
 pub struct Procedures {
     pub card: Option<Procedure>,
-    pub(crate) requested: Option<mpsc::Receiver<GoRequest>>,
+    pub(crate) requested: Option<mpsc::Receiver<LinkRequest>>,
 }
 
 impl Procedure {
@@ -156,22 +156,25 @@ impl PlaceProcedure {
 
 /// Request to open a link at an address.
 #[derive(Debug)]
-pub(crate) struct GoRequest {
+pub(crate) struct LinkRequest {
     pub(crate) place: Endpoint,
     pub(crate) opened: oneshot::Sender<LinkHandle>,
 }
 
 /// Sends link requests to the program.
-pub(crate) struct Asking {
-    pub(crate) requests: mpsc::Sender<GoRequest>,
+pub(crate) struct LinkRequester {
+    pub(crate) requests: mpsc::Sender<LinkRequest>,
     pub(crate) wake: Wake,
 }
 
-impl Reach for Asking {
+impl Reach for LinkRequester {
     async fn reach(&mut self, place: &Endpoint) -> Option<LinkHandle> {
         let (opened, open) = oneshot::channel();
         let place = place.clone();
-        self.requests.send(GoRequest { place, opened }).await.ok()?;
+        self.requests
+            .send(LinkRequest { place, opened })
+            .await
+            .ok()?;
         (self.wake)();
         let hand = open.await.ok()?;
         answers(&hand, REACH_TIMEOUT).await.then_some(hand)

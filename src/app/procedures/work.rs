@@ -5,7 +5,7 @@ use crate::app::env::running::Running;
 use crate::app::hand::Connection;
 use crate::app::params::{ParamsState, rest_refusal};
 use crate::app::procedures::procedure::{
-    Asking, CalibrateProcedure, GoRequest, PlaceProcedure, Procedure, ProcedureAction,
+    CalibrateProcedure, LinkRequest, LinkRequester, PlaceProcedure, Procedure, ProcedureAction,
     ProcedureStage, Procedures, ResetProcedure, decided,
 };
 use crate::app::settings::Settings;
@@ -133,7 +133,7 @@ impl Procedures {
         };
         // A task requests one address at a time and waits for its link.
         let (requests, requested) = mpsc::channel(1);
-        let mut reach = Asking {
+        let mut reach = LinkRequester {
             requests,
             wake: Arc::clone(&env.wake),
         };
@@ -180,7 +180,7 @@ impl Procedures {
     }
 
     /// Link request of the card's task, if pending.
-    pub(crate) fn take_link_request(&mut self) -> Option<GoRequest> {
+    pub(crate) fn take_link_request(&mut self) -> Option<LinkRequest> {
         self.requested.as_mut()?.try_recv().ok()
     }
 

@@ -3,8 +3,8 @@
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::exhibit::exhibit_file;
-use crate::app::exhibit::kept_report::KeptReport;
 use crate::app::exhibit::state::{ExhibitAction, ExhibitState, Exhibition};
+use crate::app::exhibit::stored_report::StoredReport;
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::program::hands;
@@ -17,7 +17,7 @@ use crate::store::BackgroundJob;
 pub(crate) struct ExhibitWork {
     opening: Option<BackgroundJob<Result<Exhibition, NoticeKind>>>,
     /// Of an exhibition that was left; it is being written.
-    left: Option<KeptReport>,
+    left: Option<StoredReport>,
 }
 
 impl ExhibitWork {

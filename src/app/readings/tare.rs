@@ -25,15 +25,15 @@ pub enum TareSource {
     /// First reading of the untouched fingertip.
     First,
     /// Tared by the user.
-    Person,
+    User,
     /// Tared by the user in an earlier session, this long before [`TareZero::at`].
-    Kept(Duration),
+    Stored(Duration),
 }
 
 /// Persistent form of a tare.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub struct KeptTare {
+pub struct StoredTare {
     /// Time of the tare in seconds since 1970.
     pub unix_s: u64,
     /// The eight channels of each tared fingertip in counts, by the finger's name.
@@ -43,7 +43,7 @@ pub struct KeptTare {
 /// A stored tare, and its age when the hand was found.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct TareOffer {
-    kept: KeptTare,
+    kept: StoredTare,
     age: Duration,
     at: Moment,
 }
@@ -66,7 +66,7 @@ impl Tare {
     /// Time of the user's last tare; `None` if there was none or it was undone.
     pub fn chosen_at(&self) -> Option<Moment> {
         let chosen = self.zeros.iter().filter_map(|(_, zero)| *zero);
-        let chosen = chosen.filter(|zero| zero.source == TareSource::Person);
+        let chosen = chosen.filter(|zero| zero.source == TareSource::User);
         chosen.map(|zero| zero.at).max()
     }
 
@@ -92,7 +92,7 @@ impl Tare {
         sample: &HandSample,
     ) -> Result<(), (Finger, f32)> {
         self.count_from(fingers, sample, |finger| {
-            reading(sample, finger, TareSource::Person)
+            reading(sample, finger, TareSource::User)
         })
     }
 
@@ -121,8 +121,8 @@ impl Tare {
     }
 
     /// Offers the stored tare of the hand, if any. `since_1970` and `now` are the same moment.
-    pub(crate) fn offer(&mut self, kept: Option<KeptTare>, since_1970: Duration, now: Moment) {
-        let offer = |kept: KeptTare| TareOffer {
+    pub(crate) fn offer(&mut self, kept: Option<StoredTare>, since_1970: Duration, now: Moment) {
+        let offer = |kept: StoredTare| TareOffer {
             age: since_1970.saturating_sub(Duration::from_secs(kept.unix_s)),
             kept,
             at: now,
@@ -152,13 +152,13 @@ impl Tare {
             Some(TareZero {
                 raw: *tips.get(finger.name())?,
                 at: now,
-                source: TareSource::Kept(age),
+                source: TareSource::Stored(age),
             })
         })
     }
 
     /// Tare to store: the user's, else the one stored before. `since_1970` and `now` are the same moment.
-    pub(crate) fn to_keep(&self, since_1970: Duration, now: Moment) -> Option<KeptTare> {
+    pub(crate) fn to_keep(&self, since_1970: Duration, now: Moment) -> Option<StoredTare> {
         let Some(at) = self.chosen_at() else {
             let offer = self.offer.as_ref()?.as_ref();
             return offer.map(|offer| offer.kept.clone());
@@ -167,7 +167,7 @@ impl Tare {
             let zero = zero.filter(|zero| zero.source != TareSource::First)?;
             Some((finger.name().to_owned(), zero.raw))
         });
-        Some(KeptTare {
+        Some(StoredTare {
             unix_s: since_1970.saturating_sub(now.since(at)).as_secs(),
             tips: zeros.collect(),
         })
@@ -272,7 +272,7 @@ mod tests {
         tare.apply_stored(Finger::ALL, &sample(400, 8), at(8))
             .unwrap();
         let zero = tare.zero(Finger::Index).unwrap();
-        let source = TareSource::Kept(Duration::from_secs(63));
+        let source = TareSource::Stored(Duration::from_secs(63));
         assert_eq!((zero.raw[0], zero.source), (300, source));
         assert_eq!(tare.chosen_at(), None, "not chosen in this session");
         tare.undo();

@@ -171,7 +171,7 @@ pub enum RecordingAction {
     /// Use the user's documents folder again.
     DefaultFolder,
     /// Scan again.
-    Look,
+    Refresh,
     /// Replay this file, from the list or elsewhere.
     Open(PathBuf),
     /// Replay this file in a loop between two moments, starting at the first.

@@ -36,12 +36,12 @@ pub(crate) const PACES: (f32, f32) = (0.1, 10.0);
 /// An opened file, and the state of the hand shortly after the start, or at the start of the requested range.
 pub(crate) struct OpenedRecording {
     file: Arc<RecordingFile>,
-    found: HandThen,
+    found: HandSnapshot,
     stretch: Option<(Moment, Moment)>,
 }
 
 /// State of the hand at a moment.
-type HandThen = (Moment, Box<Recorded>);
+type HandSnapshot = (Moment, Box<Recorded>);
 
 /// Seek target.
 #[derive(Debug, Clone, Copy)]
@@ -62,7 +62,7 @@ pub(crate) struct RecordingPlayer {
     /// Time of the last tick, on the program's clock.
     ticked: Moment,
     wanted: Option<SeekTarget>,
-    seeking: Option<BackgroundJob<io::Result<HandThen>>>,
+    seeking: Option<BackgroundJob<io::Result<HandSnapshot>>>,
     ahead: VecDeque<Entry>,
     ahead_until: Moment,
     reading: Option<(Moment, BackgroundJob<io::Result<Vec<Entry>>>)>,
@@ -96,7 +96,7 @@ pub(crate) fn open(
 }
 
 /// Reads the state of the hand at the seek target.
-fn find(file: &RecordingFile, wanted: SeekTarget) -> io::Result<HandThen> {
+fn find(file: &RecordingFile, wanted: SeekTarget) -> io::Result<HandSnapshot> {
     let one = Duration::from_micros(1);
     let earlier = |at: Moment, by| Moment::from_duration(at.since(Moment::ZERO).saturating_sub(by));
     let at = match wanted {
@@ -232,7 +232,7 @@ impl RecordingPlayer {
     }
 
     /// Shows the hand in the given state.
-    fn apply_found(&mut self, (at, recorded): HandThen) {
+    fn apply_found(&mut self, (at, recorded): HandSnapshot) {
         *self.state.hands.shown_mut() = recorded.hand;
         self.state.notices = recorded.notices;
         self.tap = recorded.tap;
@@ -414,7 +414,7 @@ impl RecordingPlayer {
             | RecordingAction::RecordSimulated(_)
             | RecordingAction::ChooseFolder(_)
             | RecordingAction::DefaultFolder
-            | RecordingAction::Look
+            | RecordingAction::Refresh
             | RecordingAction::Open(_)
             | RecordingAction::OpenAt(..)
             | RecordingAction::Close

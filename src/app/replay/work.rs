@@ -255,7 +255,7 @@ impl ReplayWork {
             RecordingAction::DefaultFolder => self.record_into(None, state),
             RecordingAction::Reveal(path) => self.revealing = Some(folder::reveal(path, env)),
             RecordingAction::Export(export) => self.exporting.push(export.begin(env)),
-            RecordingAction::Look => self.scan(state, env),
+            RecordingAction::Refresh => self.scan(state, env),
             RecordingAction::Open(path) => self.open(path, None, env),
             RecordingAction::OpenAt(path, stretch) => self.open(path, Some(stretch), env),
             RecordingAction::Close => (self.player, self.scan_again) = (None, true),

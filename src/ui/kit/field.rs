@@ -76,7 +76,7 @@ impl<'a> EditField<'a> {
         let own = std::mem::take(pane.typing);
         let (own, other) = match own.field.as_ref() {
             // Pressing Enter or Esc again restores the value in force.
-            Some((field, _)) if *field == id && own.is_given_up(ui) => (Typing::default(), None),
+            Some((field, _)) if *field == id && own.is_discarded(ui) => (Typing::default(), None),
             Some((field, _)) if *field == id && self.disabled.is_none() => (own, None),
             Some((field, _)) if *field == id => (Typing::default(), None),
             _ => (Typing::default(), Some(own)),

@@ -1,7 +1,7 @@
 //! Context of every part of the window: the state, the appearance, and the list of actions.
 
 use crate::app::action::Action;
-use crate::app::effect::Effect;
+use crate::app::effect::ActionEffect;
 use crate::app::hands::Hand;
 use crate::app::layout::{Breakpoint, Layout, RoomLayouts};
 use crate::app::readings::Freshness;
@@ -135,7 +135,7 @@ pub(crate) struct Typing {
 
 impl Typing {
     /// True if Enter or Esc discards a refused text in this frame.
-    pub(crate) fn is_given_up(&self, ui: &Ui) -> bool {
+    pub(crate) fn is_discarded(&self, ui: &Ui) -> bool {
         let keys = [Key::Enter, Key::Escape];
         self.refused.is_some() && ui.input(|input| keys.iter().any(|key| input.key_pressed(*key)))
     }
@@ -145,11 +145,11 @@ impl Typing {
         let covers = |action: &Action| {
             matches!(
                 action.effect(),
-                Effect::StopsAll
-                    | Effect::Stops
-                    | Effect::Moves
-                    | Effect::Adjusts
-                    | Effect::Connects
+                ActionEffect::StopAll
+                    | ActionEffect::Stop
+                    | ActionEffect::Motion
+                    | ActionEffect::Adjustment
+                    | ActionEffect::Connection
             )
         };
         if self.refused.is_some() && actions.iter().any(covers) {

@@ -46,7 +46,8 @@ impl RecordingsView {
             .is_none_or(|at| now - at >= POLL_INTERVAL.as_secs_f64())
         {
             self.scanned_s = Some(now);
-            pane.actions.push(Action::Recording(RecordingAction::Look));
+            pane.actions
+                .push(Action::Recording(RecordingAction::Refresh));
             ui.ctx().request_repaint_after(POLL_INTERVAL);
         }
         kit::full_card_ui(ui, pane.look, |ui| {

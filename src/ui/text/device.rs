@@ -246,7 +246,7 @@ fn not_sent(look: Look, why: NotSent) -> String {
 /// Outcome of a SAVE.
 pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
     match end {
-        SaveEnd::Told(result) => saved(look, result),
+        SaveEnd::Reported(result) => saved(look, result),
         SaveEnd::NoBackup(why) => look.tr_with(SAVE_NO_BACKUP, errors::backup(look, why)),
         SaveEnd::NotAsked(error) => look.tr_with(SAVE_NOT_SENT, errors::request(look, error)),
         SaveEnd::NotApplied => look.tr(SAVE_NOT_APPLIED).into(),
@@ -261,7 +261,7 @@ pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
 
 /// True if the parameters are saved, as far as the wire shows.
 pub(crate) const fn is_saved(end: &SaveEnd) -> bool {
-    matches!(end, SaveEnd::Told(Saved::Confirmed | Saved::ReadBack))
+    matches!(end, SaveEnd::Reported(Saved::Confirmed | Saved::ReadBack))
 }
 
 pub(crate) fn saved(look: Look, saved: &Saved) -> String {
@@ -336,7 +336,7 @@ mod tests {
             ),
             (Saved::NotSent(NotSent::TooSoon { wait }), "wait 3 s", false),
         ] {
-            let end = SaveEnd::Told(saved);
+            let end = SaveEnd::Reported(saved);
             let text = save_end(look, &end);
             assert!(text.contains(words), "{text}");
             assert_eq!(is_saved(&end), is_ok, "{text}");

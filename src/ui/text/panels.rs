@@ -301,8 +301,8 @@ pub(crate) fn zero(look: Look, rest: TareZero, now: Moment) -> String {
     let since = now.since(rest.at);
     let (ago, kept) = match rest.source {
         TareSource::First => return look.tr(NOT_TARED).to_owned(),
-        TareSource::Person => (since, false),
-        TareSource::Kept(age) => (age + since, true),
+        TareSource::User => (since, false),
+        TareSource::Stored(age) => (age + since, true),
     };
     let ago = format::age(ago);
     match (look.language, kept) {

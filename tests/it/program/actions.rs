@@ -5,7 +5,7 @@ use crate::program::{ANGLE_SET, Bench, shorts};
 use crate::setup::recorded;
 use handscope::app::action::Action;
 use handscope::app::checkup::CheckupAction;
-use handscope::app::effect::Effect;
+use handscope::app::effect::ActionEffect;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::app::files::export::{Export, TrafficForm};
 use handscope::app::hand::HoldKey;
@@ -132,7 +132,7 @@ fn sessions() -> Vec<RecordingAction> {
         // Below a file no folder can be.
         RecordingAction::ChooseFolder(Some("/dev/null/none".into())),
         RecordingAction::DefaultFolder,
-        RecordingAction::Look,
+        RecordingAction::Refresh,
         RecordingAction::Open(path()),
         RecordingAction::OpenAt(path(), (at, at)),
         RecordingAction::Close,
@@ -380,14 +380,21 @@ impl Bench {
 }
 
 /// What may reach the hand because of an action of this effect.
-fn may_reach(effect: Effect) -> &'static [Reached] {
+fn may_reach(effect: ActionEffect) -> &'static [Reached] {
     match effect {
-        Effect::Moves => &[Reached::Motion, Reached::Limit, Reached::Hold],
-        Effect::Adjusts => &[Reached::Limit, Reached::Hold, Reached::Cleared],
-        Effect::WritesKept => &[Reached::Kept],
+        ActionEffect::Motion => &[Reached::Motion, Reached::Limit, Reached::Hold],
+        ActionEffect::Adjustment => &[Reached::Limit, Reached::Hold, Reached::Cleared],
+        ActionEffect::PersistentWrite => &[Reached::Kept],
         // An armed hand that is left, or led from elsewhere, is held.
-        Effect::StopsAll | Effect::Stops | Effect::Connects | Effect::Exhibits => &[Reached::Hold],
-        Effect::Asks | Effect::Keeps | Effect::Records | Effect::Shows | Effect::Dresses => &[],
+        ActionEffect::StopAll
+        | ActionEffect::Stop
+        | ActionEffect::Connection
+        | ActionEffect::Exhibition => &[Reached::Hold],
+        ActionEffect::Dialog
+        | ActionEffect::LocalState
+        | ActionEffect::Recording
+        | ActionEffect::View
+        | ActionEffect::Appearance => &[],
     }
 }
 
@@ -427,11 +434,11 @@ async fn no_action_moves_a_hand_or_writes_what_it_keeps_that_does_not_say_so() {
     }
     // Otherwise nothing was tried.
     for (effect, one) in [
-        (Effect::Moves, Reached::Motion),
-        (Effect::Adjusts, Reached::Limit),
-        (Effect::WritesKept, Reached::Kept),
-        (Effect::StopsAll, Reached::Hold),
-        (Effect::Stops, Reached::Hold),
+        (ActionEffect::Motion, Reached::Motion),
+        (ActionEffect::Adjustment, Reached::Limit),
+        (ActionEffect::PersistentWrite, Reached::Kept),
+        (ActionEffect::StopAll, Reached::Hold),
+        (ActionEffect::Stop, Reached::Hold),
     ] {
         assert!(found.contains(&(format!("{effect:?}"), one)), "{found:?}");
     }
@@ -477,7 +484,7 @@ async fn nothing_but_a_stop_reaches_a_hand_behind_a_recording() {
         }
         let reached = bench.reached_by(action.clone()).await;
         let allowed: &[_] = match action.effect() {
-            Effect::StopsAll => &[Reached::Hold],
+            ActionEffect::StopAll => &[Reached::Hold],
             _ => &[],
         };
         assert!(

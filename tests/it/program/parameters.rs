@@ -233,7 +233,7 @@ async fn a_save_is_told_and_noted_beside_its_backup() {
     done(&mut bench).await;
     assert_eq!(bench.addresses(), [SAVE]);
     let end = bench.hand().params.save.clone().unwrap().0;
-    assert_eq!(end, SaveEnd::Told(Saved::Confirmed));
+    assert_eq!(end, SaveEnd::Reported(Saved::Confirmed));
     bench
         .until("its files are read", |state| {
             state.hand().params.known.saved.is_some()

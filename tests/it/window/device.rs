@@ -509,7 +509,7 @@ fn a_save_that_failed_or_gave_no_result_is_told_so_and_is_not_the_last_saved() {
         save(&mut bench);
         settle(&mut bench);
         let (end, _) = bench.state().hand().params.save.clone().unwrap();
-        assert_eq!(end, SaveEnd::Told(told));
+        assert_eq!(end, SaveEnd::Reported(told));
         assert!(!bench.texts_with(words).is_empty(), "{value}");
         assert_eq!(bench.reading("Index speed last saved"), "-", "{value}");
         let doubtful = bench.state().hand().params.known.doubtful.is_some();

@@ -74,7 +74,7 @@ fn taring_counts_all_tips_from_now_and_writes_nothing() {
     bench.run(60);
     let is_kept = |finger| {
         let rest = bench.state().hand().readings.tare.zero(finger);
-        rest.is_some_and(|rest| rest.source == TareSource::Person)
+        rest.is_some_and(|rest| rest.source == TareSource::User)
     };
     assert!(Finger::ALL.into_iter().all(is_kept));
     for finger in Finger::ALL {

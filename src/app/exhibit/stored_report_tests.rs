@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may")]
 use crate::app::env::day_folder::of_day;
-use crate::app::exhibit::KeptReport;
+use crate::app::exhibit::StoredReport;
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::exhibit::report::{DayReport, file};
@@ -17,7 +17,7 @@ const NINE: u64 = 1_795_219_200 + 2 * 86_400 + 9 * 3600;
 
 /// A report at a hand, and the time they live in.
 struct Booth {
-    report: KeptReport,
+    report: StoredReport,
     hand: Hand,
     /// Seconds after nine o'clock.
     second: u64,
@@ -28,7 +28,7 @@ impl Booth {
         let mut hand = Hand::default();
         hand.connection.endpoint = Some("tcp:10.0.0.9".parse().unwrap());
         hand.connection.status.state = LinkState::Monitoring;
-        let report = KeptReport::new(documents.map(Path::to_owned), Handle::current());
+        let report = StoredReport::new(documents.map(Path::to_owned), Handle::current());
         let mut booth = Self {
             report,
             hand,
@@ -124,7 +124,7 @@ async fn a_restart_counts_on_and_what_happens_before_the_file_is_read_counts_too
     booth.at(1).await;
     booth.leave().await;
     let mut booth = Booth::open(None).await;
-    booth.report = KeptReport::new(Some(folder.path().into()), Handle::current());
+    booth.report = StoredReport::new(Some(folder.path().into()), Handle::current());
     booth.tick();
     booth.visit();
     booth.at(61).await;

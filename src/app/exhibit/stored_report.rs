@@ -27,7 +27,7 @@ type ReadReport = (Option<DayReport>, Option<NoticeKind>);
 
 /// Today's report and its file. Without a documents folder nothing is stored.
 #[derive(Debug)]
-pub struct KeptReport {
+pub struct StoredReport {
     today: DayReport,
     documents: Option<PathBuf>,
     runtime: Handle,
@@ -42,8 +42,8 @@ pub struct KeptReport {
     not_saved: Option<NoticeKind>,
 }
 
-impl KeptReport {
-    /// Creates an empty report; reads and counts nothing before the first [`KeptReport::tick`].
+impl StoredReport {
+    /// Creates an empty report; reads and counts nothing before the first [`StoredReport::tick`].
     pub(crate) fn new(documents: Option<PathBuf>, runtime: Handle) -> Self {
         Self {
             today: DayReport::default(),
@@ -69,7 +69,7 @@ impl KeptReport {
         self.unreadable.iter().chain(&self.not_saved)
     }
 
-    /// Counts an event. Call [`KeptReport::tick`] first.
+    /// Counts an event. Call [`StoredReport::tick`] first.
     pub(crate) fn count(&mut self, event: &ExhibitEvent) {
         self.today.count(event);
     }
@@ -129,7 +129,7 @@ impl KeptReport {
             let read = async move { read.await.ok() };
             self.reading = Some(BackgroundJob::start_fallible(
                 &self.runtime,
-                &nobody(),
+                &no_wake(),
                 read,
             ));
         }
@@ -151,7 +151,7 @@ impl KeptReport {
             let write = async move { write.await.ok() };
             self.writing = Some(BackgroundJob::start_fallible(
                 &self.runtime,
-                &nobody(),
+                &no_wake(),
                 write,
             ));
         }
@@ -207,6 +207,6 @@ fn save(path: &Path, report: &DayReport) -> Result<(), NotSaved> {
 }
 
 /// A no-op wake: reading and writing do not change the display.
-fn nobody() -> Arc<dyn Fn() + Send + Sync> {
+fn no_wake() -> Arc<dyn Fn() + Send + Sync> {
     Arc::new(|| ())
 }
