@@ -10,7 +10,7 @@ use crate::app::layout::Layout;
 use crate::app::params::state::ParamAction;
 use crate::app::poses::PoseState;
 use crate::app::procedures::procedure::ProcedureAction;
-use crate::app::readings::fault_recorder::PersonAct;
+use crate::app::readings::fault_recorder::UserAct;
 use crate::app::readings::faults::FaultKind;
 use crate::app::recordings::RecordingAction;
 use crate::app::scan::ScanTarget;
@@ -170,18 +170,18 @@ pub enum Action {
 impl Action {
     /// The action as an event for the fault recorder; `None` if it does not affect the hand. Arming, stopping, gestures
     /// and notes are in the history already.
-    pub fn person_act(&self, is_armed: bool, poses: &PoseState) -> Option<PersonAct> {
+    pub fn user_act(&self, is_armed: bool, poses: &PoseState) -> Option<UserAct> {
         let act = match self {
-            Self::Disarm => return Some(PersonAct::Disarm),
-            Self::ClearErrors => return Some(PersonAct::ClearErrors),
-            Self::Target(dof, angle) => PersonAct::Target(*dof, *angle),
-            Self::Force(dof, force) => PersonAct::Force(*dof, *force),
-            Self::Speed(dof, speed) => PersonAct::Speed(*dof, *speed),
-            Self::Lock(dof, locked) => PersonAct::Lock(*dof, *locked),
-            Self::Preset(preset) => PersonAct::Preset(*preset),
-            Self::Recall(id) => PersonAct::Pose(poses.pose(*id)?.name.as_str().into()),
-            Self::Pinch(gap) => PersonAct::Pose(format!("pinch {:.0} mm", gap.mm()).into()),
-            Self::Play(play) => PersonAct::Play(*play),
+            Self::Disarm => return Some(UserAct::Disarm),
+            Self::ClearErrors => return Some(UserAct::ClearErrors),
+            Self::Target(dof, angle) => UserAct::Target(*dof, *angle),
+            Self::Force(dof, force) => UserAct::Force(*dof, *force),
+            Self::Speed(dof, speed) => UserAct::Speed(*dof, *speed),
+            Self::Lock(dof, locked) => UserAct::Lock(*dof, *locked),
+            Self::Preset(preset) => UserAct::Preset(*preset),
+            Self::Recall(id) => UserAct::Pose(poses.pose(*id)?.name.as_str().into()),
+            Self::Pinch(gap) => UserAct::Pose(format!("pinch {:.0} mm", gap.mm()).into()),
+            Self::Play(play) => UserAct::Play(*play),
             Self::Stop
             | Self::Arm
             | Self::HoldToRun(_)

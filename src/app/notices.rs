@@ -329,7 +329,7 @@ impl<'a> About<'a> {
 /// Open notices, and the log of all notices; both bounded.
 #[derive(Debug, Clone, Default)]
 pub struct Notices {
-    kept: VecDeque<Notice>,
+    open: VecDeque<Notice>,
     log: VecDeque<Notice>,
     pushed: u64,
     log_dropped: u64,
@@ -349,8 +349,8 @@ impl HandNotices<'_> {
 
     /// Adds the name of the former only hand to its notices, when another hand takes its place.
     pub(crate) fn name_former(&mut self, hand: &HandLabel) {
-        let Notices { kept, log, .. } = &mut *self.notices;
-        for notice in kept.iter_mut().chain(log) {
+        let Notices { open, log, .. } = &mut *self.notices;
+        for notice in open.iter_mut().chain(log) {
             if notice.is_of_hand && notice.hand.is_none() {
                 notice.hand = Some(hand.clone());
             }
@@ -362,7 +362,7 @@ impl HandNotices<'_> {
         let slot = self.hand.as_ref().map(|hand| hand.slot);
         let is_other = |hand: &HandLabel| slot.is_some_and(|slot| slot != hand.slot);
         self.notices
-            .kept
+            .open
             .retain(|notice| !over(&notice.what) || notice.hand.as_ref().is_some_and(is_other));
     }
 }
@@ -388,17 +388,17 @@ impl Notices {
         if matches!(what, NoticeKind::Fault { .. }) {
             return;
         }
-        let known = self.kept.iter().position(|own| own.is_same(&what, about));
-        let known = known.and_then(|index| self.kept.remove(index));
+        let known = self.open.iter().position(|own| own.is_same(&what, about));
+        let known = known.and_then(|index| self.open.remove(index));
         if let Some(mut notice) = known {
             notice.again(at, what);
-            return self.kept.push_back(notice);
+            return self.open.push_back(notice);
         }
-        if self.kept.len() >= NOTICES_MAX {
-            self.kept.pop_front();
+        if self.open.len() >= NOTICES_MAX {
+            self.open.pop_front();
         }
         let notice = Notice::new(self.pushed, at, what, about);
-        self.kept.push_back(notice);
+        self.open.push_back(notice);
     }
 
     /// Adds a log entry. An immediate repetition is counted; otherwise it is a separate entry.
@@ -417,17 +417,17 @@ impl Notices {
 
     /// True if there are no open notices.
     pub fn is_empty(&self) -> bool {
-        self.kept.is_empty()
+        self.open.is_empty()
     }
 
     /// Dismisses a notice. The log keeps it.
     pub fn dismiss(&mut self, id: u64) {
-        self.kept.retain(|notice| notice.id != id);
+        self.open.retain(|notice| notice.id != id);
     }
 
     /// Open notices, newest first.
     pub fn iter(&self) -> impl Iterator<Item = &Notice> {
-        self.kept.iter().rev()
+        self.open.iter().rev()
     }
 
     /// All logged notices, newest first, dismissed or not. Their IDs belong to the log.

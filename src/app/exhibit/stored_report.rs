@@ -32,7 +32,7 @@ pub struct StoredReport {
     documents: Option<PathBuf>,
     runtime: Handle,
     /// Contents of the file, including a write in progress.
-    kept: DayReport,
+    written: DayReport,
     reading: Option<BackgroundJob<ReadReport>>,
     writing: Option<BackgroundJob<Result<(), NotSaved>>>,
     begun: Option<Moment>,
@@ -49,7 +49,7 @@ impl StoredReport {
             today: DayReport::default(),
             documents,
             runtime,
-            kept: DayReport::default(),
+            written: DayReport::default(),
             reading: None,
             writing: None,
             begun: None,
@@ -86,7 +86,7 @@ impl StoredReport {
             return;
         }
         let is_due = |at| is_over || now.since(at) >= WRITE_EVERY;
-        if self.today != self.kept {
+        if self.today != self.written {
             if self.begun.is_none_or(is_due) {
                 self.write(now);
             }
@@ -98,7 +98,7 @@ impl StoredReport {
     /// Writes unsaved changes. Returns true once everything is saved, or cannot be.
     pub(crate) fn flush(&mut self, now: Moment) -> bool {
         self.apply_ended();
-        if !self.is_busy() && self.today != self.kept {
+        if !self.is_busy() && self.today != self.written {
             self.write(now);
         }
         !self.is_busy()
@@ -122,7 +122,7 @@ impl StoredReport {
 
     fn begin_day(&mut self, day: String) {
         self.today = DayReport::of(&day);
-        self.kept = self.today.clone();
+        self.written = self.today.clone();
         self.may_write = false;
         if let Some(path) = self.path() {
             let read = on_thread(move || Ok(load(&path, &day)));
@@ -143,10 +143,10 @@ impl StoredReport {
 
     fn write(&mut self, now: Moment) {
         // A failed write is not repeated until something changes.
-        self.kept = self.today.clone();
+        self.written = self.today.clone();
         self.begun = Some(now);
         if let Some(path) = self.path().filter(|_| self.may_write) {
-            let report = self.kept.clone();
+            let report = self.written.clone();
             let write = on_thread(move || Ok(save(&path, &report)));
             let write = async move { write.await.ok() };
             self.writing = Some(BackgroundJob::start_fallible(
@@ -164,7 +164,7 @@ impl StoredReport {
             self.unreadable = notice.or(self.unreadable.take());
             if let Some(earlier) = earlier {
                 self.today.add(&earlier);
-                self.kept = earlier;
+                self.written = earlier;
             }
         }
         match BackgroundJob::take_from(&mut self.writing) {

@@ -333,9 +333,9 @@ impl App {
         let State { hands, poses, .. } = &mut self.state;
         let goes_to_all = matches!(action, Action::Recall(_) | Action::Play(Play::Start(_)));
         for hand in hands.with_shown(|hand| goes_to_all && takes_poses(hand)) {
-            if let Some(done) = action.person_act(hand.connection.is_armed(), poses) {
+            if let Some(done) = action.user_act(hand.connection.is_armed(), poses) {
                 record_event(hand, now, EventKind::Person, done.words());
-                hand.measured.recorder.person(done, now);
+                hand.measured.recorder.record_user_act(done, now);
             }
         }
     }

@@ -43,7 +43,7 @@ pub struct StoredTare {
 /// A stored tare, and its age when the hand was found.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct TareOffer {
-    kept: StoredTare,
+    stored: StoredTare,
     age: Duration,
     at: Moment,
 }
@@ -121,13 +121,13 @@ impl Tare {
     }
 
     /// Offers the stored tare of the hand, if any. `since_1970` and `now` are the same moment.
-    pub(crate) fn offer(&mut self, kept: Option<StoredTare>, since_1970: Duration, now: Moment) {
-        let offer = |kept: StoredTare| TareOffer {
-            age: since_1970.saturating_sub(Duration::from_secs(kept.unix_s)),
-            kept,
+    pub(crate) fn offer(&mut self, stored: Option<StoredTare>, since_1970: Duration, now: Moment) {
+        let offer = |stored: StoredTare| TareOffer {
+            age: since_1970.saturating_sub(Duration::from_secs(stored.unix_s)),
+            stored,
             at: now,
         };
-        self.offer = Some(kept.map(offer));
+        self.offer = Some(stored.map(offer));
     }
 
     /// Age of the offered tare; `None` if none is offered.
@@ -147,7 +147,7 @@ impl Tare {
         let (Some(Some(offer)), Some(age)) = (&self.offer, self.offered(now)) else {
             return Ok(());
         };
-        let tips = offer.kept.tips.clone();
+        let tips = offer.stored.tips.clone();
         self.count_from(fingers, sample, |finger| {
             Some(TareZero {
                 raw: *tips.get(finger.name())?,
@@ -161,7 +161,7 @@ impl Tare {
     pub(crate) fn to_keep(&self, since_1970: Duration, now: Moment) -> Option<StoredTare> {
         let Some(at) = self.chosen_at() else {
             let offer = self.offer.as_ref()?.as_ref();
-            return offer.map(|offer| offer.kept.clone());
+            return offer.map(|offer| offer.stored.clone());
         };
         let zeros = self.zeros.iter().filter_map(|(finger, zero)| {
             let zero = zero.filter(|zero| zero.source != TareSource::First)?;
@@ -256,10 +256,10 @@ mod tests {
         let at = |secs: u64| Moment::from_micros(secs * 1_000_000);
         assert_eq!(former.to_keep(Duration::from_secs(1000), at(0)), None);
         former.tare([Finger::Index], &sample(300, 3)).unwrap();
-        let kept = former.to_keep(Duration::from_secs(1000), at(0)).unwrap();
+        let stored = former.to_keep(Duration::from_secs(1000), at(0)).unwrap();
         let mut tare = Tare::default();
         tare.begin(&sample(100, 1));
-        tare.offer(Some(kept), Duration::from_secs(1060), at(5));
+        tare.offer(Some(stored), Duration::from_secs(1060), at(5));
         assert_eq!(counted_from(&tare), Some(100), "only offered");
         assert_eq!(tare.offered(at(7)), Some(Duration::from_secs(62)));
         let mut pressed = sample(900, 8);

@@ -61,7 +61,7 @@ pub(crate) struct RecordingPlayer {
     tap: WireTap,
     /// Time of the last tick, on the program's clock.
     ticked: Moment,
-    wanted: Option<SeekTarget>,
+    seek_target: Option<SeekTarget>,
     seeking: Option<BackgroundJob<io::Result<HandSnapshot>>>,
     ahead: VecDeque<Entry>,
     ahead_until: Moment,
@@ -96,10 +96,10 @@ pub(crate) fn open(
 }
 
 /// Reads the state of the hand at the seek target.
-fn find(file: &RecordingFile, wanted: SeekTarget) -> io::Result<HandSnapshot> {
+fn find(file: &RecordingFile, target: SeekTarget) -> io::Result<HandSnapshot> {
     let one = Duration::from_micros(1);
     let earlier = |at: Moment, by| Moment::from_duration(at.since(Moment::ZERO).saturating_sub(by));
-    let at = match wanted {
+    let at = match target {
         SeekTarget::At(at) => at,
         SeekTarget::After(at) => {
             let stretch = (at.plus(one), at.plus(STEP_TIMEOUT));
@@ -172,7 +172,7 @@ impl RecordingPlayer {
             },
             tap: WireTap::default(),
             ticked: live.now,
-            wanted: None,
+            seek_target: None,
             seeking: None,
             ahead: VecDeque::new(),
             ahead_until: at,
@@ -287,10 +287,10 @@ impl RecordingPlayer {
             None => {}
         }
         if self.seeking.is_none()
-            && let Some(wanted) = self.wanted.take()
+            && let Some(target) = self.seek_target.take()
         {
             let file = Arc::clone(&self.file);
-            let seek = on_thread(move || find(&file, wanted));
+            let seek = on_thread(move || find(&file, target));
             let job = BackgroundJob::start(&env.runtime, &env.wake, seek);
             self.seeking = Some(job);
         }
@@ -326,7 +326,7 @@ impl RecordingPlayer {
         let is_over = next >= end;
         line.runs = !is_over || begin.is_some();
         if is_over {
-            self.wanted = begin.map(SeekTarget::At);
+            self.seek_target = begin.map(SeekTarget::At);
         }
         let mut target = ReplayTarget {
             hand: self.state.hands.shown_mut(),
@@ -343,9 +343,9 @@ impl RecordingPlayer {
         let Some(line) = self.state.timeline.as_ref().filter(|line| line.runs) else {
             return;
         };
-        let wanted = line.at.plus(AHEAD.mul_f32(line.pace.max(1.0)));
-        let wanted = wanted.min(self.file.last());
-        if self.reading.is_some() || self.seeking.is_some() || self.ahead_until >= wanted {
+        let read_until = line.at.plus(AHEAD.mul_f32(line.pace.max(1.0)));
+        let read_until = read_until.min(self.file.last());
+        if self.reading.is_some() || self.seeking.is_some() || self.ahead_until >= read_until {
             return;
         }
         let file = Arc::clone(&self.file);
@@ -354,7 +354,7 @@ impl RecordingPlayer {
             let mut entries = Vec::new();
             let stretch = Stretch {
                 from,
-                to: wanted,
+                to: read_until,
                 wire: true,
             };
             file.entries(stretch, |entry| {
@@ -365,7 +365,7 @@ impl RecordingPlayer {
             Ok(entries)
         });
         let job = BackgroundJob::start(&env.runtime, &env.wake, read);
-        self.reading = Some((wanted, job));
+        self.reading = Some((read_until, job));
     }
 
     /// Handles the user's requests for the replayed recording.
@@ -373,14 +373,14 @@ impl RecordingPlayer {
         let (first, last) = (self.file.first(), self.file.last());
         let within = |at: Moment| at.clamp(first, last);
         match action {
-            RecordingAction::Seek(at) => self.wanted = Some(SeekTarget::At(within(*at))),
+            RecordingAction::Seek(at) => self.seek_target = Some(SeekTarget::At(within(*at))),
             RecordingAction::Run(on) => {
                 let is_at_end = self.at() >= last;
                 if let Some(line) = self.line() {
                     line.runs = *on;
                 }
                 if *on && is_at_end {
-                    self.wanted = Some(SeekTarget::At(first));
+                    self.seek_target = Some(SeekTarget::At(first));
                 }
             }
             RecordingAction::Pace(pace) => {
@@ -391,7 +391,7 @@ impl RecordingPlayer {
             RecordingAction::Loop(stretch) => self.set_loop(*stretch),
             RecordingAction::Step(forward) => {
                 let at = self.at();
-                self.wanted = Some(if *forward {
+                self.seek_target = Some(if *forward {
                     SeekTarget::After(at)
                 } else {
                     SeekTarget::Before(at)

@@ -1,6 +1,6 @@
 //! Events of a recording as lines of text: actions of the user, changes of drives and of the link.
 
-use crate::app::readings::fault_recorder::{FaultEventKind, FaultRecording, PersonAct};
+use crate::app::readings::fault_recorder::{FaultEventKind, FaultRecording, UserAct};
 use crate::hand::{Dof, Faults};
 use crate::history::{Mark, MarkKind};
 use crate::poses::{Play, Preset};
@@ -53,7 +53,7 @@ fn event_words(look: Look, what: &FaultEventKind) -> (String, Color32) {
     let palette = look.palette;
     let of = |dof, text: &str| look.pair(look.tr(words::dof(dof)), text);
     match what {
-        FaultEventKind::PersonAct(act) => (act_words(look, act), palette.accent),
+        FaultEventKind::UserAct(act) => (act_words(look, act), palette.accent),
         FaultEventKind::Status(dof, status) => {
             let color = if status.is_protective() {
                 palette.bad
@@ -84,23 +84,23 @@ fn fault_words(look: Look, bits: Faults) -> String {
     titles.collect::<Vec<_>>().join(" + ")
 }
 
-fn act_words(look: Look, act: &PersonAct) -> String {
+fn act_words(look: Look, act: &UserAct) -> String {
     let tr = |text| look.tr(text).to_owned();
     let set = |who: &str, what, value: i16| format!("{who} {} {value}", look.tr(what));
     let joint = |dof| look.tr(words::dof(dof));
     let joints = |dof: &Option<Dof>| dof.map_or_else(|| look.tr(main::EVERY), joint);
     match act {
-        PersonAct::Disarm => tr(notices::ACT_DISARM),
-        PersonAct::Target(dof, angle) => set(joint(*dof), notices::ACT_TARGET, angle.get()),
-        PersonAct::Force(dof, force) => set(joints(dof), notices::ACT_FORCE, force.get()),
-        PersonAct::Speed(dof, speed) => set(joints(dof), main::NAME_SPEED, speed.get()),
-        PersonAct::Lock(dof, true) => format!("{} {}", joint(*dof), tr(notices::ACT_LOCK)),
-        PersonAct::Lock(dof, false) => format!("{} {}", joint(*dof), tr(notices::ACT_UNLOCK)),
-        PersonAct::Preset(Preset::Open) => tr(main::OPEN),
-        PersonAct::Preset(Preset::Half) => tr(main::HALF),
-        PersonAct::Preset(Preset::Close) => tr(main::CLOSE),
-        PersonAct::Pose(name) => format!("{} {name}", tr(poses::RECALL_NAME)),
-        PersonAct::Play(play) => {
+        UserAct::Disarm => tr(notices::ACT_DISARM),
+        UserAct::Target(dof, angle) => set(joint(*dof), notices::ACT_TARGET, angle.get()),
+        UserAct::Force(dof, force) => set(joints(dof), notices::ACT_FORCE, force.get()),
+        UserAct::Speed(dof, speed) => set(joints(dof), main::NAME_SPEED, speed.get()),
+        UserAct::Lock(dof, true) => format!("{} {}", joint(*dof), tr(notices::ACT_LOCK)),
+        UserAct::Lock(dof, false) => format!("{} {}", joint(*dof), tr(notices::ACT_UNLOCK)),
+        UserAct::Preset(Preset::Open) => tr(main::OPEN),
+        UserAct::Preset(Preset::Half) => tr(main::HALF),
+        UserAct::Preset(Preset::Close) => tr(main::CLOSE),
+        UserAct::Pose(name) => format!("{} {name}", tr(poses::RECALL_NAME)),
+        UserAct::Play(play) => {
             let verb = match play {
                 Play::Start(_) => poses::START,
                 Play::Step(_) => poses::STEP,
@@ -110,6 +110,6 @@ fn act_words(look: Look, act: &PersonAct) -> String {
             };
             look.pair(look.tr(poses::SEQUENCE), look.tr(verb))
         }
-        PersonAct::ClearErrors => tr(panels::CLEAR),
+        UserAct::ClearErrors => tr(panels::CLEAR),
     }
 }

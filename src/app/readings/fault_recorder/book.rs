@@ -1,6 +1,6 @@
 //! Start and end of fault recordings, the events noted in them, and how many are retained.
 
-use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind, PersonAct};
+use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind, UserAct};
 use crate::app::readings::fault_recorder::recording::{
     DriveState, FaultAt, FaultRecording, FaultRecordingId,
 };
@@ -44,7 +44,7 @@ pub struct FaultRecorder {
     now: PerDof<DriveState>,
     events_lost: u64,
     running: Option<OpenRecording>,
-    kept: VecDeque<Arc<FaultRecording>>,
+    recordings: VecDeque<Arc<FaultRecording>>,
     made: u64,
 }
 
@@ -73,14 +73,14 @@ impl FaultRecorder {
     }
 
     /// Notes a user action.
-    pub(crate) fn person(&mut self, act: PersonAct, now: Moment) {
+    pub(crate) fn record_user_act(&mut self, act: UserAct, now: Moment) {
         let known = self.events.iter_mut().rev().take(8).find(|event| {
             let quick = now.since(event.at) < KNOB;
-            quick && matches!(&event.what, FaultEventKind::PersonAct(old) if old.is_same_knob(&act))
+            quick && matches!(&event.what, FaultEventKind::UserAct(old) if old.is_same_knob(&act))
         });
         match known {
-            Some(event) => event.what = FaultEventKind::PersonAct(act),
-            None => self.note(now, FaultEventKind::PersonAct(act)),
+            Some(event) => event.what = FaultEventKind::UserAct(act),
+            None => self.note(now, FaultEventKind::UserAct(act)),
         }
     }
 
@@ -97,7 +97,7 @@ impl FaultRecorder {
         match self.events.pop_front().map(|event| event.what) {
             Some(FaultEventKind::Status(dof, status)) => self.before[dof].status = Some(status),
             Some(FaultEventKind::Faults(dof, faults)) => self.before[dof].faults = Some(faults),
-            Some(FaultEventKind::PersonAct(_)) | None => {}
+            Some(FaultEventKind::UserAct(_)) | None => {}
         }
     }
 
@@ -160,20 +160,20 @@ impl FaultRecorder {
             events_lost: std::mem::take(&mut self.events_lost),
         };
         self.made += 1;
-        if self.kept.len() >= RECORDINGS_MAX {
-            self.kept.pop_front();
+        if self.recordings.len() >= RECORDINGS_MAX {
+            self.recordings.pop_front();
         }
-        self.kept.push_back(Arc::new(recording));
+        self.recordings.push_back(Arc::new(recording));
     }
 
     /// All retained recordings, newest first.
     pub fn iter(&self) -> impl Iterator<Item = &Arc<FaultRecording>> {
-        self.kept.iter().rev()
+        self.recordings.iter().rev()
     }
 
     /// Recording with this ID; `None` if it was dropped.
     pub fn get(&self, id: FaultRecordingId) -> Option<&Arc<FaultRecording>> {
-        self.kept.iter().find(|recording| recording.id == id)
+        self.recordings.iter().find(|recording| recording.id == id)
     }
 
     /// Newest recording of this fault that started at this moment.
@@ -189,8 +189,8 @@ impl FaultRecorder {
 
     /// Number of recordings dropped for lack of space.
     pub fn lost(&self) -> u64 {
-        let kept = u64::try_from(self.kept.len()).unwrap_or(u64::MAX);
-        self.made.saturating_sub(kept)
+        let count = u64::try_from(self.recordings.len()).unwrap_or(u64::MAX);
+        self.made.saturating_sub(count)
     }
 }
 
@@ -267,7 +267,9 @@ mod tests {
         bench.run(100, Status::PositionReached);
         bench.fault(Dof::Index);
         bench.run(2, Status::Stalled);
-        bench.recorder.person(PersonAct::ClearErrors, bench.now());
+        bench
+            .recorder
+            .record_user_act(UserAct::ClearErrors, bench.now());
         bench.run(12, Status::PositionReached);
         assert_eq!(bench.recorder.iter().count(), 0, "it still runs");
         assert!(bench.recorder.runs_until().is_some());
@@ -370,8 +372,8 @@ mod tests {
         let mut bench = Bench::new();
         for step in 0..200_i16 {
             bench.tick += 1;
-            let act = PersonAct::Target(Dof::Index, Angle::nearest(step));
-            bench.recorder.person(act, bench.now());
+            let act = UserAct::Target(Dof::Index, Angle::nearest(step));
+            bench.recorder.record_user_act(act, bench.now());
         }
         assert_eq!(bench.recorder.events.len(), 8, "two seconds");
         for flip in 0..10_000_u64 {

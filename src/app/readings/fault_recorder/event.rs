@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 /// A user action that sends something to the hand, or ends the sending.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum PersonAct {
+pub enum UserAct {
     /// The hand was disarmed.
     Disarm,
     /// A target angle was set for a joint.
@@ -28,7 +28,7 @@ pub enum PersonAct {
     ClearErrors,
 }
 
-impl PersonAct {
+impl UserAct {
     /// True if both change the same control, so that the later one of a rapid series replaces the earlier.
     pub(crate) fn is_same_knob(&self, other: &Self) -> bool {
         match (self, other) {
@@ -66,7 +66,7 @@ impl PersonAct {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum FaultEventKind {
     /// A user action.
-    PersonAct(PersonAct),
+    UserAct(UserAct),
     /// The status of a drive changed.
     Status(Dof, Status),
     /// The fault bits of a drive changed.

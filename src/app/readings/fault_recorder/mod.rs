@@ -7,7 +7,7 @@ pub(crate) mod recording;
 pub use crate::app::readings::fault_recorder::book::{
     AFTER, AFTER_MAX, BEFORE, EVENTS_MAX, FaultRecorder, RECORDINGS_MAX,
 };
-pub use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind, PersonAct};
+pub use crate::app::readings::fault_recorder::event::{FaultEvent, FaultEventKind, UserAct};
 pub use crate::app::readings::fault_recorder::recording::{
     DriveState, FaultAt, FaultRecording, FaultRecordingId,
 };

@@ -72,7 +72,7 @@ impl FaultRecording {
             .history
             .table(&series, self.from.secs(), self.to.secs());
         let acts = self.events.iter().filter_map(|event| match &event.what {
-            FaultEventKind::PersonAct(act) => Some((event.at.secs(), act.words())),
+            FaultEventKind::UserAct(act) => Some((event.at.secs(), act.words())),
             FaultEventKind::Status(..) | FaultEventKind::Faults(..) => None,
         });
         table.with(self.drives(), acts.collect())
@@ -86,7 +86,7 @@ impl FaultRecording {
             match event.what {
                 FaultEventKind::Status(dof, status) => now[dof].status = Some(status),
                 FaultEventKind::Faults(dof, faults) => now[dof].faults = Some(faults),
-                FaultEventKind::PersonAct(_) => continue,
+                FaultEventKind::UserAct(_) => continue,
             }
             rows.push((event.at, now));
         }
