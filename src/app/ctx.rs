@@ -13,7 +13,7 @@ pub(crate) struct Ctx<'a> {
 
 impl Ctx<'_> {
     /// Publishes a notice about this hand.
-    pub(crate) fn tell(&mut self, what: NoticeKind) {
+    pub(crate) fn notify(&mut self, what: NoticeKind) {
         self.notices.push(self.now, what);
     }
 }

@@ -54,7 +54,7 @@ impl HandFreeForce {
             Some(Err(error)) => {
                 self.known.get_or_insert_default();
                 let file = self.file(ctx).unwrap_or_default();
-                ctx.tell(NoticeKind::not_saved(file, &error));
+                ctx.notify(NoticeKind::not_saved(file, &error));
             }
         }
         let Some(known) = self.known.filter(|_| self.under_way.is_none()) else {

@@ -319,7 +319,7 @@ impl Hand {
             return;
         }
         match self.arm_refusal(ctx.now) {
-            Some(reason) => ctx.tell(NoticeKind::ArmRefused(reason)),
+            Some(reason) => ctx.notify(NoticeKind::ArmRefused(reason)),
             None => {
                 let request = self.controls.arm_request(&self.readings.sample);
                 self.connection.arm(request);
@@ -347,7 +347,7 @@ impl Hand {
     /// nothing could be sent.
     pub(crate) fn stop(&mut self, ctx: &mut Ctx<'_>) {
         if !self.connection.stop(ctx.now) {
-            ctx.tell(NoticeKind::StopNotSent);
+            ctx.notify(NoticeKind::StopNotSent);
             self.measured.history.mark(ctx.now, MarkKind::StopNotSent);
         }
         self.running.end_series();
@@ -507,9 +507,9 @@ impl Hand {
             let taken = owner.map(|owner| LeaseRefusal::Taken(owner).into());
             self.failed(what, taken.unwrap_or(RequestError::NotArmed), ctx);
         } else if route == GestureRoute::Off {
-            ctx.tell(NoticeKind::GesturesOff);
+            ctx.notify(NoticeKind::GesturesOff);
         } else if let Some((dof, _)) = self.controls.joints.iter().find(|(_, own)| own.locked) {
-            ctx.tell(NoticeKind::GestureWouldMoveLocked { dof });
+            ctx.notify(NoticeKind::GestureWouldMoveLocked { dof });
         } else {
             self.take_over();
             self.restore_limits(|_| true);
@@ -538,7 +538,7 @@ impl Hand {
     pub(crate) fn tick_requests(&mut self, ctx: &mut Ctx<'_>) {
         for (what, end) in self.connection.ended_requests() {
             match end {
-                Ok(()) => ctx.tell(NoticeKind::Acknowledged { what }),
+                Ok(()) => ctx.notify(NoticeKind::Acknowledged { what }),
                 Err(error) => self.failed(what, error, ctx),
             }
         }
@@ -548,6 +548,6 @@ impl Hand {
         if matches!(what, RequestKind::Gesture(_)) {
             self.controls.gesture = None;
         }
-        ctx.tell(NoticeKind::RequestFailed { what, error });
+        ctx.notify(NoticeKind::RequestFailed { what, error });
     }
 }

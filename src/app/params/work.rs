@@ -232,7 +232,7 @@ impl ParamsState {
             Some(Ok((path, file))) => self.show_file(&path, file),
             Some(Err(refused)) => {
                 self.file_refused = Some(refused.clone());
-                ctx.tell(refused);
+                ctx.notify(refused);
             }
         }
         self.list_files(connection.endpoint.as_ref(), ctx.env);

@@ -46,7 +46,7 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     hand.readings.grip.judge_by(thresholds.unwrap_or_default());
     let phase = hand.running.sequence().map(|run| run.view.phase);
     if let Some(PlayPhase::Ended(Ok(PlayEnd::NotHolding(grip)))) = phase.filter(|_| ran) {
-        ctx.tell(NoticeKind::NotHolding { grip });
+        ctx.notify(NoticeKind::NotHolding { grip });
     }
     if !hand.running.sequence().is_some_and(SequenceRun::is_running) {
         restore_rested(hand);
@@ -56,7 +56,7 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     hand.tick_requests(ctx);
     if shared.settings.disarm_idle && hand.connection.idle(ctx.now).is_some() {
         hand.disarm(ctx.now);
-        ctx.tell(NoticeKind::IdleDisarmed);
+        ctx.notify(NoticeKind::IdleDisarmed);
     }
     let of = ParamsHand {
         connection: &hand.connection,
@@ -171,7 +171,7 @@ fn start_asked(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
         }
     }
     if !hand.runs_series() {
-        ctx.tell(NoticeKind::SeriesNotBegun);
+        ctx.notify(NoticeKind::SeriesNotBegun);
     }
 }
 
@@ -187,7 +187,7 @@ fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
         record_event(hand, at, EventKind::Trial, words);
     }
     if let Some(told) = news.end {
-        ctx.tell(told);
+        ctx.notify(told);
         hand.running.0 = None;
         // The task disarmed the hand, or stopped it.
         if hand.connection.status.armed == Some(epoch) {
@@ -208,7 +208,7 @@ fn tick_checkup(hand: &mut Hand, ctx: &mut Ctx<'_>) {
     };
     hand.running.0 = None;
     let notices = hand.checkup.over(end).into_iter();
-    notices.for_each(|notice| ctx.tell(notice));
+    notices.for_each(|notice| ctx.notify(notice));
     hand.free_force.read_again();
     if hand.connection.status.armed == Some(epoch) {
         hand.disarm(ctx.now);

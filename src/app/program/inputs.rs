@@ -134,10 +134,10 @@ pub(super) fn tick(hand: &mut Hand, settings: &Settings, poses: &PoseState, ctx:
     if let Some(outcome) = end {
         hand.running.0 = None;
         if outcome.leader_stopped {
-            ctx.tell(NoticeKind::LeaderStopped);
+            ctx.notify(NoticeKind::LeaderStopped);
         }
         if outcome.end.is_ok() {
-            ctx.tell(NoticeKind::SourceSilent(owner));
+            ctx.notify(NoticeKind::SourceSilent(owner));
         }
         hand.follow();
     }

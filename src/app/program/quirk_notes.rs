@@ -51,11 +51,11 @@ impl QuirkNotes {
             None => {}
             Some(Err(error)) => {
                 let path = self.path.clone().unwrap_or_default();
-                ctx.tell(NoticeKind::not_saved(path, &error));
+                ctx.notify(NoticeKind::not_saved(path, &error));
             }
             Some(Ok((before, sheet))) => {
                 if let Some(differs) = self.difference(before.as_ref(), &sheet) {
-                    ctx.tell(differs);
+                    ctx.notify(differs);
                 }
             }
         }

@@ -15,7 +15,7 @@ pub(super) fn tare(hand: &mut Hand, finger: Option<Finger>, ctx: &mut Ctx<'_>) {
     fresh.retain(|each| finger.is_none_or(|finger| finger == *each));
     let readings = &mut hand.readings;
     if let Err((finger, newtons)) = readings.tare.tare(fresh, &readings.sample) {
-        ctx.tell(NoticeKind::TareUnderLoad { finger, newtons });
+        ctx.notify(NoticeKind::TareUnderLoad { finger, newtons });
     }
 }
 
@@ -25,7 +25,7 @@ pub(super) fn take_kept(hand: &mut Hand, ctx: &mut Ctx<'_>) {
     let readings = &mut hand.readings;
     let taken = readings.tare.apply_stored(fresh, &readings.sample, ctx.now);
     if let Err((finger, newtons)) = taken {
-        ctx.tell(NoticeKind::TareUnderLoad { finger, newtons });
+        ctx.notify(NoticeKind::TareUnderLoad { finger, newtons });
     }
 }
 

@@ -72,7 +72,7 @@ impl HandOvershoot {
         };
         if let Some(error) = failed {
             let file = self.file(ctx).unwrap_or_default();
-            ctx.tell(NoticeKind::not_saved(file, &error));
+            ctx.notify(NoticeKind::not_saved(file, &error));
         }
         if self.under_way.is_none() && (self.forgets || !self.waiting.is_empty()) {
             self.write(ctx);
