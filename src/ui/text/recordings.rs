@@ -73,8 +73,8 @@ texts! {
     ROOM_NOW: "Delete now", "立即删除", "Deletes the oldest recordings without star, name or notes until the rest fits.", "删除最早的没有星标、名称或备注的录制，直到不超限额。";
     ROOM_KEEP: "Keep them", "全部保留", "Gives each of them a star, so that none is deleted by itself.", "为这些录制全部加星标，使其不会被自动删除。";
 
-    RECORDING: "Recording", "录制中", "What the hand says and what it is text goes to disk as it happens. Press to record no longer.", "灵巧手的反馈与指令正在实时写入磁盘。按下停止录制。";
-    NOT_RECORDING: "Not recording", "未录制", "Press to record what the hand says and what it is text.", "按下开始录制灵巧手的反馈与指令。";
+    RECORDING: "Recording", "录制中", "What the hand says and what it is told goes to disk as it happens. Press to record no longer.", "灵巧手的反馈与指令正在实时写入磁盘。按下停止录制。";
+    NOT_RECORDING: "Not recording", "未录制", "Press to record what the hand says and what it is told.", "按下开始录制灵巧手的反馈与指令。";
     STALLED: "Recording stalled, nothing of now is on disk: {}. It is tried again.", "录制受阻，当前数据没有写入磁盘：{}。程序会重试。";
     TROUBLE: "Recording stalled", "录制受阻", "The disk does not take what is recorded. It is tried again; what finds no room in memory is counted and said in the file.", "磁盘无法写入录制数据。程序会重试；内存中放不下的数据会被计数并在文件中注明。";
     FILE: "File: {}", "文件：{}";
@@ -111,7 +111,7 @@ texts! {
     FILE_RENAMED: "{} was renamed while it is recorded. It is written on under its new name; nothing is lost.", "正在录制的文件 {} 被改名，将以新名称继续写入，没有丢失内容。";
     FILE_REMOVED: "{} was removed while it was recorded: {} entries are gone with it. The recording goes on in a new file.", "正在录制的文件 {} 被删除：其中 {} 条记录已丢失。录制将在新文件中继续。";
     CLOCK_SET: "The computer's clock was set, or it slept: the recording goes on in {}.", "计算机时钟被调整或曾休眠：录制将在 {} 中继续。";
-    SEVERAL_HANDS: "it holds recordings of several hands, whose values cannot be text apart: {}", "其中混有多只灵巧手的录制，数值无法区分：{}";
+    SEVERAL_HANDS: "it holds recordings of several hands, whose values cannot be told apart: {}", "其中混有多只灵巧手的录制，数值无法区分：{}";
     TOO_MUCH: "it unpacks to more than any recording does", "解压后的数据量超过任何录制";
     EMPTY: "nothing in it can be read", "其中没有可读取的内容";
     IS_RECORDING: "This is a recording: nothing was sent. Go back to the live hand first.", "这是录制内容：没有发送任何指令。请先返回实时灵巧手。";
