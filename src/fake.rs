@@ -7,7 +7,7 @@ use crate::hand::{
 };
 use crate::link::handle::channels;
 use crate::link::request::Request;
-use crate::link::wanted::{Ends, PendingControl};
+use crate::link::wanted::{PendingControl, SessionChannels};
 use crate::link::{ArmRequest, Clock, LinkHandle, LinkStatus, PollRates, RequestError};
 use crate::params::changes::plan_writes;
 use crate::params::rows::{ParamId, Value};
@@ -96,7 +96,7 @@ impl FakeHand {
     pub(crate) fn new() -> Self {
         let clock = Clock::start();
         let (link, ends, _) = channels(clock);
-        let Ends {
+        let SessionChannels {
             wanted,
             requests,
             records,

@@ -48,7 +48,7 @@
 //! * Only [`hand::HandCommand`], [`hand::Setting`] and [`hand::Trigger`] make register writes, and none leaves the manual's addresses and ranges.
 //! * Connecting, reconnecting, scanning, examining and looking write nothing. Setpoints pass only while the user has armed the hand;
 //!   a stop, faults, heat, link loss, old feedback, another controller and sleep disarm it.
-//! * Only what several groups of its memory show to be a hand of this series is written to ([`link::Series`]); what answers and is
+//! * Only what several groups of its memory show to be a hand of this series is written to ([`link::DeviceSeries`]); what answers and is
 //!   another is not shown. An exception of a gateway is no answer of the hand, and ends the link within a second.
 //! * A stop is the next thing on the wire, is repeated until feedback shows rest, and raises an alarm if it does not. It never
 //!   moves a joint back whose angle may be frozen, and ends for a joint in doubt once it had time to obey.

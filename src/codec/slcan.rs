@@ -215,7 +215,7 @@ fn parse_answer(line: &[u8]) -> Option<SlcanAnswer> {
     match line {
         [] => Some(SlcanAnswer::Done),
         b"z" | b"Z" => Some(SlcanAnswer::Sent),
-        [b'T', rest @ ..] => parse_frame(rest, Shape::LONG).map(SlcanAnswer::Frame),
+        [b'T', rest @ ..] => parse_frame(rest, SlcanFormat::LONG).map(SlcanAnswer::Frame),
         [
             letter @ (b't' | b'r' | b'R' | b'V' | b'v' | b'N' | b'F'),
             rest @ ..,
@@ -229,10 +229,10 @@ fn parse_command(line: &[u8]) -> Option<SlcanCommand> {
         b"O" => Some(SlcanCommand::Open),
         b"C" => Some(SlcanCommand::Close),
         [b'S', code @ b'0'..=b'8'] => Some(SlcanCommand::Bitrate(code - b'0')),
-        [b'T', rest @ ..] => parse_frame(rest, Shape::LONG).map(SlcanCommand::Send),
-        [b't', rest @ ..] => other_frame(b't', rest, Shape::SHORT),
-        [b'r', rest @ ..] => other_frame(b'r', rest, Shape::SHORT.remote()),
-        [b'R', rest @ ..] => other_frame(b'R', rest, Shape::LONG.remote()),
+        [b'T', rest @ ..] => parse_frame(rest, SlcanFormat::LONG).map(SlcanCommand::Send),
+        [b't', rest @ ..] => other_frame(b't', rest, SlcanFormat::SHORT),
+        [b'r', rest @ ..] => other_frame(b'r', rest, SlcanFormat::SHORT.remote()),
+        [b'R', rest @ ..] => other_frame(b'R', rest, SlcanFormat::LONG.remote()),
         b"L" => Some(SlcanCommand::Listen),
         [b's', digits @ ..] if digits.len() == 4 => number(digits)
             .and_then(|registers| u16::try_from(registers).ok())
@@ -248,7 +248,7 @@ fn parse_command(line: &[u8]) -> Option<SlcanCommand> {
 
 /// Format of a frame's text.
 #[derive(Debug, Clone, Copy)]
-struct Shape {
+struct SlcanFormat {
     /// Number of hex digits of the identifier.
     digits: usize,
     id_max: u32,
@@ -256,7 +256,7 @@ struct Shape {
     is_remote: bool,
 }
 
-impl Shape {
+impl SlcanFormat {
     const LONG: Self = Self {
         digits: 8,
         id_max: 0x1FFF_FFFF,
@@ -274,12 +274,12 @@ impl Shape {
     }
 }
 
-fn other_frame(letter: u8, text: &[u8], shape: Shape) -> Option<SlcanCommand> {
+fn other_frame(letter: u8, text: &[u8], shape: SlcanFormat) -> Option<SlcanCommand> {
     parse_frame(text, shape).map(|_| SlcanCommand::SendOther(letter))
 }
 
 /// Parses identifier, length, data and an optional time stamp.
-fn parse_frame(text: &[u8], shape: Shape) -> Option<CanFrame> {
+fn parse_frame(text: &[u8], shape: SlcanFormat) -> Option<CanFrame> {
     let (digits, rest) = text.split_at_checked(shape.digits)?;
     let id = number(digits)?;
     let (len, rest) = match rest.split_first()? {

@@ -13,7 +13,7 @@ use crate::link::stats::LinkStats;
 use crate::link::status::{ArmRequest, LinkStatus};
 use crate::link::stop::{Stop, until_rest};
 use crate::link::tap::WireTap;
-use crate::link::wanted::{AskedArm, Ends, PendingControl};
+use crate::link::wanted::{ArmCommand, PendingControl, SessionChannels};
 use crate::record::{ArmRefusal, Calibrated, Disarmed, Hold, Record, Reset, Saved, Written};
 use futures::FutureExt as _;
 use futures::future::BoxFuture;
@@ -84,7 +84,7 @@ pub fn open(config: LinkConfig, runtime: &tokio::runtime::Handle) -> (LinkHandle
 }
 
 /// Returns a handle, the session's ends of its channels, and its records from the start.
-pub(crate) fn channels(clock: Clock) -> (LinkHandle, Ends, Records) {
+pub(crate) fn channels(clock: Clock) -> (LinkHandle, SessionChannels, Records) {
     let wanted = Arc::new(watch::Sender::new(PendingControl::default()));
     let (requests_in, requests) = mpsc::channel(REQUESTS_MAX);
     let (records_in, records) = broadcast::channel(RECORDS_MAX);
@@ -105,7 +105,7 @@ pub(crate) fn channels(clock: Clock) -> (LinkHandle, Ends, Records) {
         clock,
         tap: tap.clone(),
     };
-    let ends = Ends {
+    let ends = SessionChannels {
         wanted,
         requests,
         records: records_in,
@@ -195,7 +195,7 @@ impl LinkHandle {
     /// Nothing is requested under an invalid lease.
     pub fn arm(&self, lease: Lease, request: ArmRequest) -> Result<Arming, LeaseRefusal> {
         let (answer, answered) = oneshot::channel();
-        let asked = AskedArm {
+        let asked = ArmCommand {
             lease,
             request,
             answer,

@@ -21,7 +21,7 @@ const BLOCKS: usize = ReadPart::ALL.len() + GAPS.len();
 
 /// Result of looking up a range of memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Seen {
+pub(crate) enum ImageLookup {
     /// The bytes.
     Bytes(Vec<u8>),
     /// A part of it is due soon: look it up again when the image changes, or at this time.
@@ -38,13 +38,13 @@ pub(crate) enum Seen {
 #[derive(Debug, Default)]
 pub(crate) struct RegisterImage {
     is_live: bool,
-    blocks: ArrayVec<Block, BLOCKS>,
+    blocks: ArrayVec<PolledRange, BLOCKS>,
     areas: ArrayVec<Area, AREAS_MAX>,
 }
 
 /// A range that the session polls, always as a whole.
 #[derive(Debug)]
-struct Block {
+struct PolledRange {
     span: Span,
     /// Configured poll period.
     period: Duration,
@@ -73,7 +73,7 @@ impl RegisterImage {
         let parts = periods.map(|(part, period)| (part.span(), period));
         // Gaps are read along with their neighbours if the hand allows it.
         let all = parts.chain(GAPS.map(|gap| (gap, AREA_FRESH)));
-        let block = |(span, period)| Block {
+        let block = |(span, period)| PolledRange {
             span,
             period,
             came: None,
@@ -153,9 +153,9 @@ impl RegisterImage {
     }
 
     /// Looks up a range at `now`, for a client that has waited since `since`.
-    pub(crate) fn look(&self, span: Span, since: Moment, now: Moment) -> Seen {
+    pub(crate) fn look(&self, span: Span, since: Moment, now: Moment) -> ImageLookup {
         if !self.is_live {
-            return Seen::Offline;
+            return ImageLookup::Offline;
         }
         let mut bytes = Vec::with_capacity(usize::from(span.len));
         let mut soon = None;
@@ -163,15 +163,15 @@ impl RegisterImage {
         while at < span.end() {
             let run = self.run(at, span.end());
             match self.look_at(run, since, now) {
-                Seen::Bytes(more) => bytes.extend(more),
-                Seen::Soon(until) => {
+                ImageLookup::Bytes(more) => bytes.extend(more),
+                ImageLookup::Soon(until) => {
                     soon = Some(soon.map_or(until, |soon: Moment| soon.min(until)))
                 }
                 other => return other,
             }
             at = run.end();
         }
-        soon.map_or(Seen::Bytes(bytes), Seen::Soon)
+        soon.map_or(ImageLookup::Bytes(bytes), ImageLookup::Soon)
     }
 
     /// The range from `at` that lies in one block, or in none.
@@ -186,10 +186,10 @@ impl RegisterImage {
         Span::new(part(at), part(until - at))
     }
 
-    fn look_at(&self, run: Span, since: Moment, now: Moment) -> Seen {
+    fn look_at(&self, run: Span, since: Moment, now: Moment) -> ImageLookup {
         let block = self.blocks.iter().find(|block| block.span.covers(run));
         if let Some(bytes) = block.and_then(|block| block.fresh(run, now)) {
-            return Seen::Bytes(bytes);
+            return ImageLookup::Bytes(bytes);
         }
         let mut areas = self.areas.iter().rev();
         // A reply requested during the wait is fresh for that client, however long all parts of its range take.
@@ -201,23 +201,23 @@ impl RegisterImage {
             return match &area.read {
                 Ok(bytes) => {
                     let bytes = area.span.slice(bytes, run).unwrap_or_default();
-                    Seen::Bytes(bytes.to_vec())
+                    ImageLookup::Bytes(bytes.to_vec())
                 }
-                Err(error) => Seen::Failed(error.clone()),
+                Err(error) => ImageLookup::Failed(error.clone()),
             };
         }
         match block {
             // Requested as a whole, so that it serves all clients of any part.
             Some(block) => match block.comes_by(since) {
-                Some(until) if until > now => Seen::Soon(until),
-                _ => Seen::Missing(block.span),
+                Some(until) if until > now => ImageLookup::Soon(until),
+                _ => ImageLookup::Missing(block.span),
             },
-            None => Seen::Missing(run),
+            None => ImageLookup::Missing(run),
         }
     }
 }
 
-impl Block {
+impl PolledRange {
     /// The bytes of a range inside, unless they are older than the block's poll period.
     fn fresh(&self, run: Span, now: Moment) -> Option<Vec<u8>> {
         let came = self.came.as_ref()?;
@@ -273,26 +273,26 @@ mod tests {
         });
     }
 
-    fn seen(image: &RegisterImage, span: Span, ms: u64) -> Seen {
+    fn seen(image: &RegisterImage, span: Span, ms: u64) -> ImageLookup {
         image.look(span, at(ms), at(ms))
     }
 
     #[test]
     fn bytes_are_given_for_one_period_and_then_the_next_read_is_waited_for() {
         let mut image = image();
-        assert_eq!(seen(&image, ANGLES, 5), Seen::Soon(at(255)));
+        assert_eq!(seen(&image, ANGLES, 5), ImageLookup::Soon(at(255)));
         take(&mut image, Span::new(1546, 24), 10, 7);
-        assert_eq!(seen(&image, ANGLES, 20), Seen::Bytes(vec![7; 12]));
+        assert_eq!(seen(&image, ANGLES, 20), ImageLookup::Bytes(vec![7; 12]));
         assert_eq!(
             seen(&image, Span::new(1549, 3), 20),
-            Seen::Bytes(vec![7; 3])
+            ImageLookup::Bytes(vec![7; 3])
         );
-        assert_eq!(seen(&image, ANGLES, 21), Seen::Soon(at(270)));
+        assert_eq!(seen(&image, ANGLES, 21), ImageLookup::Soon(at(270)));
         // A session that polls as fast as it can, every 30 ms, serves each reply for that long.
         take(&mut image, ANGLES, 40, 8);
-        assert_eq!(seen(&image, ANGLES, 70), Seen::Bytes(vec![8; 12]));
-        assert_eq!(seen(&image, ANGLES, 71), Seen::Soon(at(320)));
-        assert_eq!(seen(&image, ANGLES, 320), Seen::Missing(ANGLES));
+        assert_eq!(seen(&image, ANGLES, 70), ImageLookup::Bytes(vec![8; 12]));
+        assert_eq!(seen(&image, ANGLES, 71), ImageLookup::Soon(at(320)));
+        assert_eq!(seen(&image, ANGLES, 320), ImageLookup::Missing(ANGLES));
     }
 
     #[test]
@@ -300,24 +300,24 @@ mod tests {
         let mut image = image();
         take(&mut image, ANGLES, 10, 7);
         take(&mut image, Span::new(1550, 8), 12, 8);
-        assert_eq!(seen(&image, ANGLES, 13), Seen::Bytes(vec![7; 12]));
+        assert_eq!(seen(&image, ANGLES, 13), ImageLookup::Bytes(vec![7; 12]));
     }
 
     #[test]
     fn what_is_not_read_by_itself_is_asked_for_once_and_then_shared() {
         let (mut image, id) = (image(), Span::new(1000, 2));
-        assert_eq!(seen(&image, id, 10), Seen::Missing(id));
+        assert_eq!(seen(&image, id, 10), ImageLookup::Missing(id));
         image.take_area(id, at(10), Ok(vec![1, 0]));
-        assert_eq!(seen(&image, id, 510), Seen::Bytes(vec![1, 0]));
-        assert_eq!(seen(&image, id, 511), Seen::Missing(id));
+        assert_eq!(seen(&image, id, 510), ImageLookup::Bytes(vec![1, 0]));
+        assert_eq!(seen(&image, id, 511), ImageLookup::Missing(id));
         let lost = RequestError::LinkLost;
         image.take_area(id, at(600), Err(lost.clone()));
-        assert_eq!(seen(&image, id, 601), Seen::Failed(lost));
+        assert_eq!(seen(&image, id, 601), ImageLookup::Failed(lost));
         // Bytes of two reads are not combined.
         image.take_area(Span::new(1002, 2), at(602), Ok(vec![3, 0]));
         assert_eq!(
             seen(&image, Span::new(1001, 2), 603),
-            Seen::Missing(Span::new(1001, 2))
+            ImageLookup::Missing(Span::new(1001, 2))
         );
     }
 
@@ -328,31 +328,31 @@ mod tests {
         take(&mut image, all, 10, 7);
         assert_eq!(
             seen(&image, all, 11),
-            Seen::Bytes(vec![7; 48]),
+            ImageLookup::Bytes(vec![7; 48]),
             "the gap came along"
         );
         image.forget(Span::new(1582, 2));
-        assert_eq!(seen(&image, all, 11), Seen::Soon(at(261)));
+        assert_eq!(seen(&image, all, 11), ImageLookup::Soon(at(261)));
     }
 
     #[test]
     fn what_was_written_is_asked_for_again() {
         let mut image = image();
         take(&mut image, Span::new(1486, 48), 10, 7);
-        assert_eq!(seen(&image, SET, 100), Seen::Bytes(vec![7; 12]));
+        assert_eq!(seen(&image, SET, 100), ImageLookup::Bytes(vec![7; 12]));
         image.forget(Span::new(1488, 2));
         let block = Span::new(1486, 24);
-        assert_eq!(seen(&image, SET, 100), Seen::Missing(block));
+        assert_eq!(seen(&image, SET, 100), ImageLookup::Missing(block));
         image.take_area(block, at(100), Ok(vec![9; 24]));
-        assert_eq!(seen(&image, SET, 101), Seen::Bytes(vec![9; 12]));
+        assert_eq!(seen(&image, SET, 101), ImageLookup::Bytes(vec![9; 12]));
         image.forget(Span::new(1488, 2));
-        assert_eq!(seen(&image, SET, 101), Seen::Missing(block));
+        assert_eq!(seen(&image, SET, 101), ImageLookup::Missing(block));
     }
 
     #[test]
     fn without_a_live_hand_nothing_is_known() {
         let image = RegisterImage::default();
-        assert_eq!(seen(&image, ANGLES, 1), Seen::Offline);
+        assert_eq!(seen(&image, ANGLES, 1), ImageLookup::Offline);
     }
 
     #[test]
@@ -364,11 +364,11 @@ mod tests {
         assert_eq!(image.areas.len(), AREAS_MAX);
         assert_eq!(
             seen(&image, Span::new(2000, 2), 2),
-            Seen::Missing(Span::new(2000, 2))
+            ImageLookup::Missing(Span::new(2000, 2))
         );
         assert!(matches!(
             seen(&image, Span::new(2038, 2), 2),
-            Seen::Bytes(_)
+            ImageLookup::Bytes(_)
         ));
     }
 }

@@ -43,7 +43,7 @@ pub use quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
 pub use recent::RecentReads;
 pub use records::{LinkObserver, Records};
 pub use request::RequestError;
-pub use series::Series;
+pub use series::DeviceSeries;
 pub use stats::{GroupUse, LineUse, LinkStats};
 pub use status::{ArmRequest, Dialling, LinkStatus, LinkTrouble, Stall};
 pub use stop::{STOP_PENDING, Stop};

@@ -4,7 +4,7 @@
 use crate::hand::Span;
 use crate::link::clock::Clock;
 use crate::link::handle::LinkHandle;
-use crate::link::image::{RegisterImage, Seen};
+use crate::link::image::{ImageLookup, RegisterImage};
 use crate::link::poll::window::ReadPart;
 use crate::link::request::RequestError;
 use std::sync::Arc;
@@ -32,11 +32,11 @@ pub struct RecentReads {
     image: watch::Receiver<RegisterImage>,
     clock: Clock,
     /// For parts that the session polls, and for other ranges.
-    turns: [Arc<Turn>; 2],
+    turns: [Arc<ReadSlot>; 2],
 }
 
 /// The turn to send an extra read, and the time of the next if all came evenly.
-type Turn = Mutex<Option<Instant>>;
+type ReadSlot = Mutex<Option<Instant>>;
 
 impl RecentReads {
     /// Recent reads of the hand at this link.
@@ -76,11 +76,11 @@ impl RecentReads {
                 .borrow_and_update()
                 .look(span, since, self.clock.now());
             match seen {
-                Seen::Bytes(bytes) => return Ok(bytes),
-                Seen::Failed(error) => return Err(error),
-                Seen::Offline => return Err(RequestError::NotConnected),
-                Seen::Missing(part) => self.ask(part).await?,
-                Seen::Soon(until) => {
+                ImageLookup::Bytes(bytes) => return Ok(bytes),
+                ImageLookup::Failed(error) => return Err(error),
+                ImageLookup::Offline => return Err(RequestError::NotConnected),
+                ImageLookup::Missing(part) => self.ask(part).await?,
+                ImageLookup::Soon(until) => {
                     let over = sleep_until(self.clock.instant(until));
                     tokio::select! {
                         biased;
@@ -109,7 +109,10 @@ impl RecentReads {
             sleep_until(due).await;
         }
         let now = self.clock.now();
-        if !matches!(self.image.borrow().look(span, since, now), Seen::Missing(_)) {
+        if !matches!(
+            self.image.borrow().look(span, since, now),
+            ImageLookup::Missing(_)
+        ) {
             return Ok(());
         }
         let asked = Instant::now();

@@ -13,7 +13,7 @@ const IP_ADDRESS: u16 = 1700;
 
 /// Kind of device at an endpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-pub enum Series {
+pub enum DeviceSeries {
     /// Not enough was read.
     #[default]
     Unknown,
@@ -23,7 +23,7 @@ pub enum Series {
     Other,
 }
 
-/// A permitted write; created by [`Series::permit`] alone, and buses send no other.
+/// A permitted write; created by [`DeviceSeries::permit`] alone, and buses send no other.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PermittedWrite<'a>(&'a RegisterWrite);
 
@@ -35,7 +35,7 @@ impl std::ops::Deref for PermittedWrite<'_> {
     }
 }
 
-impl Series {
+impl DeviceSeries {
     /// Permits a write to this device. While the series is unknown only a stop passes.
     pub(crate) fn permit(
         self,
@@ -154,7 +154,7 @@ impl SeriesEvidence {
     /// True if the verdict still needs a reply for this group.
     pub(crate) fn needs(&self, question: SeriesQuestion) -> bool {
         let is_open = self.unanswered().any(|open| open == question);
-        is_open && self.verdict() == Series::Unknown
+        is_open && self.verdict() == DeviceSeries::Unknown
     }
 
     /// The next group of this round without a reply; `None` once, at the end of each round.
@@ -186,7 +186,7 @@ impl SeriesEvidence {
 
     /// Computes the verdict. Two groups that match outweigh a third that does not: a cold hand has no temperature
     /// readings, and one on a serial line perhaps no address.
-    pub(crate) fn verdict(&self) -> Series {
+    pub(crate) fn verdict(&self) -> DeviceSeries {
         let count = |wanted| {
             self.signs
                 .iter()
@@ -197,11 +197,11 @@ impl SeriesEvidence {
         let bad = count(Sign::Against);
         let all_read = self.unanswered().next().is_none();
         if bad >= 2 + good {
-            Series::Other
+            DeviceSeries::Other
         } else if good >= 2 || all_read && good >= 1 && bad <= 1 {
-            Series::Ours
+            DeviceSeries::Ours
         } else {
-            Series::Unknown
+            DeviceSeries::Unknown
         }
     }
 }
@@ -303,7 +303,7 @@ mod tests {
     use crate::hand::HandCommand;
 
     /// The verdict on a device that holds these bytes, after as many reads as needed.
-    fn verdict(byte: impl Fn(u16) -> Option<u8>) -> Series {
+    fn verdict(byte: impl Fn(u16) -> Option<u8>) -> DeviceSeries {
         let mut evidence = SeriesEvidence::default();
         for question in SeriesQuestion::ALL {
             if !evidence.needs(question) {
@@ -354,9 +354,9 @@ mod tests {
                 let series = verdict(hand(degrees, ip));
                 let is_odd = degrees < 5 && matches!(ip, [0 | 255, ..]);
                 let wanted = if is_odd {
-                    Series::Unknown
+                    DeviceSeries::Unknown
                 } else {
-                    Series::Ours
+                    DeviceSeries::Ours
                 };
                 assert_eq!(series, wanted, "{degrees} {ip:?}");
             }
@@ -373,7 +373,7 @@ mod tests {
             let bytes = (span.address..).take(span.len.into()).filter_map(&hand);
             evidence.read(question, span, &bytes.collect::<Vec<_>>());
         }
-        assert_eq!(evidence.verdict(), Series::Ours);
+        assert_eq!(evidence.verdict(), DeviceSeries::Ours);
     }
 
     #[test]
@@ -390,21 +390,21 @@ mod tests {
             };
             Some(words.to_le_bytes()[0])
         };
-        assert_eq!(verdict(f1), Series::Other);
+        assert_eq!(verdict(f1), DeviceSeries::Other);
         // The same, but undefined registers are refused.
         let shy = |at| f1(at).filter(|_| !(1140..3000).contains(&at));
-        assert_eq!(verdict(shy), Series::Other);
+        assert_eq!(verdict(shy), DeviceSeries::Other);
     }
 
     #[test]
     fn devices_whose_registers_are_all_alike_do_not_pass() {
         for value in [0u16, 1, 30, 100, 500, 667, 0x1E1E, 0x2828, 0xFFFF] {
             let all_alike = |at: u16| Some(value.to_le_bytes()[usize::from(at % 2)]);
-            assert_eq!(verdict(all_alike), Series::Other, "{value}");
+            assert_eq!(verdict(all_alike), DeviceSeries::Other, "{value}");
         }
         // An energy meter: small numbers that differ by address.
         let meter = |at: u16| Some((230 + at % 7).to_le_bytes()[usize::from(at % 2)]);
-        assert_eq!(verdict(meter), Series::Other);
+        assert_eq!(verdict(meter), DeviceSeries::Other);
     }
 
     #[test]
@@ -412,9 +412,12 @@ mod tests {
         let write = &HandCommand::ClearErrors.writes()[0];
         for cause in WriteCause::ALL {
             let is_hold = cause == WriteCause::Hold;
-            assert!(Series::Ours.permit(write, cause).is_some());
-            assert_eq!(Series::Unknown.permit(write, cause).is_some(), is_hold);
-            assert!(Series::Other.permit(write, cause).is_none());
+            assert!(DeviceSeries::Ours.permit(write, cause).is_some());
+            assert_eq!(
+                DeviceSeries::Unknown.permit(write, cause).is_some(),
+                is_hold
+            );
+            assert!(DeviceSeries::Other.permit(write, cause).is_none());
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::hand::{ArmEpoch, DriveHeat, Force, ModbusException, Moment, PerDof, Setpoints, Speed};
 use crate::link::lease::LeaseHolder;
 use crate::link::quirks::Quirks;
-use crate::link::series::Series;
+use crate::link::series::DeviceSeries;
 use crate::record::{Disarmed, Hold, LinkState, Rest, SetpointConflict};
 use crate::transport::TransportError;
 use std::time::Duration;
@@ -32,7 +32,7 @@ pub struct LinkStatus {
     /// Quirks of the hand, detected when the wire was opened.
     pub quirks: Quirks,
     /// Detected series; only a hand of this series is written to.
-    pub series: Series,
+    pub series: DeviceSeries,
     /// True if the adapter echoes what is sent.
     pub echoes: bool,
     /// Another controller was detected in the last seconds.

@@ -15,7 +15,7 @@ pub(crate) struct GripFollower {
 
 /// Relevant part of a link status.
 #[derive(Deserialize)]
-struct Doubt {
+struct FeedbackDoubt {
     #[serde(default)]
     feedback_in_doubt: bool,
 }
@@ -49,7 +49,7 @@ impl GripFollower {
 
     /// Applies a status report; an unchanged status is empty and has no effect.
     fn report(&mut self, report: &LinkReport) {
-        if let Ok(status) = serde_json::from_str::<Doubt>(&report.status) {
+        if let Ok(status) = serde_json::from_str::<FeedbackDoubt>(&report.status) {
             let is_new = self.doubted.is_none();
             self.doubted = match status.feedback_in_doubt {
                 true if is_new => Some(report.at),

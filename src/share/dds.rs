@@ -10,7 +10,7 @@ use crate::record::file::format::cdr;
 use crate::record::file::format::encode::EntryEncoder;
 use crate::record::file::format::topic::Topic;
 use crate::record::{Entry, Record};
-use crate::share::fleet::{FleetCard, FleetTeller};
+use crate::share::fleet::{FleetAnnouncer, FleetCard};
 use crate::share::motors::{self, MotorPair};
 use crate::transport::dds::{DdsMessage, DdsNode, DdsTopic, DdsWriter};
 use serde::Serialize;
@@ -98,7 +98,7 @@ impl InspireState {
 
 /// Counts of published messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct DdsTold {
+pub struct DdsCounts {
     pub states: u64,
     /// States that were not published because a part was never read or is too old.
     pub incomplete: u64,
@@ -109,22 +109,22 @@ pub struct DdsTold {
 /// Publishes everything about one hand until dropped.
 #[derive(Debug)]
 pub struct DdsPublisher {
-    told: watch::Receiver<DdsTold>,
+    told: watch::Receiver<DdsCounts>,
     _task: AbortOnDropHandle<()>,
 }
 
 impl DdsPublisher {
     /// Publishes while the link is open; does not keep it open. Must be called within a tokio runtime.
     pub fn open(node: &DdsNode, link: &LinkHandle, side: Side) -> Self {
-        let writers = Writers::open(node, side);
+        let writers = HandWriters::open(node, side);
         let others = OtherHands {
             told: node.reader(&motors::topic(), MOTORS_KEPT),
             node: node.clone(),
         };
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
         let now = (link.clock().now(), since_1970.unwrap_or_default());
-        let (told, view) = watch::channel(DdsTold::default());
-        let telling = Publishing {
+        let (told, view) = watch::channel(DdsCounts::default());
+        let telling = HandPublisher {
             writers,
             motors: MotorPair::new(side),
             encoder: EntryEncoder::new(&Opening::begin(String::new(), now, side)),
@@ -139,7 +139,7 @@ impl DdsPublisher {
     }
 
     /// Counts so far.
-    pub fn told(&self) -> DdsTold {
+    pub fn told(&self) -> DdsCounts {
         *self.told.borrow()
     }
 }
@@ -150,7 +150,7 @@ pub struct SharedOnDds {
     /// DDS participant, for other readers and writers.
     pub node: DdsNode,
     publisher: DdsPublisher,
-    teller: FleetTeller,
+    teller: FleetAnnouncer,
 }
 
 impl SharedOnDds {
@@ -158,13 +158,13 @@ impl SharedOnDds {
     pub fn open(node: DdsNode, link: &LinkHandle, card: FleetCard) -> Self {
         Self {
             publisher: DdsPublisher::open(&node, link, card.side),
-            teller: FleetTeller::open(&node, link, card),
+            teller: FleetAnnouncer::open(&node, link, card),
             node,
         }
     }
 
     /// Counts so far.
-    pub fn told(&self) -> DdsTold {
+    pub fn told(&self) -> DdsCounts {
         self.publisher.told()
     }
 
@@ -180,7 +180,7 @@ struct OtherHands {
     node: DdsNode,
 }
 
-struct Writers {
+struct HandWriters {
     state: DdsWriter,
     motors: DdsWriter,
     joints: DdsWriter,
@@ -190,7 +190,7 @@ struct Writers {
     _model: DdsWriter,
 }
 
-impl Writers {
+impl HandWriters {
     fn open(node: &DdsNode, side: Side) -> Self {
         let letter = match side {
             Side::Left => 'l',
@@ -227,15 +227,15 @@ fn ros_topic(topic: Topic) -> DdsTopic {
     }
 }
 
-struct Publishing {
-    writers: Writers,
+struct HandPublisher {
+    writers: HandWriters,
     motors: MotorPair,
     encoder: EntryEncoder,
     clock: Clock,
-    told: watch::Sender<DdsTold>,
+    told: watch::Sender<DdsCounts>,
 }
 
-impl Publishing {
+impl HandPublisher {
     async fn run(mut self, mut entries: LinkEntries, mut others: OtherHands) {
         loop {
             let entry = tokio::select! {

@@ -5,7 +5,7 @@ use crate::hand::{Fault, Faults, Status};
 use crate::sim::body_params::run_on::{MetThreshold, run_on_g};
 use crate::sim::body_params::{COUNTS_PER_SPEED, JointBody, LATENCY_MS, STROKE};
 use crate::sim::number;
-use crate::sim::object::Contact;
+use crate::sim::object::Obstacle;
 use arrayvec::ArrayVec;
 
 /// Length of a step, s.
@@ -88,7 +88,7 @@ pub struct Drive {
     ambient: f64,
     pushing_ms: u32,
     over_current_ms: u32,
-    contact: Option<Contact>,
+    contact: Option<Obstacle>,
     broken: bool,
     /// Highest speed since it started closing, counts/s.
     fastest: f64,
@@ -172,10 +172,10 @@ impl Drive {
     }
 
     /// The obstacle in its way, unless it is broken.
-    fn whole_contact(&self) -> Option<Contact> {
+    fn whole_contact(&self) -> Option<Obstacle> {
         let contact = self.contact.filter(|_| !self.broken)?;
         let later = self.body.contact_offset + self.body.contact_scatter * self.contact_draw;
-        Some(Contact {
+        Some(Obstacle {
             angle: contact.angle - later / 2.0,
             stiffness: contact.stiffness * self.body.stiffness_factor,
             ..contact
@@ -226,7 +226,7 @@ impl Drive {
     }
 
     /// Puts an obstacle in its way, or removes it.
-    pub const fn set_contact(&mut self, contact: Option<Contact>) {
+    pub const fn set_contact(&mut self, contact: Option<Obstacle>) {
         self.contact = contact;
         self.broken = false;
     }

@@ -15,7 +15,7 @@ use crate::sim::personality::{
     Turnaround,
 };
 use crate::sim::pull::{Pull, PullPhase};
-use crate::sim::scenario::{self, Ailment, Order, Scenario, Slip};
+use crate::sim::scenario::{self, ActionSetpoints, Ailment, Scenario, Slip};
 use crate::sim::supply::Supply;
 use crate::sim::touch::{SENSOR_MS, TouchSensors};
 use std::collections::VecDeque;
@@ -133,7 +133,7 @@ pub struct SimHand {
     /// External force on each fingertip, g.
     pressed_g: PerFinger<f64>,
     /// Last order of the hand's own script; a setpoint from outside ends it.
-    pub(crate) order: Option<Order>,
+    pub(crate) order: Option<ActionSetpoints>,
     /// The feedback is frozen; the joints continue.
     frozen: bool,
     /// ANGLE_ACT of the joints whose angle alone is frozen.
@@ -601,7 +601,7 @@ impl SimHand {
 
     /// Moves as an action stored in the hand would. The setpoint registers keep a controller's last values: a change there
     /// would look like another controller.
-    fn obey(&mut self, order: &Order) {
+    fn obey(&mut self, order: &ActionSetpoints) {
         for dof in Dof::ALL {
             self.go_to_angle(dof, order.angles[dof]);
         }

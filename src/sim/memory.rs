@@ -54,7 +54,7 @@ pub enum AccessError {
 
 /// One element that a write changed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Change {
+pub struct MemoryChange {
     /// The row.
     pub register: &'static Register,
     /// Index of the element, from 0.
@@ -182,7 +182,7 @@ impl Memory {
         address: u16,
         bytes: &[u8],
         out_of_range: OutOfRangeWrite,
-    ) -> Result<Vec<Change>, AccessError> {
+    ) -> Result<Vec<MemoryChange>, AccessError> {
         let len = u16::try_from(bytes.len()).unwrap_or(u16::MAX);
         check(Span::new(address, len), MEMORY_LEN)?;
         let elements = elements(address, bytes);
@@ -200,7 +200,7 @@ impl Memory {
         at: u16,
         value: i32,
         out_of_range: OutOfRangeWrite,
-    ) -> Option<Change> {
+    ) -> Option<MemoryChange> {
         let value = match (row.allows(value), row.range, out_of_range) {
             (true, ..) => value,
             (false, Some((min, max)), OutOfRangeWrite::Clamp) => value.clamp(min, max),
@@ -214,7 +214,7 @@ impl Memory {
             Element::Byte => self.put_byte(at, low_byte(value)),
             _ => self.put_short(row, element, i16::try_from(value).unwrap_or_default()),
         }
-        Some(Change {
+        Some(MemoryChange {
             register: row,
             element,
             value,

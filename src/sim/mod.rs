@@ -22,7 +22,7 @@ pub use body::Body;
 pub use body_params::BodyParams;
 pub use hand::{JournalEntry, ReplyTiming, SaveFrame, SimConfig, SimHand, WriteEffect};
 pub use memory::AccessError;
-pub use object::{Contact, Object};
+pub use object::{Object, Obstacle};
 pub use personality::{
     AnyId, BaudEffect, Beyond, ByteWords, Calibration, ChangeAck, ClearError, DefaultsWrite,
     Doubles, Effect, FlashWrite, ForceCompared, GapAnswer, InnerAddress, LongRead, MinusOne,

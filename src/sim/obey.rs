@@ -10,7 +10,7 @@ use crate::sim::drive::{DriveGoal, position_of};
 use crate::sim::gesture;
 use crate::sim::hand::{SaveFrame, SimHand, WriteEffect};
 use crate::sim::live::element;
-use crate::sim::memory::{AccessError, Change};
+use crate::sim::memory::{AccessError, MemoryChange};
 use crate::sim::personality::{
     BaudEffect, Calibration, ClearError, DefaultsWrite, Effect, FlashWrite, MinusOne,
     ReadOnlyWrite, SaveAnswer, SpeedZero,
@@ -57,7 +57,7 @@ impl SimHand {
     }
 
     /// Applies the effect of one changed element. `speeds` are those before the write.
-    pub(crate) fn apply(&mut self, change: &Change, speeds: &PerDof<i16>, now: Moment) {
+    pub(crate) fn apply(&mut self, change: &MemoryChange, speeds: &PerDof<i16>, now: Moment) {
         let on = change.value == 1;
         if (ANGLE_SET.address..=SPEED_SET.address).contains(&change.register.address) {
             self.order = None;
@@ -110,7 +110,7 @@ impl SimHand {
         }
     }
 
-    fn apply_no_speed(&mut self, change: &Change, speeds: &PerDof<i16>) {
+    fn apply_no_speed(&mut self, change: &MemoryChange, speeds: &PerDof<i16>) {
         let dof = Dof::ALL.get(usize::from(change.element)).copied();
         if let (Some(dof), SpeedZero::Ignored) = (dof, self.config.personality.speed_zero) {
             let former = speeds[dof];
@@ -130,7 +130,7 @@ impl SimHand {
         }
     }
 
-    fn apply_target(&mut self, change: &Change) {
+    fn apply_target(&mut self, change: &MemoryChange) {
         let Some(dof) = Dof::ALL.get(usize::from(change.element)).copied() else {
             return;
         };
@@ -141,7 +141,7 @@ impl SimHand {
                 let most = change.register.range.map_or(0, |(_, max)| max);
                 let most = i16::try_from(most).unwrap_or_default();
                 self.memory.put_short(change.register, change.element, most);
-                self.apply_target(&Change {
+                self.apply_target(&MemoryChange {
                     value: i32::from(most),
                     ..*change
                 });

@@ -6,7 +6,7 @@ use crate::sim::scenario::Scenario;
 
 /// Object in the way of one joint as it bends.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact {
+pub struct Obstacle {
     /// Angle at which the fingertip touches, 0..=1000.
     pub angle: f64,
     /// Stiffness of the object, g for each position count. A hand's body multiplies it.
@@ -19,7 +19,7 @@ pub struct Contact {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Object {
     /// Contact of each joint; `None` = the joint misses the object.
-    pub contacts: PerDof<Option<Contact>>,
+    pub contacts: PerDof<Option<Obstacle>>,
 }
 
 /// Angle at which the block and the cup are touched, units of ANGLE_ACT.
@@ -61,7 +61,7 @@ impl Object {
         ]);
         Self {
             contacts: angles.map(|angle| {
-                angle.map(|angle| Contact {
+                angle.map(|angle| Obstacle {
                     angle,
                     stiffness: 4.0,
                     breaks_at_g: None,
@@ -73,7 +73,7 @@ impl Object {
     /// A block as hard as the one used for the overshoot table, at one angle for all joints.
     pub const fn rigid(angle: f64) -> Self {
         Self {
-            contacts: PerDof::splat(Some(Contact {
+            contacts: PerDof::splat(Some(Obstacle {
                 angle,
                 stiffness: RIGID_G_PER_COUNT,
                 breaks_at_g: None,
@@ -84,7 +84,7 @@ impl Object {
     /// A thin cup at one angle for all joints; each joint breaks its own side of it beyond [`CUP_BREAKS_AT_G`].
     pub const fn cup(angle: f64) -> Self {
         Self {
-            contacts: PerDof::splat(Some(Contact {
+            contacts: PerDof::splat(Some(Obstacle {
                 angle,
                 stiffness: CUP_G_PER_COUNT,
                 breaks_at_g: Some(CUP_BREAKS_AT_G),

@@ -81,7 +81,7 @@ impl FromStr for Scenario {
 
 /// Setpoints of the hand's own action.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Order {
+pub struct ActionSetpoints {
     /// ANGLE_SET.
     pub angles: PerDof<i16>,
     /// FORCE_SET, g.
@@ -101,7 +101,7 @@ const SLIP_LASTS_S: f64 = 0.4;
 const RELEASE_AT_S: f64 = 5.0;
 
 /// Order of the grasp's action that begins in this millisecond.
-pub fn grasp_order(now_ms: u64) -> Option<Order> {
+pub fn grasp_order(now_ms: u64) -> Option<ActionSetpoints> {
     let (angles, more, speed) = match now_ms % GRASP_MS {
         // Because of the dead time, motion starts at 0.4 s.
         336 => ([120, 120, 120, 120, 200, 320], 0, 400),
@@ -110,7 +110,7 @@ pub fn grasp_order(now_ms: u64) -> Option<Order> {
         5000 => ([1000; 6], 0, 400),
         _ => return None,
     };
-    Some(Order {
+    Some(ActionSetpoints {
         angles: PerDof::new(angles),
         forces: GRASP_FORCES.map(|force| force + more),
         speeds: PerDof::splat(speed),

@@ -6,7 +6,7 @@ use crate::report::{Aim, Failure, Report};
 use handscope::app::connect::SimDial;
 use handscope::hand::kinematics::Side;
 use handscope::link::{self, Clock, LinkConfig, LinkHandle, PollRates};
-use handscope::share::fleet::{FleetCard, FleetHand, FleetList, FleetTeller};
+use handscope::share::fleet::{FleetAnnouncer, FleetCard, FleetHand, FleetList};
 use handscope::transport::Endpoint;
 use handscope::transport::dds::{DdsNode, DdsPlace};
 use std::sync::Arc;
@@ -34,7 +34,7 @@ const RATES: PollRates = PollRates {
 /// Whoever tells of some of the hands.
 struct Program {
     _node: DdsNode,
-    hands: Vec<FleetTeller>,
+    hands: Vec<FleetAnnouncer>,
 }
 
 pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
@@ -120,7 +120,7 @@ fn node() -> Result<DdsNode, Failure> {
 fn start(program: usize, link: &LinkHandle) -> Result<Program, Failure> {
     let node = node()?;
     let own = (0..HANDS).filter(|hand| hand % PROGRAMS == program);
-    let hands = own.map(|hand| FleetTeller::open(&node, link, card(&format!("hand {hand}"))));
+    let hands = own.map(|hand| FleetAnnouncer::open(&node, link, card(&format!("hand {hand}"))));
     Ok(Program {
         hands: hands.collect(),
         _node: node,

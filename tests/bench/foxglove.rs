@@ -7,7 +7,7 @@ use futures::{SinkExt as _, StreamExt as _};
 use handscope::hand::Moment;
 use handscope::hand::kinematics::Side;
 use handscope::record::file::Opening;
-use handscope::record::file::format::encode::Message;
+use handscope::record::file::format::encode::EncodedMessage;
 use handscope::record::file::format::topic::Topic;
 use handscope::share::foxglove::{FoxgloveConfig, FoxgloveServer, Outlet};
 use std::net::SocketAddr;
@@ -89,7 +89,7 @@ async fn publish(outlet: &Outlet, begun: Instant) {
         if let Some(place) = bytes.first_chunk_mut() {
             *place = nanos.to_le_bytes();
         }
-        outlet.publish(Message {
+        outlet.publish(EncodedMessage {
             topic: Topic::State,
             log_nanos: nanos,
             publish_nanos: nanos,

@@ -5,7 +5,7 @@ use handscope::hand::grip::{Grip, GripEstimator, GripState, GripThresholds};
 use handscope::hand::register::{ANGLE_SET, FORCE_SET, SPEED_SET, STATE, TOUCH};
 use handscope::hand::{Dof, Finger, Groups, HandSample, Moment, PerDof, PerFinger, Reply, Span};
 use handscope::sim::body_params::random;
-use handscope::sim::{Contact, Object, Pull, PullEnd, Scenario, SimConfig, SimHand};
+use handscope::sim::{Object, Obstacle, Pull, PullEnd, Scenario, SimConfig, SimHand};
 
 /// What happened to what was held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -206,7 +206,7 @@ impl Plan {
         let contacts = PerDof::from_fn(|dof| {
             let misses = kind == 0 || dof == Dof::ThumbRotate || chance.u8(..5) == 0;
             let own = angle + f64::from(chance.i16(-40..40));
-            (!misses).then_some(Contact {
+            (!misses).then_some(Obstacle {
                 angle: own,
                 stiffness,
                 breaks_at_g,

@@ -9,7 +9,7 @@ use handscope::app::connect::SimDial;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{HandSample, Moment, Timed};
 use handscope::link::{Clock, LinkConfig, PollRates, open};
-use handscope::record::file::reader::{RecordingFile, Stretch};
+use handscope::record::file::reader::{RecordingFile, TimeRange};
 use handscope::record::file::writer::RecordingWriter;
 use handscope::record::file::{
     FLUSH_INTERVAL, Opening, PART_LENGTH, Part, Recorder, RecordingPlan, SystemDisk,
@@ -109,7 +109,7 @@ fn source(path: &Path) -> Result<f64, Failure> {
 fn read(path: &Path) -> Result<Vec<Entry>, Failure> {
     let file = RecordingFile::open(path)?;
     let mut entries = Vec::new();
-    let all = Stretch {
+    let all = TimeRange {
         from: Moment::from_micros(1_000_000),
         to: file.last(),
         wire: true,
@@ -315,7 +315,7 @@ pub(crate) fn child(path: &Path) -> Result<(), Failure> {
         let mut figures = Vec::new();
         for _ in 0..PLACES {
             let from = file.first().plus(length.mul_f64(random.f64()));
-            let stretch = Stretch {
+            let stretch = TimeRange {
                 from,
                 to: from.plus(long),
                 wire: false,

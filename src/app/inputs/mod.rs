@@ -15,7 +15,7 @@ use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
 use crate::link::{LinkHandle, LinkStopper, Owner};
 use crate::motion::follow::{FollowEnd, FollowTerms, FollowView};
 use crate::motion::program::Ended;
-use crate::share::dds::{DdsTold, SharedOnDds};
+use crate::share::dds::{DdsCounts, SharedOnDds};
 use crate::share::fleet::{FleetCard, OtherFollowers};
 use crate::share::foxglove::FoxgloveServer;
 use crate::share::gateway::{ClientId, Gateway, GatewayClient};
@@ -132,7 +132,7 @@ pub(crate) struct JoinedDds {
 pub struct DdsState {
     /// The address of its interface.
     pub at: Ipv4Addr,
-    pub told: DdsTold,
+    pub told: DdsCounts,
     /// What came in.
     pub view: DdsView,
     /// Another hand that follows the same sender.

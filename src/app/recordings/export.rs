@@ -4,9 +4,11 @@ use crate::app::env::{Env, day_folder};
 use crate::app::notices::NoticeKind;
 use crate::hand::Moment;
 use crate::record::export::lerobot::{EpisodeStart, LeRobotPlan};
-use crate::record::export::{Destination, ExportError, Source, csv, cut, lerobot, parquet, rosbag};
+use crate::record::export::{
+    Destination, ExportError, ExportSource, csv, cut, lerobot, parquet, rosbag,
+};
 use crate::record::file::RecordingFile;
-use crate::record::file::reader::Stretch;
+use crate::record::file::reader::TimeRange;
 use crate::store::{BackgroundJob, calendar, on_thread};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -52,7 +54,7 @@ impl RecordingForm {
     }
 
     /// Writes the export and returns the number of rows, messages or frames.
-    fn write(self, source: Source<'_>, to: &Path) -> Result<u64, ExportError> {
+    fn write(self, source: ExportSource<'_>, to: &Path) -> Result<u64, ExportError> {
         let place = Destination::from(to);
         let written = match self {
             Self::Csv => csv::write(source, &place),
@@ -125,7 +127,7 @@ impl RecordingExport {
             Err(why) => return NoticeKind::RecordingRefused { path, why },
         };
         let (from, until) = self.stretch.unwrap_or((file.first(), file.last()));
-        let stretch = Stretch {
+        let stretch = TimeRange {
             from,
             to: until,
             wire: self.form == RecordingForm::Mcap,
@@ -139,9 +141,9 @@ impl RecordingExport {
             percent.store((share * 100.0) as u8, Ordering::Relaxed);
             ControlFlow::Continue(())
         };
-        let source = Source {
+        let source = ExportSource {
             watch: &watch,
-            ..Source::new(&file, stretch)
+            ..ExportSource::new(&file, stretch)
         };
         match self.form.write(source, &to) {
             Ok(rows) => NoticeKind::Saved {

@@ -13,7 +13,7 @@ use crate::app::state::State;
 use crate::hand::{Group, Moment};
 use crate::history::NOTE_MAX;
 use crate::link::tap::WireTap;
-use crate::record::file::reader::Stretch;
+use crate::record::file::reader::TimeRange;
 use crate::record::file::{OpenError, RecordingFile};
 use crate::record::{Entry, Record};
 use crate::store::{BackgroundJob, on_thread};
@@ -121,7 +121,7 @@ fn reading(
 ) -> io::Result<Option<Moment>> {
     let mut found = None;
     let wire = false;
-    file.entries(Stretch { from, to, wire }, |entry| match &entry {
+    file.entries(TimeRange { from, to, wire }, |entry| match &entry {
         Entry::Heard(Record::Reading { fresh, .. }) if fresh.contains(Group::Angle) => {
             found = Some(entry.at());
             if first {
@@ -352,7 +352,7 @@ impl RecordingPlayer {
         let from = self.ahead_until.plus(Duration::from_micros(1));
         let read = on_thread(move || {
             let mut entries = Vec::new();
-            let stretch = Stretch {
+            let stretch = TimeRange {
                 from,
                 to: read_until,
                 wire: true,

@@ -9,7 +9,7 @@ use crate::link::Traffic;
 use crate::link::tap::WireTap;
 use crate::params;
 use crate::record::file::RecordingFile;
-use crate::record::file::reader::Stretch;
+use crate::record::file::reader::TimeRange;
 use crate::record::{Entry, Event, EventKind, LinkReport};
 use crate::transport::Endpoint;
 use std::io;
@@ -58,7 +58,7 @@ impl Recorded {
         if from > file.first() {
             recorded.apply_overview(file, from);
         }
-        let stretch = Stretch {
+        let stretch = TimeRange {
             from,
             to: at,
             wire: true,

@@ -10,10 +10,10 @@ use crate::cli::recordings::recording_file::{
 use crate::record::export::lerobot::{EpisodeStart, LeRobotPlan, LeRobotSet};
 use crate::record::export::output::Folder;
 use crate::record::export::{
-    Destination, ExportError, Exported, Source, csv, cut, lerobot, parquet, rosbag,
+    Destination, ExportError, ExportSource, Exported, csv, cut, lerobot, parquet, rosbag,
 };
 use crate::record::file::RecordingFile;
-use crate::record::file::reader::Stretch;
+use crate::record::file::reader::TimeRange;
 use anyhow::{anyhow, bail};
 use serde_json::json;
 use std::io::{self, IsTerminal as _};
@@ -158,7 +158,7 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
         Err(why) if files.len() > 1 => Err(why.context(file.path().display().to_string())),
         stretch => stretch,
     };
-    let stretches: Vec<Stretch> = files.iter().map(named).collect::<anyhow::Result<_>>()?;
+    let stretches: Vec<TimeRange> = files.iter().map(named).collect::<anyhow::Result<_>>()?;
     if form == Form::Png {
         let (Some(file), Some(stretch)) = (files.first(), stretches.first()) else {
             return Ok(());
@@ -245,7 +245,7 @@ impl ExportArgs {
 /// A complete export job.
 struct ExportJob<'a> {
     files: &'a [RecordingFile],
-    stretches: &'a [Stretch],
+    stretches: &'a [TimeRange],
     form: Form,
     wished: EndFlag,
     progress: Progress,
@@ -261,7 +261,7 @@ impl ExportJob<'_> {
     fn watched<T>(
         &self,
         number: usize,
-        give: impl FnOnce(Source<'_>) -> Result<T, ExportError>,
+        give: impl FnOnce(ExportSource<'_>) -> Result<T, ExportError>,
     ) -> Option<Result<T, ExportError>> {
         let (file, stretch) = (self.files.get(number)?, self.stretches.get(number)?);
         let watch = |share: f64| {
@@ -269,7 +269,7 @@ impl ExportJob<'_> {
                 .report(share_of_all(number, share, self.files.len()));
             self.wished.flow()
         };
-        Some(give(Source {
+        Some(give(ExportSource {
             file,
             stretch: *stretch,
             watch: &watch,
@@ -279,7 +279,7 @@ impl ExportJob<'_> {
     fn one_by_one(&self, places: &[Destination]) -> Result<ExportedFiles, ExportError> {
         let mut recordings = Vec::new();
         for (number, to) in places.iter().enumerate() {
-            let export = |source: Source<'_>| match (self.form, to) {
+            let export = |source: ExportSource<'_>| match (self.form, to) {
                 (Form::Csv, _) => csv::write(source, to),
                 (Form::Parquet, _) => parquet::write(source, to),
                 (Form::Rosbag, Destination::Path(path)) => rosbag::write(source, path),
@@ -336,8 +336,8 @@ impl ExportJob<'_> {
         });
         let watches: Vec<_> = shares.collect();
         let recordings = self.files.iter().zip(self.stretches).zip(&watches);
-        let sources: Vec<Source<'_>> = recordings
-            .map(|((file, stretch), watch)| Source {
+        let sources: Vec<ExportSource<'_>> = recordings
+            .map(|((file, stretch), watch)| ExportSource {
                 file,
                 stretch: *stretch,
                 watch,
@@ -418,7 +418,7 @@ fn picture(
     out: &mut Out,
     args: &ExportArgs,
     file: &RecordingFile,
-    stretch: Stretch,
+    stretch: TimeRange,
 ) -> anyhow::Result<()> {
     let drawn = picture::draw(file, stretch, &args.out);
     drawn.map_err(|error| match error.downcast() {
@@ -445,9 +445,9 @@ pub(crate) fn recover(out: &mut Out, args: &RecoverArgs) -> anyhow::Result<()> {
         progress.report(share);
         wished.flow()
     };
-    let source = Source {
+    let source = ExportSource {
         file: &file,
-        stretch: Stretch::WHOLE,
+        stretch: TimeRange::WHOLE,
         watch: &watch,
     };
     let recovered = cut::recover(source, &Destination::Path(to.clone()));

@@ -4,7 +4,9 @@ use crate::cli::out::Out;
 use crate::cli::recordings::recording_file::{self, FileArgs, add_files, length, lost};
 use crate::hand::Moment;
 use crate::record::EventKind;
-use crate::record::file::{Contents, Damage, GOES_ON_FROM, GOES_ON_IN, Gap, RecordingFile, Remark};
+use crate::record::file::{
+    Contents, Damage, GOES_ON_FROM, GOES_ON_IN, MessageGap, RecordingFile, Remark,
+};
 use crate::store::calendar;
 use anyhow::Context as _;
 use serde_json::{Value, json};
@@ -214,7 +216,7 @@ impl RecordingSummary<'_> {
     }
 
     /// Time and length of a gap; the bracket is left open.
-    fn stretch(&self, gap: &Gap) -> String {
+    fn stretch(&self, gap: &MessageGap) -> String {
         let (from, to) = (self.seconds(gap.from), self.seconds(gap.to));
         let length = to - from;
         format!("{from:.3} s to {to:.3} s ({length:.3} s")
@@ -241,7 +243,7 @@ impl RecordingSummary<'_> {
 }
 
 /// Number of entries beyond those printed.
-fn more_than_printed(gaps: &[Gap], what: &str) -> Option<String> {
+fn more_than_printed(gaps: &[MessageGap], what: &str) -> Option<String> {
     let more = gaps.len().checked_sub(GAPS_PRINTED)?;
     (more > 0).then(|| format!("and {more} more {what}; --json lists them"))
 }

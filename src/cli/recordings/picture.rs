@@ -5,7 +5,7 @@ use crate::cli::out::ending::EndFlag;
 use crate::hand::Moment;
 use crate::record::export::ExportError;
 use crate::record::file::RecordingFile;
-use crate::record::file::reader::Stretch;
+use crate::record::file::reader::TimeRange;
 use crate::record::{Entry, Record};
 use crate::shell::headless::driver::{Driver, Scene};
 use crate::shell::headless::png;
@@ -19,7 +19,7 @@ use std::path::Path;
 const SIZE: (u32, u32) = (1440, 900);
 
 /// Draws the picture. The path must not exist.
-pub(crate) fn draw(file: &RecordingFile, stretch: Stretch, out: &Path) -> anyhow::Result<()> {
+pub(crate) fn draw(file: &RecordingFile, stretch: TimeRange, out: &Path) -> anyhow::Result<()> {
     let (first, last): (Moment, Moment) = (file.first(), file.last());
     let (from, to) = (stretch.from.max(first), stretch.to.min(last));
     if from >= to {
@@ -34,7 +34,7 @@ pub(crate) fn draw(file: &RecordingFile, stretch: Stretch, out: &Path) -> anyhow
     }
     let mut is_read = false;
     let _damage = file.entries(
-        Stretch {
+        TimeRange {
             from,
             to,
             ..stretch

@@ -4,7 +4,7 @@ use crate::cli::out::{WrongUsage, notify};
 use crate::cli::parse::{RecordingTime, recording_time};
 use crate::hand::Moment;
 use crate::record::file::RecordingFile;
-use crate::record::file::reader::{Damage, OpenError, Stretch};
+use crate::record::file::reader::{Damage, OpenError, TimeRange};
 use anyhow::{Context as _, anyhow, bail};
 use serde_json::{Value, json};
 use std::fs::File;
@@ -33,7 +33,7 @@ pub(crate) struct StretchArgs {
 
 impl StretchArgs {
     /// The time range in this file.
-    pub(crate) fn of(&self, file: &RecordingFile) -> anyhow::Result<Stretch> {
+    pub(crate) fn of(&self, file: &RecordingFile) -> anyhow::Result<TimeRange> {
         let at = |time: RecordingTime| match time {
             RecordingTime::FromStart(step) => file.first().plus(step),
             RecordingTime::BeforeEnd(step) => file.first().plus(length(file).saturating_sub(step)),
@@ -46,7 +46,7 @@ impl StretchArgs {
                 "there is nothing between --from and --to: the recording is {length_s:.1} s long, and --from must be before --to"
             );
         }
-        Ok(Stretch {
+        Ok(TimeRange {
             from,
             to,
             wire: true,

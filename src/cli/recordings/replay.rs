@@ -9,7 +9,7 @@ use crate::params::file;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::span_of;
 use crate::record::file::RecordingFile;
-use crate::record::file::reader::{Damage, Stretch};
+use crate::record::file::reader::{Damage, TimeRange};
 use crate::record::{Entry, EventKind, Record};
 use crate::shell::interrupt::Interrupt;
 use crate::sim::{SharedHand, SimConfig, SimHand, SimHands};
@@ -88,7 +88,7 @@ enum ReplayStep {
 fn hand(file: &RecordingFile, id: Option<u8>) -> anyhow::Result<SharedHand> {
     let mut first: Vec<(u16, Vec<u8>)> = Vec::new();
     let mut recorded_id = None;
-    let begin = Stretch {
+    let begin = TimeRange {
         from: Moment::ZERO,
         to: file.first().plus(KNOWN_FROM_START),
         wire: false,
@@ -139,9 +139,9 @@ fn read_ahead(
     give: mpsc::Sender<(Moment, ReplayStep)>,
 ) -> JoinHandle<std::io::Result<Damage>> {
     tokio::task::spawn_blocking(move || {
-        let no_wire = Stretch {
+        let no_wire = TimeRange {
             wire: false,
-            ..Stretch::WHOLE
+            ..TimeRange::WHOLE
         };
         file.entries(no_wire, |entry| {
             let at = entry.at();

@@ -111,7 +111,7 @@ pub(crate) fn open(args: DrawnArgs, shows: WindowShows) -> anyhow::Result<()> {
     use crate::app::files::settings_file::{Loaded, default_path, load};
     use crate::app::settings::Language;
     use crate::shell::desktop;
-    use crate::shell::desktop::{DesktopError, DesktopStart, Drawing};
+    use crate::shell::desktop::{DesktopError, DesktopStart, Renderer};
     let settings_path = default_path();
     let mut loaded = settings_path.as_deref().map_or_else(Loaded::default, load);
     if !loaded.found
@@ -121,10 +121,10 @@ pub(crate) fn open(args: DrawnArgs, shows: WindowShows) -> anyhow::Result<()> {
         loaded.settings.language = Language::of_locale(&locale);
     }
     let drawing = match args.software_because {
-        Some(reason) => Drawing::InPlaceOfOpenGl(reason),
-        None if args.software => Drawing::Software,
-        None if args.opengl || desktop::may_draw_with_a_card() => Drawing::OpenGl,
-        None => Drawing::Software,
+        Some(reason) => Renderer::InPlaceOfOpenGl(reason),
+        None if args.software => Renderer::Software,
+        None if args.opengl || desktop::may_draw_with_a_card() => Renderer::OpenGl,
+        None => Renderer::Software,
     };
     let mut again = shows.words;
     for hand in &args.hand {

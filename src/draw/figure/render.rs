@@ -16,7 +16,7 @@ const UNSEEN: u32 = u32::MAX;
 
 /// A visible triangle.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct VisibleTriangle {
     corners: [u32; 3],
     segment: Option<Segment>,
     /// Bit n: side n has no visible neighbour in the same shape.
@@ -44,7 +44,7 @@ pub struct Model<'a> {
 /// Draws parts into a mesh; reuses its buffers between frames.
 #[derive(Debug, Clone, Default)]
 pub struct Sketch {
-    seen: Vec<Seen>,
+    seen: Vec<VisibleTriangle>,
     /// Depth in the upper half, triangle number in the lower.
     order: Vec<u32>,
     /// Depth of each vertex; larger is nearer.
@@ -121,7 +121,7 @@ impl Sketch {
             let number = u32::try_from(self.seen.len()).unwrap_or(0) & 0xFFFF;
             let depth = depth / 3.0 + face.lift + near.dot(face.aside);
             self.order.push(depth_steps(depth) << 16 | number);
-            self.seen.push(Seen {
+            self.seen.push(VisibleTriangle {
                 corners,
                 segment: part.segment,
                 edges: self.edges(face),
@@ -144,7 +144,7 @@ impl Sketch {
             vertex.map_or(Pos2::ZERO, |vertex| vertex.pos)
         };
         let depth = |at: u32| self.depths.get(at as usize).copied().unwrap_or(0.0);
-        let found = |seen: &Seen| {
+        let found = |seen: &VisibleTriangle| {
             let [a, b, c] = seen.corners.map(corner);
             let side = |from: Pos2, to: Pos2| (to - from).rot90().dot(place - from);
             // Each is proportional to the weight of the opposite corner.

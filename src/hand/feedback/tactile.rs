@@ -37,7 +37,7 @@ impl TactileBlock {
     /// Decodes a block of exactly 58 bytes in memory order; `None` for any other length.
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let bytes: &[u8; BLOCK_LEN] = bytes.try_into().ok()?;
-        let mut at = Cursor(bytes.as_slice());
+        let mut at = ByteReader(bytes.as_slice());
         let mut raw = [0; 8];
         for channel in &mut raw {
             *channel = u32::from_le_bytes(at.take()?);
@@ -116,9 +116,9 @@ fn sum16(bytes: &[u8]) -> u16 {
 }
 
 /// Reads fixed-size pieces from the front of a slice.
-struct Cursor<'a>(&'a [u8]);
+struct ByteReader<'a>(&'a [u8]);
 
-impl Cursor<'_> {
+impl ByteReader<'_> {
     fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
         let (head, rest) = self.0.split_first_chunk()?;
         self.0 = rest;

@@ -4,7 +4,7 @@ use crate::hand::dof::PerFinger;
 use crate::hand::feedback::group::Groups;
 use crate::hand::feedback::sample::HandSample;
 use crate::hand::grip::evidence::{FingerEvidence, ReadingAt};
-use crate::hand::grip::finger::{FingerEstimator, Scene};
+use crate::hand::grip::finger::{FingerContext, FingerEstimator};
 use crate::hand::grip::free::FreeForce;
 use crate::hand::grip::state::{Grip, GripEstimate, GripState};
 use crate::hand::grip::thresholds::GripThresholds;
@@ -99,7 +99,7 @@ impl GripEstimator {
             let own = own.as_ref();
             own.is_some_and(|own| own.tip.is_some() && own.is_tip_free(&self.thresholds))
         };
-        let scene = Scene {
+        let scene = FingerContext {
             at,
             thresholds: &self.thresholds,
             free: &self.free,

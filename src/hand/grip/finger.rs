@@ -45,7 +45,7 @@ struct FreeWay {
 
 /// Context in which a finger is judged, besides its own evidence.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Scene<'a> {
+pub(super) struct FingerContext<'a> {
     pub(super) at: Moment,
     pub(super) thresholds: &'a GripThresholds,
     pub(super) free: &'a FreeForce,
@@ -98,7 +98,7 @@ impl FingerEstimator {
     }
 
     /// Updates the state with the evidence of one reading.
-    pub(super) fn take(&mut self, evidence: &FingerEvidence, scene: Scene<'_>) {
+    pub(super) fn take(&mut self, evidence: &FingerEvidence, scene: FingerContext<'_>) {
         for joint in &evidence.joints {
             self.motion[joint.dof].take(evidence.angle_at, joint.angle);
         }
@@ -117,7 +117,7 @@ impl FingerEstimator {
         self.estimate.become_state(state, scene.at, asked);
     }
 
-    fn look(&mut self, evidence: &FingerEvidence, scene: Scene<'_>) -> Option<FingerNow> {
+    fn look(&mut self, evidence: &FingerEvidence, scene: FingerContext<'_>) -> Option<FingerNow> {
         let bend = evidence.bend()?;
         let joints = evidence.joints.iter();
         let felt = self.felt(evidence, bend.status == Status::ForceReached, scene);
@@ -146,7 +146,7 @@ impl FingerEstimator {
         })
     }
 
-    fn felt(&self, evidence: &FingerEvidence, is_stopped: bool, scene: Scene<'_>) -> Felt {
+    fn felt(&self, evidence: &FingerEvidence, is_stopped: bool, scene: FingerContext<'_>) -> Felt {
         let over = |joint: &JointEvidence| {
             let load_g = f32::from(joint.force_g) - self.zero_g[joint.dof]?;
             let free = scene.free.at(joint.dof, joint.angle);
@@ -187,7 +187,7 @@ impl FingerEstimator {
     }
 
     /// Follows a close in which nothing is touched. Its measurement counts only once it is over: no close excuses its own force.
-    fn watch_way(&mut self, evidence: &FingerEvidence, now: &FingerNow, scene: Scene<'_>) {
+    fn watch_way(&mut self, evidence: &FingerEvidence, now: &FingerNow, scene: FingerContext<'_>) {
         let is_open = now.is_open(scene.thresholds);
         if now.is_releasing || is_open && !now.is_moving {
             let arrived = self.way.take().filter(|way| way.arrived.is_some());

@@ -18,11 +18,11 @@ const MORE_SHARE: f32 = 0.1;
 
 /// Force of free motion over each joint's own zero, g, every 50 counts from 0 to 1000.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(try_from = "Kept", into = "Kept")]
+#[serde(try_from = "StoredFreeForce", into = "StoredFreeForce")]
 pub struct FreeForce(PerDof<Knots>);
 
 /// Form in files: a list of forces for each joint with any known value.
-type Kept = BTreeMap<Dof, Vec<Option<f32>>>;
+type StoredFreeForce = BTreeMap<Dof, Vec<Option<f32>>>;
 
 type Knots = [Option<f32>; KNOTS];
 
@@ -33,7 +33,7 @@ pub struct NoFreeForce {
     dof: Dof,
 }
 
-impl From<FreeForce> for Kept {
+impl From<FreeForce> for StoredFreeForce {
     fn from(free: FreeForce) -> Self {
         let tenths = |g: f32| (g * 10.0).round() / 10.0;
         let rounded = |dof| free.0[dof].iter().map(|g| g.map(tenths)).collect();
@@ -41,10 +41,10 @@ impl From<FreeForce> for Kept {
     }
 }
 
-impl TryFrom<Kept> for FreeForce {
+impl TryFrom<StoredFreeForce> for FreeForce {
     type Error = NoFreeForce;
 
-    fn try_from(kept: Kept) -> Result<Self, NoFreeForce> {
+    fn try_from(kept: StoredFreeForce) -> Result<Self, NoFreeForce> {
         let is_possible = |g: &Option<f32>| g.is_none_or(|g| g.abs() <= FREE_MAX_G);
         let mut free = Self::default();
         for (dof, all) in kept {

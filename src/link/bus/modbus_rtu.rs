@@ -298,7 +298,7 @@ mod tests {
     use crate::hand::register::STATE;
     use crate::hand::{Angle, HandCommand, PerDof, Target};
     use crate::link::poll::cost::FIXED_GAP;
-    use crate::link::series::Series;
+    use crate::link::series::DeviceSeries;
     use crate::record::WriteCause;
     use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _, DuplexStream};
 
@@ -376,7 +376,7 @@ mod tests {
                 assert_eq!(heard(&mut far).await, checked(asked));
                 far.write_all(&checked(answered)).await.unwrap();
             };
-            let permitted = Series::Ours
+            let permitted = DeviceSeries::Ours
                 .permit(&write[0], WriteCause::Setpoint)
                 .unwrap();
             let (written, ()) = tokio::join!(bus.write(permitted, LIMIT), answer);

@@ -70,7 +70,7 @@ enum ExpectedReply {
     clippy::large_enum_variant,
     reason = "it lives on the stack, for one exchange"
 )]
-enum Fit {
+enum ReplyMatch {
     Bytes(Bytes),
     Ack,
     No,
@@ -110,7 +110,7 @@ impl Rs485 {
         frame: &Rs485Frame,
         expected: &ExpectedReply,
         limit: Duration,
-    ) -> Result<Fit, BusError> {
+    ) -> Result<ReplyMatch, BusError> {
         self.take_waiting()?;
         self.sent.clone_from(frame);
         self.echo.sent();
@@ -165,11 +165,11 @@ impl Rs485 {
     }
 
     /// The reply to the open request, if received; others are counted and dropped.
-    fn fitting(&mut self, expected: &ExpectedReply) -> Option<Fit> {
+    fn fitting(&mut self, expected: &ExpectedReply) -> Option<ReplyMatch> {
         while let Some(reply) = self.decoder.next() {
             self.sort_overheard();
             match self.fit(&reply, expected) {
-                Fit::No => self.unfit_reply(&reply, expected),
+                ReplyMatch::No => self.unfit_reply(&reply, expected),
                 fit => {
                     self.echo.answered();
                     return Some(fit);
@@ -180,14 +180,14 @@ impl Rs485 {
         None
     }
 
-    fn fit(&self, reply: &Rs485Reply, expected: &ExpectedReply) -> Fit {
+    fn fit(&self, reply: &Rs485Reply, expected: &ExpectedReply) -> ReplyMatch {
         match (reply, expected) {
             (Rs485Reply::Read { id, address, bytes }, ExpectedReply::Bytes(span))
                 if *id == self.id.get()
                     && *address == span.address
                     && bytes.len() == usize::from(span.len) =>
             {
-                Fit::Bytes(bytes.clone())
+                ReplyMatch::Bytes(bytes.clone())
             }
             (
                 Rs485Reply::WriteAck {
@@ -199,8 +199,10 @@ impl Rs485 {
                     address: wanted,
                     new_id,
                 },
-            ) if (*id == self.id.get() || Some(*id) == *new_id) && address == wanted => Fit::Ack,
-            _ => Fit::No,
+            ) if (*id == self.id.get() || Some(*id) == *new_id) && address == wanted => {
+                ReplyMatch::Ack
+            }
+            _ => ReplyMatch::No,
         }
     }
 
@@ -277,8 +279,8 @@ impl Bus for Rs485 {
             Err(_) => self.late.gave_up(span, self.clock.now()),
         }
         match result? {
-            Fit::Bytes(bytes) => Ok(bytes),
-            Fit::Ack | Fit::No => Err(BusError::WrongLength {
+            ReplyMatch::Bytes(bytes) => Ok(bytes),
+            ReplyMatch::Ack | ReplyMatch::No => Err(BusError::WrongLength {
                 got: 0,
                 want: usize::from(span.len),
             }),

@@ -93,10 +93,10 @@ impl ReadPart {
 
 /// State of the gaps on this connection.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Gaps([Gap; GAPS.len()]);
+pub(crate) struct Gaps([GapState; GAPS.len()]);
 
 #[derive(Debug, Clone, Copy, Default)]
-struct Gap {
+struct GapState {
     /// A window through it was answered.
     open: bool,
     /// Failed windows through it, while none was answered.
@@ -109,12 +109,12 @@ struct Gap {
 impl Gaps {
     /// State for a known gap between angles and forces; the other is unknown.
     pub(crate) fn known(read: GapRead) -> Self {
-        let gap = Gap {
+        let gap = GapState {
             open: read == GapRead::Through,
             refused: read == GapRead::Split,
-            ..Gap::default()
+            ..GapState::default()
         };
-        Self([Gap::default(), gap])
+        Self([GapState::default(), gap])
     }
 
     /// True if a window may cover this memory.

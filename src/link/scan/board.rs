@@ -17,7 +17,7 @@ pub struct ScanProgress {
 
 /// Remaining probes of each lane, and the results so far.
 #[derive(Debug, Default)]
-pub(crate) struct Board {
+pub(crate) struct ScanTracker {
     total: usize,
     lanes: Vec<RemainingTries>,
     pub(crate) summary: ScanSummary,
@@ -30,7 +30,7 @@ struct RemainingTries {
     cost: Duration,
 }
 
-impl Board {
+impl ScanTracker {
     pub(crate) fn new(plan: &ScanPlan) -> Self {
         let rest = |lane: &Lane| RemainingTries {
             kind: lane.kind,

@@ -3,7 +3,7 @@
 use crate::hand::HandId;
 use crate::link::clock::Clock;
 use crate::link::config::Wake;
-use crate::link::scan::board::{Board, ScanProgress};
+use crate::link::scan::board::{ScanProgress, ScanTracker};
 use crate::link::scan::event::ScanEvent;
 use crate::link::scan::hosts::Hosts;
 use crate::link::scan::look::{ScanContext, look};
@@ -58,14 +58,14 @@ pub struct ScanConfig {
 #[derive(Debug)]
 pub struct ScanHandle {
     events: mpsc::Receiver<ScanEvent>,
-    board: Arc<Mutex<Board>>,
+    board: Arc<Mutex<ScanTracker>>,
     _task: AbortOnDropHandle<()>,
 }
 
 /// Starts a scan. It reads HAND_ID and the registers that identify the series, and writes nothing.
 pub fn start(config: ScanConfig, runtime: &Handle) -> ScanHandle {
     let (tell, events) = mpsc::channel(EVENTS_MAX);
-    let board = Arc::new(Mutex::new(Board::default()));
+    let board = Arc::new(Mutex::new(ScanTracker::default()));
     let room = ScanContext {
         dial: Arc::clone(&config.dial),
         clock: config.clock,
@@ -116,7 +116,7 @@ async fn scan(config: ScanConfig, room: Arc<ScanContext>) {
         },
     };
     let plan = ScanPlan::new(&places, &config.ids, &config.held);
-    *room.board() = Board::new(&plan);
+    *room.board() = ScanTracker::new(&plan);
     room.tell(ScanEvent::Begun {
         places: plan.places(),
         tries: plan.tries(),

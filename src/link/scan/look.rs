@@ -6,11 +6,11 @@ use crate::hand::register::HAND_ID;
 use crate::link::bus::late_replies::LateReplies;
 use crate::link::bus::{self, Bus, BusError};
 use crate::link::clock::Clock;
-use crate::link::scan::board::Board;
+use crate::link::scan::board::ScanTracker;
 use crate::link::scan::event::{FoundHand, ScanEvent, ScanHint};
 use crate::link::scan::heard::LentWire;
 use crate::link::scan::plan::{Lane, LaneKind, Try, same_line};
-use crate::link::series::{Series, SeriesEvidence, SeriesQuestion};
+use crate::link::series::{DeviceSeries, SeriesEvidence, SeriesQuestion};
 use crate::transport::{Dial, Endpoint, TransportError};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -25,7 +25,7 @@ pub(crate) struct ScanContext {
     pub(crate) clock: Clock,
     pub(crate) events: mpsc::Sender<ScanEvent>,
     pub(crate) wake: Arc<dyn Fn() + Send + Sync>,
-    pub(crate) board: Arc<Mutex<Board>>,
+    pub(crate) board: Arc<Mutex<ScanTracker>>,
     /// One failure of a range was reported; the same failure of all others is not.
     pub(crate) range_told: AtomicBool,
 }
@@ -37,7 +37,7 @@ impl ScanContext {
         (self.wake)();
     }
 
-    pub(crate) fn board(&self) -> MutexGuard<'_, Board> {
+    pub(crate) fn board(&self) -> MutexGuard<'_, ScanTracker> {
         self.board.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -237,7 +237,7 @@ impl LaneScan {
             Ok(bytes) if is_expected_of(&one.endpoint, bytes) => {
                 series(bus.as_mut(), one.limit).await
             }
-            _ => Series::Unknown,
+            _ => DeviceSeries::Unknown,
         };
         let heard = wire.take_heard();
         let foreign = bus.counts().foreign_replies > 0;
@@ -249,7 +249,9 @@ impl LaneScan {
         bus.close();
         match read {
             Ok(bytes) => match bytes.first() {
-                Some(hand_id) if series == Series::Other => ProbeAnswer::OtherSeries(*hand_id),
+                Some(hand_id) if series == DeviceSeries::Other => {
+                    ProbeAnswer::OtherSeries(*hand_id)
+                }
                 Some(hand_id) if is_expected(&one.endpoint, *hand_id) => ProbeAnswer::Hand {
                     hand_id: *hand_id,
                     round_trip,
@@ -301,7 +303,7 @@ impl LaneScan {
 }
 
 /// Identifies the series, with as many reads as needed.
-async fn series(bus: &mut dyn Bus, limit: Duration) -> Series {
+async fn series(bus: &mut dyn Bus, limit: Duration) -> DeviceSeries {
     let mut evidence = SeriesEvidence::default();
     for question in SeriesQuestion::ALL {
         if !evidence.needs(question) || bus.turn().await.is_err() {

@@ -28,7 +28,7 @@ use crate::link::session::watch::other_controller::OtherController;
 use crate::link::session::watch::save::SaveWatch;
 use crate::link::status::{Dialling, LinkStatus, LinkTrouble};
 use crate::link::tap::TappedWire;
-use crate::link::wanted::{Ends, PendingControl};
+use crate::link::wanted::{PendingControl, SessionChannels};
 use crate::record::{Disarmed, Hold, LinkState, Record, Rest};
 use crate::transport::{BoxedWire, Endpoint, TransportError};
 use std::sync::Arc;
@@ -60,7 +60,7 @@ pub(crate) enum WireEnd {
 /// The session with one hand.
 pub(crate) struct Session {
     pub(crate) config: LinkConfig,
-    pub(crate) ends: Ends,
+    pub(crate) ends: SessionChannels,
     pub(crate) status: LinkStatus,
     pub(crate) counters: Counters,
     pub(crate) sample: HandSample,
@@ -106,7 +106,7 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    pub(crate) fn new(config: LinkConfig, ends: Ends) -> Self {
+    pub(crate) fn new(config: LinkConfig, ends: SessionChannels) -> Self {
         let now = config.clock.now();
         Self {
             guard: MotionGuard::enter(Arc::clone(&ends.wanted)),

@@ -8,7 +8,7 @@ use crate::link::bus::error::id_of;
 use crate::link::bus::late_replies::REPLY_LIMIT_MIN;
 use crate::link::bus::{Bus, BusError, Bytes};
 use crate::link::quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
-use crate::link::series::{Series, SeriesEvidence, SeriesQuestion};
+use crate::link::series::{DeviceSeries, SeriesEvidence, SeriesQuestion};
 use crate::link::session::conversation::{Session, WireEnd, closed, stopped, unless_lost};
 use crate::link::status::LinkTrouble;
 use std::sync::Arc;
@@ -94,8 +94,8 @@ impl Session {
         self.evidence = SeriesEvidence::default();
         // A device of another series keeps that verdict until it shows otherwise: a stop that cuts the reads short must
         // not reach it.
-        if self.status.series == Series::Ours {
-            self.status.series = Series::Unknown;
+        if self.status.series == DeviceSeries::Ours {
+            self.status.series = DeviceSeries::Unknown;
         }
         self.ask_series(bus, until).await?;
         self.status.quirks = Quirks {
@@ -139,7 +139,7 @@ impl Session {
     /// Makes one more read while the series is unclear; true if it did. A job or a poll has its turn between two.
     pub(crate) async fn identify_further(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
         let now = self.now();
-        if self.status.series != Series::Unknown || now < self.evidence_due {
+        if self.status.series != DeviceSeries::Unknown || now < self.evidence_due {
             return Ok(false);
         }
         if std::mem::take(&mut self.asked_evidence) {
@@ -161,14 +161,16 @@ impl Session {
 
     fn judge_series(&mut self) -> Result<(), WireEnd> {
         let series = match self.evidence.verdict() {
-            Series::Unknown if self.status.series == Series::Other => Series::Other,
+            DeviceSeries::Unknown if self.status.series == DeviceSeries::Other => {
+                DeviceSeries::Other
+            }
             verdict => verdict,
         };
         if self.status.series != series {
             self.status.series = series;
             self.publish();
         }
-        if series == Series::Other {
+        if series == DeviceSeries::Other {
             let place = self.dialled.place();
             return Err(WireEnd::Lost(LinkTrouble::OtherSeries { place }));
         }

@@ -5,7 +5,7 @@ use crate::hand::Setpoints;
 use crate::hand::{Dof, HandCommand, HandSample, Moment, PerDof, RegisterWrite, Target, Timed};
 use crate::link::session::hold::HoldWatch;
 use crate::link::status::ANGLE_FRESH;
-use crate::link::wanted::AskedArm;
+use crate::link::wanted::ArmCommand;
 use crate::record::{ArmRefusal, LinkState};
 use arrayvec::ArrayVec;
 use std::time::Duration;
@@ -28,7 +28,7 @@ const ROUNDS_MAX: u8 = 2;
 /// An arming that the session has accepted.
 #[derive(Debug)]
 pub(crate) struct PendingArm {
-    pub(crate) asked: AskedArm,
+    pub(crate) asked: ArmCommand,
     /// The arming is refused if required readings are still missing at this time.
     pub(crate) until: Moment,
 }

@@ -9,7 +9,7 @@ use crate::link::bus::{Bus, BusError};
 use crate::link::guard::holder::HolderState;
 use crate::link::lease::Lease;
 use crate::link::request::RequestError;
-use crate::link::series::Series;
+use crate::link::series::DeviceSeries;
 use crate::link::session::conversation::{Session, WireEnd, unless_lost};
 use crate::link::session::hold::HoldWatch;
 use crate::link::session::motion::{
@@ -17,7 +17,7 @@ use crate::link::session::motion::{
 };
 use crate::link::session::stall::watched;
 use crate::link::status::{ANGLE_FRESH, LinkTrouble};
-use crate::link::wanted::{AskedArm, PendingControl};
+use crate::link::wanted::{ArmCommand, PendingControl};
 use crate::record::{ArmRefusal, Disarmed, Hold, LinkState, Record, Rest, WriteCause, WriteFate};
 use std::sync::Arc;
 use std::time::Duration;
@@ -203,7 +203,7 @@ impl Session {
     }
 
     /// Applies the pending control requests; returns a request to arm, which takes exchanges of its own.
-    fn take_wishes(&mut self) -> Result<Option<AskedArm>, WireEnd> {
+    fn take_wishes(&mut self) -> Result<Option<ArmCommand>, WireEnd> {
         let mut wishes = PendingControl::default();
         self.ends.wanted.send_if_modified(|wanted| {
             wishes = wanted.take();
@@ -246,7 +246,7 @@ impl Session {
         let is_let_go = self.ends.wanted.borrow().is_let_go(self.now());
         let let_go = is_let_go.then_some(ArmRefusal::LetGo);
         let refusal = || arm_refusal(self.status.state, &self.sample, self.now());
-        let unknown = (self.status.series != Series::Ours).then_some(ArmRefusal::NotRead);
+        let unknown = (self.status.series != DeviceSeries::Ours).then_some(ArmRefusal::NotRead);
         busy.or(let_go).or_else(refusal).or(unknown)
     }
 
@@ -268,8 +268,8 @@ impl Session {
 
     /// Sends the limits, and enables setpoints once the hand acknowledged them. No angle is written. An armed hand
     /// stays armed as it is.
-    async fn arm(&mut self, bus: &mut dyn Bus, asked: AskedArm) -> Result<(), WireEnd> {
-        let AskedArm {
+    async fn arm(&mut self, bus: &mut dyn Bus, asked: ArmCommand) -> Result<(), WireEnd> {
+        let ArmCommand {
             lease,
             request,
             answer,

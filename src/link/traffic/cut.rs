@@ -23,7 +23,7 @@ pub enum FrameCut {
 
 /// One cut piece of the stream.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Cut {
+pub struct StreamPiece {
     /// The bytes, at least one.
     pub bytes: Vec<u8>,
     /// Fault of the bytes; `None` for a valid frame.
@@ -42,7 +42,7 @@ impl Cutter {
         &mut self,
         mut bytes: &[u8],
         look: impl Fn(&[u8]) -> FrameCut,
-        mut out: impl FnMut(Cut),
+        mut out: impl FnMut(StreamPiece),
     ) {
         while !bytes.is_empty() {
             let room = WAITING_MAX.saturating_sub(self.waiting.len()).max(1);
@@ -57,7 +57,7 @@ impl Cutter {
     }
 
     /// Called when the line is silent: cuts all incomplete bytes, as the rest will not come.
-    pub fn flush(&mut self, look: impl Fn(&[u8]) -> FrameCut, mut out: impl FnMut(Cut)) {
+    pub fn flush(&mut self, look: impl Fn(&[u8]) -> FrameCut, mut out: impl FnMut(StreamPiece)) {
         self.cut(&look, &mut out, true);
     }
 
@@ -66,7 +66,12 @@ impl Cutter {
         self.waiting.len()
     }
 
-    fn cut(&mut self, look: &impl Fn(&[u8]) -> FrameCut, out: &mut impl FnMut(Cut), silent: bool) {
+    fn cut(
+        &mut self,
+        look: &impl Fn(&[u8]) -> FrameCut,
+        out: &mut impl FnMut(StreamPiece),
+        silent: bool,
+    ) {
         let mut run = NoiseRun::default();
         let mut at = 0;
         while let Some(rest @ [_, ..]) = self.waiting.get(at..) {
@@ -87,7 +92,7 @@ impl Cutter {
             run.end(out);
             let len = len.clamp(1, rest.len());
             let bytes = rest.get(..len).unwrap_or_default().to_vec();
-            out(Cut { bytes, wrong });
+            out(StreamPiece { bytes, wrong });
             at += len;
         }
         run.end(out);
@@ -112,7 +117,7 @@ struct NoiseRun {
 }
 
 impl NoiseRun {
-    fn take(&mut self, rest: &[u8], wrong: Wrong, out: &mut impl FnMut(Cut)) {
+    fn take(&mut self, rest: &[u8], wrong: Wrong, out: &mut impl FnMut(StreamPiece)) {
         if self.bytes.len() >= RUN_MAX {
             self.end(out);
         }
@@ -120,7 +125,7 @@ impl NoiseRun {
         self.wrong.get_or_insert(wrong);
     }
 
-    fn end(&mut self, out: &mut impl FnMut(Cut)) {
+    fn end(&mut self, out: &mut impl FnMut(StreamPiece)) {
         let run = std::mem::take(self);
         if run.bytes.is_empty() {
             return;
@@ -131,7 +136,7 @@ impl NoiseRun {
             Some(Wrong::NoFrame { .. }) | None => Wrong::NoFrame { len },
             Some(wrong) => wrong,
         };
-        out(Cut {
+        out(StreamPiece {
             bytes: run.bytes,
             wrong: Some(wrong),
         });

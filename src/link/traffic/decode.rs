@@ -2,7 +2,7 @@
 
 use crate::hand::Moment;
 use crate::link::bus::error::id_of;
-use crate::link::traffic::cut::{Cut, Cutter, FrameCut};
+use crate::link::traffic::cut::{Cutter, FrameCut, StreamPiece};
 use crate::link::traffic::frame::{Frame, FrameFormat, Kind, Wrong};
 use crate::link::traffic::matching::Matching;
 use crate::link::traffic::said::FrameContent;
@@ -17,7 +17,7 @@ pub const SILENCE: Duration = Duration::from_millis(25);
 
 /// Result of decoding some bytes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Heard {
+pub enum TrafficEvent {
     /// A complete frame, valid or not.
     Frame(Frame),
     /// The request with this number got no reply.
@@ -59,7 +59,7 @@ impl Decoder {
     }
 
     /// Decodes the next piece of recorded bytes; frames that end in it are added to `out`.
-    pub fn push(&mut self, piece: &Piece, out: &mut Vec<Heard>) {
+    pub fn push(&mut self, piece: &Piece, out: &mut Vec<TrafficEvent>) {
         self.tick(piece.at, out);
         match piece.kind {
             PieceKind::Bytes(direction) => self.bytes(piece.at, direction, &piece.bytes, out),
@@ -70,22 +70,22 @@ impl Decoder {
     }
 
     /// Records that pieces are missing here.
-    pub fn gap(&mut self, at: Moment, pieces: u64, out: &mut Vec<Heard>) {
+    pub fn gap(&mut self, at: Moment, pieces: u64, out: &mut Vec<TrafficEvent>) {
         self.wire(at, Kind::Gap, out);
-        if let Some(Heard::Frame(frame)) = out.last_mut() {
+        if let Some(TrafficEvent::Frame(frame)) = out.last_mut() {
             frame.wrong = Some(Wrong::Forgotten { pieces });
         }
     }
 
     /// Advances time: bytes incomplete for [`SILENCE`] are emitted as they are.
-    pub fn tick(&mut self, now: Moment, out: &mut Vec<Heard>) {
+    pub fn tick(&mut self, now: Moment, out: &mut Vec<TrafficEvent>) {
         for direction in [Direction::ToHand, Direction::FromHand] {
             let half = self.half(direction);
             if half.cutter.waiting() > 0 && now.since(half.last) >= SILENCE {
                 self.flush(direction, out);
             }
         }
-        out.extend(self.matching.overdue(now).map(Heard::NoReply));
+        out.extend(self.matching.overdue(now).map(TrafficEvent::NoReply));
     }
 
     /// Number of incomplete bytes, of both directions.
@@ -100,7 +100,13 @@ impl Decoder {
         }
     }
 
-    fn bytes(&mut self, at: Moment, direction: Direction, bytes: &[u8], out: &mut Vec<Heard>) {
+    fn bytes(
+        &mut self,
+        at: Moment,
+        direction: Direction,
+        bytes: &[u8],
+        out: &mut Vec<TrafficEvent>,
+    ) {
         let look = looker(self.form, self.unit, direction);
         let half = self.half(direction);
         half.last = at;
@@ -111,7 +117,7 @@ impl Decoder {
         }
     }
 
-    fn flush(&mut self, direction: Direction, out: &mut Vec<Heard>) {
+    fn flush(&mut self, direction: Direction, out: &mut Vec<TrafficEvent>) {
         let look = looker(self.form, self.unit, direction);
         let half = self.half(direction);
         let at = half.last;
@@ -122,7 +128,13 @@ impl Decoder {
         }
     }
 
-    fn frame(&mut self, at: Moment, direction: Direction, cut: Cut, out: &mut Vec<Heard>) {
+    fn frame(
+        &mut self,
+        at: Moment,
+        direction: Direction,
+        cut: StreamPiece,
+        out: &mut Vec<TrafficEvent>,
+    ) {
         let said = match cut.wrong {
             None => said(self.form, direction, &cut.bytes),
             Some(wrong @ (Wrong::Checksum { .. } | Wrong::Crc { .. })) => {
@@ -134,20 +146,24 @@ impl Decoder {
         frame.bytes = cut.bytes.into_boxed_slice();
         // Damage takes precedence over the content of damaged bytes.
         frame.wrong = cut.wrong;
-        out.extend(self.matching.place(&mut frame, said).map(Heard::NoReply));
-        out.push(Heard::Frame(frame));
+        out.extend(
+            self.matching
+                .place(&mut frame, said)
+                .map(TrafficEvent::NoReply),
+        );
+        out.push(TrafficEvent::Frame(frame));
     }
 
-    fn wire(&mut self, at: Moment, kind: Kind, out: &mut Vec<Heard>) {
+    fn wire(&mut self, at: Moment, kind: Kind, out: &mut Vec<TrafficEvent>) {
         self.flush(Direction::ToHand, out);
         self.flush(Direction::FromHand, out);
-        out.extend(self.matching.renew().map(Heard::NoReply));
+        out.extend(self.matching.renew().map(TrafficEvent::NoReply));
         let direction = match kind {
             Kind::Opened | Kind::Closed => Direction::ToHand,
             _ => Direction::FromHand,
         };
         let frame = self.empty(at, direction, kind);
-        out.push(Heard::Frame(frame));
+        out.push(TrafficEvent::Frame(frame));
     }
 
     fn empty(&mut self, at: Moment, direction: Direction, kind: Kind) -> Frame {

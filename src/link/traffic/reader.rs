@@ -2,7 +2,7 @@
 
 use crate::hand::Moment;
 use crate::link::tap::WireTap;
-use crate::link::traffic::decode::{Decoder, Heard};
+use crate::link::traffic::decode::{Decoder, TrafficEvent};
 use crate::link::traffic::frame::{Frame, Wrong};
 use crate::transport::Endpoint;
 use std::collections::VecDeque;
@@ -71,10 +71,10 @@ impl Traffic {
         got.more
     }
 
-    fn take(&mut self, heard: Heard) {
+    fn take(&mut self, heard: TrafficEvent) {
         self.changes += 1;
         match heard {
-            Heard::Frame(frame) => {
+            TrafficEvent::Frame(frame) => {
                 if self.frames.len() >= FRAMES_MAX {
                     self.frames.pop_front();
                 }
@@ -83,7 +83,7 @@ impl Traffic {
                 let at = self.frames.len().saturating_sub(later);
                 self.frames.insert(at, Arc::new(frame));
             }
-            Heard::NoReply(number) => {
+            TrafficEvent::NoReply(number) => {
                 let found = self
                     .frames
                     .iter_mut()

@@ -18,7 +18,7 @@ use tokio::sync::{broadcast, mpsc, oneshot, watch};
 
 /// A requested arming. Dropped without a reply if something else replaced it.
 #[derive(Debug)]
-pub(crate) struct AskedArm {
+pub(crate) struct ArmCommand {
     pub(crate) lease: Lease,
     pub(crate) request: ArmRequest,
     pub(crate) answer: oneshot::Sender<Result<ArmEpoch, ArmRefusal>>,
@@ -32,7 +32,7 @@ pub(crate) struct PendingControl {
     pub(crate) disarm: bool,
     /// Reason of the requested stop or disarm.
     pub(crate) why: Option<Disarmed>,
-    pub(crate) arm: Option<AskedArm>,
+    pub(crate) arm: Option<ArmCommand>,
     pub(crate) setpoints: Option<Setpoints>,
     /// A new lease was granted: the previous owner's requests are dropped.
     pub(crate) handed_over: bool,
@@ -136,7 +136,7 @@ impl PendingControl {
 }
 
 /// The session's ends of the handle's channels.
-pub(crate) struct Ends {
+pub(crate) struct SessionChannels {
     pub(crate) wanted: Arc<watch::Sender<PendingControl>>,
     pub(crate) requests: mpsc::Receiver<Request>,
     pub(crate) records: broadcast::Sender<Record>,

@@ -1,7 +1,7 @@
 use crate::hand::{Angle, ArmEpoch, Dof, Force, Moment, PerDof, Setpoints, Speed, Target};
 use crate::link::lease::{Lease, Owner};
 use crate::link::status::ArmRequest;
-use crate::link::wanted::{AskedArm, PendingControl};
+use crate::link::wanted::{ArmCommand, PendingControl};
 use crate::record::Disarmed;
 use crate::soak;
 use fastrand::Rng;
@@ -118,7 +118,7 @@ fn never_two_owners_and_nothing_after_an_end_before_a_new_grant() {
                     let until = Moment::from_micros(rng.u64(0..1000));
                     let armed = wanted.under(lease, |wanted| {
                         wanted.runs_until = Some(until);
-                        wanted.arm = Some(AskedArm {
+                        wanted.arm = Some(ArmCommand {
                             lease,
                             request: REQUEST,
                             answer: oneshot::channel().0,
@@ -134,7 +134,7 @@ fn never_two_owners_and_nothing_after_an_end_before_a_new_grant() {
                         assert!(oracle.may_wait, "seed {seed}");
                         assert_eq!(setpoints, tagged(grant), "seed {seed}");
                     }
-                    if let Some(AskedArm { lease, .. }) = taken.arm {
+                    if let Some(ArmCommand { lease, .. }) = taken.arm {
                         let holder = oracle.holds.map(|grant| oracle.leases[grant].0);
                         assert_eq!(Some(lease), holder, "seed {seed}");
                     }

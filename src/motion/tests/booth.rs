@@ -8,7 +8,7 @@ use crate::hand::{
 };
 use crate::link::handle::channels;
 use crate::link::request::Request;
-use crate::link::wanted::{AskedArm, Ends, PendingControl};
+use crate::link::wanted::{ArmCommand, PendingControl, SessionChannels};
 use crate::link::{Clock, LinkHandle, LinkStatus};
 use crate::record::{Disarmed, LinkState, Record, Rest};
 use crate::sim::drive::{Drive, DriveGoal, DriveSettings, position_of};
@@ -96,7 +96,7 @@ impl BoothHand {
         allowed[Dof::ThumbBend].insert(Angle::nearest(800));
         let clock = Clock::start();
         let (link, ends, _) = channels(clock);
-        let Ends {
+        let SessionChannels {
             wanted,
             requests,
             records,
@@ -313,7 +313,7 @@ impl BoothFacts {
         }
     }
 
-    fn arm(&mut self, asked: AskedArm) {
+    fn arm(&mut self, asked: ArmCommand) {
         let request = asked.request;
         if self.status.state != LinkState::Monitoring || self.sample.angle.is_none() {
             return;

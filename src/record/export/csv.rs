@@ -5,7 +5,7 @@ use crate::hand::column::{channel_column, grip_columns, joint_column, text_cell,
 use crate::hand::grip::Grip;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity, Touch};
 use crate::record::export::output::{Destination, ExportError, Exported, Unfinished};
-use crate::record::export::source::Source;
+use crate::record::export::source::ExportSource;
 use crate::record::file::FileMark;
 use crate::record::grip;
 use crate::record::{Entry, EventKind, Record};
@@ -23,7 +23,7 @@ pub(crate) const UNDOCUMENTED: &str = "undocumented";
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
-pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportError> {
+pub fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
     let output = Unfinished::new(to)?;
     let mut to = output.file()?;
     let stretch = source.stretch;

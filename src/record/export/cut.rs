@@ -1,7 +1,7 @@
 //! A time range of a recording as a separate recording file: closed, with an index, rebuilt from the readable entries.
 
 use crate::record::export::output::{Destination, ExportError, Exported, Unfinished};
-use crate::record::export::source::{Broken, Source};
+use crate::record::export::source::{Broken, ExportSource};
 use crate::record::file::reader::Damage;
 use crate::record::file::writer::{Counted, RecordingWriter};
 use crate::record::file::{Opening, RecordingFile};
@@ -16,7 +16,7 @@ const ENTRIES_AT_ONCE: u64 = 1024;
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
-pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportError> {
+pub fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
     put(source, to, |_| None)
 }
 
@@ -24,14 +24,14 @@ pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportErr
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
-pub fn recover(source: Source<'_>, to: &Destination) -> Result<Exported, ExportError> {
+pub fn recover(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
     put(source, to, |damage| {
         (*damage != Damage::default()).then(|| recovered(source.file, damage))
     })
 }
 
 fn put(
-    source: Source<'_>,
+    source: ExportSource<'_>,
     to: &Destination,
     said: impl FnOnce(&Damage) -> Option<Event>,
 ) -> Result<Exported, ExportError> {
@@ -62,7 +62,7 @@ pub(crate) struct Copied<W> {
 
 /// Copies a time range, and then the event that `said` returns for its damage.
 pub(crate) fn copy<W: Write>(
-    source: Source<'_>,
+    source: ExportSource<'_>,
     to: W,
     said: impl FnOnce(&Damage) -> Option<Event>,
 ) -> Result<Copied<W>, Broken> {

@@ -10,7 +10,7 @@ use crate::record::export::frames::{
     DatasetFrame, DatasetFrames, FramePlan, frame_parts, has_touch,
 };
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
-use crate::record::export::source::{Broken, Source};
+use crate::record::export::source::{Broken, ExportSource};
 use crate::record::export::statistics::Statistics;
 use crate::record::file::RecordingFile;
 use parquet::basic::Compression;
@@ -77,7 +77,7 @@ impl LeRobotSet {
 /// # Errors
 /// [`ExportError`]; then there is no folder.
 pub fn write(
-    sources: &[Source<'_>],
+    sources: &[ExportSource<'_>],
     to: &Path,
     plan: &LeRobotPlan,
 ) -> Result<LeRobotSet, ExportError> {
@@ -130,7 +130,11 @@ pub fn write(
 }
 
 /// Adds the frames of one recording. It is read from its start, because earlier commands are still in effect in the range.
-fn add(set: &mut DataSet, source: &Source<'_>, plan: &LeRobotPlan) -> Result<Exported, Broken> {
+fn add(
+    set: &mut DataSet,
+    source: &ExportSource<'_>,
+    plan: &LeRobotPlan,
+) -> Result<Exported, Broken> {
     let mut frames = DatasetFrames::new(FramePlan {
         fps: plan.fps,
         with_touch: set.with_touch,
@@ -160,7 +164,7 @@ fn add(set: &mut DataSet, source: &Source<'_>, plan: &LeRobotPlan) -> Result<Exp
 }
 
 /// The user's notes in the time range.
-fn notes(source: &Source<'_>) -> VecDeque<(Moment, Arc<str>)> {
+fn notes(source: &ExportSource<'_>) -> VecDeque<(Moment, Arc<str>)> {
     let within = source.stretch.from..=source.stretch.to;
     let marks = source.file.overview().marks.iter();
     let notes = marks.filter(|mark| mark.kind == EventKind::Note && within.contains(&mark.at));
@@ -194,7 +198,7 @@ struct DataSet {
 }
 
 /// Result of the written frames.
-struct Ended {
+struct WrittenFrames {
     data: BufWriter<Sink>,
     statistics: Statistics,
     tasks: Vec<String>,
@@ -302,9 +306,9 @@ impl DataSet {
         columns::put(&mut self.columns, group)
     }
 
-    fn end(mut self) -> Result<Ended, ParquetError> {
+    fn end(mut self) -> Result<WrittenFrames, ParquetError> {
         self.put()?;
-        Ok(Ended {
+        Ok(WrittenFrames {
             data: self.to.into_inner()?,
             statistics: self.statistics,
             tasks: self.tasks,
@@ -329,11 +333,11 @@ fn writer<W: Write + Send>(
 
 /// Metadata files of the set.
 struct Meta<'a> {
-    sources: &'a [Source<'a>],
+    sources: &'a [ExportSource<'a>],
     side: Side,
     with_touch: bool,
     plan: &'a LeRobotPlan,
-    ended: &'a Ended,
+    ended: &'a WrittenFrames,
 }
 
 impl Meta<'_> {

@@ -15,4 +15,4 @@ pub(crate) mod statistics;
 pub(crate) mod targets;
 
 pub use crate::record::export::output::{Destination, ExportError, Exported};
-pub use crate::record::export::source::Source;
+pub use crate::record::export::source::ExportSource;

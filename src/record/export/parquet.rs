@@ -9,7 +9,7 @@ use crate::record::export::arrow_schema::{ARROW_SCHEMA, arrow_schema};
 use crate::record::export::columns::{self, ParquetCell, ParquetColumn, Values};
 use crate::record::export::csv::UNDOCUMENTED;
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
-use crate::record::export::source::Source;
+use crate::record::export::source::ExportSource;
 use crate::record::file::format::opening::nanos_of;
 use crate::record::grip;
 use crate::record::{Entry, Record};
@@ -32,7 +32,7 @@ const CHANNELS: u8 = 8;
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
-pub fn write(source: Source<'_>, to: &Destination) -> Result<Exported, ExportError> {
+pub fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
     let output = Unfinished::new(to)?;
     let error = |error: ParquetError| output.parquet_error(error);
     let mut table = ParquetTable::new(source, output.file()?).map_err(error)?;
@@ -67,7 +67,7 @@ struct ParquetTable {
 }
 
 impl ParquetTable {
-    fn new(source: Source<'_>, to: BufWriter<Sink>) -> Result<Self, ParquetError> {
+    fn new(source: ExportSource<'_>, to: BufWriter<Sink>) -> Result<Self, ParquetError> {
         let columns = all_columns();
         let fields: Result<Vec<_>, _> = columns.iter().map(ParquetColumn::schema).collect();
         let schema = Type::group_type_builder("reading").with_fields(fields?);
@@ -156,8 +156,8 @@ impl ParquetTable {
 }
 
 /// Metadata of the file: the columns' units, the recording, the events.
-fn metadata(source: Source<'_>, columns: &[ParquetColumn]) -> Vec<KeyValue> {
-    let Source { file, stretch, .. } = source;
+fn metadata(source: ExportSource<'_>, columns: &[ParquetColumn]) -> Vec<KeyValue> {
+    let ExportSource { file, stretch, .. } = source;
     let opening = file.opening();
     let units: Map<String, serde_json::Value> = columns
         .iter()

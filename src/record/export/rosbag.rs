@@ -2,7 +2,7 @@
 
 use crate::record::export::cut::{Copied, copy};
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
-use crate::record::export::source::Source;
+use crate::record::export::source::ExportSource;
 use crate::record::file::format::topic::Topic;
 use crate::record::file::writer::Counted;
 use std::fmt::Write as _;
@@ -17,7 +17,7 @@ const VERSION: u32 = 5;
 ///
 /// # Errors
 /// [`ExportError`]; then there is no folder.
-pub fn write(source: Source<'_>, path: &Path) -> Result<Exported, ExportError> {
+pub fn write(source: ExportSource<'_>, path: &Path) -> Result<Exported, ExportError> {
     let output = Unfinished::new(&Destination::from(path))?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let name = format!("{name}_0.mcap");

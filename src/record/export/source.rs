@@ -4,7 +4,7 @@ use crate::hand::Moment;
 use crate::record::Entry;
 use crate::record::export::output::{ExportError, Unfinished};
 use crate::record::file::RecordingFile;
-use crate::record::file::reader::{Damage, Stretch};
+use crate::record::file::reader::{Damage, TimeRange};
 use crate::record::grip::GripFollower;
 use mcap::McapError;
 use parquet::errors::ParquetError;
@@ -15,15 +15,15 @@ use std::ops::ControlFlow;
 const POLL_ENTRIES: u64 = 256;
 
 /// Receives the progress of an export, from 0 to 1. Cancels it by returning `Break`.
-pub type Watch<'a> = dyn Fn(f64) -> ControlFlow<()> + 'a;
+pub type ProgressFn<'a> = dyn Fn(f64) -> ControlFlow<()> + 'a;
 
 /// A time range of a recording to export.
 #[derive(Clone, Copy)]
-pub struct Source<'a> {
+pub struct ExportSource<'a> {
     pub file: &'a RecordingFile,
-    pub stretch: Stretch,
+    pub stretch: TimeRange,
     /// Receives the progress.
-    pub watch: &'a Watch<'a>,
+    pub watch: &'a ProgressFn<'a>,
 }
 
 /// Reason why a time range was not read or written to its end.
@@ -71,9 +71,9 @@ impl From<ParquetError> for Broken {
     }
 }
 
-impl<'a> Source<'a> {
+impl<'a> ExportSource<'a> {
     /// A time range without progress reports.
-    pub fn new(file: &'a RecordingFile, stretch: Stretch) -> Self {
+    pub fn new(file: &'a RecordingFile, stretch: TimeRange) -> Self {
         let watch = &|_| ControlFlow::Continue(());
         Self {
             file,
@@ -97,7 +97,7 @@ impl<'a> Source<'a> {
         }
         // Progress starts with the time range.
         let watch = |_| (self.watch)(0.0);
-        let mut before = Source {
+        let mut before = ExportSource {
             watch: &watch,
             ..self.without_wire()
         };

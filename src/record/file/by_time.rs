@@ -13,7 +13,7 @@ const EACH: usize = 128;
 type Key = (u64, u32, usize, usize);
 
 /// A message waiting in the buffer.
-struct Held {
+struct BufferedMessage {
     key: Key,
     channel: u16,
     asked_nanos: u64,
@@ -53,7 +53,7 @@ pub(crate) fn each(
                     && to.is_none_or(|to| key <= to);
                 if is_next {
                     bytes += message.data.len() + EACH;
-                    held.push(Held {
+                    held.push(BufferedMessage {
                         key,
                         channel: message.channel,
                         asked_nanos: message.times.1,
@@ -86,7 +86,7 @@ pub(crate) fn each(
 }
 
 /// Drops the later half, for the next pass; returns the last key that stays.
-fn leave_out(held: &mut Vec<Held>, bytes: &mut usize) -> Option<Key> {
+fn leave_out(held: &mut Vec<BufferedMessage>, bytes: &mut usize) -> Option<Key> {
     held.sort_unstable_by_key(|one| one.key);
     while *bytes > HELD_MAX / 2 && held.len() > 1 {
         *bytes -= held.pop().map_or(0, |one| one.data.len() + EACH);

@@ -15,7 +15,7 @@ const SCHEMAS_IN: &str = "ros2msg";
 
 /// A schema as a file defines it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Schema {
+struct FileSchema {
     name: String,
     encoding: String,
     fields: String,
@@ -90,7 +90,7 @@ impl std::fmt::Display for SkippedTopic {
 /// All definitions of a file, and the number of messages of each channel.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Definitions {
-    schemas: BTreeMap<u16, Schema>,
+    schemas: BTreeMap<u16, FileSchema>,
     channels: BTreeMap<u16, Channel>,
     contradicted: BTreeMap<u16, ()>,
     counts: BTreeMap<u16, u64>,
@@ -101,7 +101,7 @@ impl Definitions {
     pub(crate) fn take(&mut self, code: u8, record: &[u8]) {
         match mcap::parse_record(code, record) {
             Ok(Record::Schema { header, data }) => {
-                let schema = Schema {
+                let schema = FileSchema {
                     name: clipped(&header.name, NAME_MAX),
                     encoding: clipped(&header.encoding, NAME_MAX),
                     fields: fields(&String::from_utf8_lossy(&data)),

@@ -1,9 +1,9 @@
 //! The readable contents of a recording file, found by reading all of it.
 
 use crate::hand::Moment;
-use crate::record::file::damage::{Damage, Gap};
+use crate::record::file::damage::{Damage, MessageGap};
 use crate::record::file::overview::{Counts, Overview};
-use crate::record::file::reader::{RecordingFile, Stretch};
+use crate::record::file::reader::{RecordingFile, TimeRange};
 use crate::record::{Entry, EventKind, Record};
 use std::io;
 use std::ops::ControlFlow;
@@ -21,7 +21,7 @@ pub struct Contents {
     /// Missing data: by checksums, by message numbers, as the recorder reported, and where nothing was recorded.
     pub damage: Damage,
     /// Periods in which the hand was not read, although the recording continued. Nothing is missing in the file there.
-    pub unread: Vec<Gap>,
+    pub unread: Vec<MessageGap>,
     /// Time of the last entry.
     pub last: Moment,
 }
@@ -36,11 +36,11 @@ impl Contents {
         let (mut newest, mut told) = (file.first(), Vec::new());
         let (mut last_read, mut unread) = (file.first(), Vec::new());
         let is_live = !file.opening().is_imported();
-        let mut damage = file.entries(Stretch::WHOLE, |entry| {
+        let mut damage = file.entries(TimeRange::WHOLE, |entry| {
             let at = entry.at();
             let missing = said_missing(&entry);
             if missing > 0 || is_live && at.since(newest) > SILENT {
-                told.push(Gap {
+                told.push(MessageGap {
                     from: newest,
                     to: at.max(newest),
                     messages: missing,
@@ -55,15 +55,16 @@ impl Contents {
             ControlFlow::Continue(())
         })?;
         for gap in told {
-            let is_same = |other: &Gap| other.from < gap.to && gap.from < other.to;
+            let is_same = |other: &MessageGap| other.from < gap.to && gap.from < other.to;
             if gap.messages > 0 || !damage.gaps.iter().any(is_same) {
-                damage.gap(Gap { messages: 0, ..gap });
+                damage.gap(MessageGap { messages: 0, ..gap });
             }
         }
         damage.gaps.sort_by_key(|gap| gap.from);
         unread.extend(silence(last_read, newest));
-        let is_damage =
-            |gap: &Gap| (damage.gaps.iter()).any(|lost| lost.from <= gap.from && gap.to <= lost.to);
+        let is_damage = |gap: &MessageGap| {
+            (damage.gaps.iter()).any(|lost| lost.from <= gap.from && gap.to <= lost.to)
+        };
         unread.retain(|gap| is_live && !is_damage(gap));
         Ok(Self {
             unread,
@@ -75,9 +76,9 @@ impl Contents {
 }
 
 /// The period between two moments, if it is a silence.
-fn silence(from: Moment, to: Moment) -> Option<Gap> {
+fn silence(from: Moment, to: Moment) -> Option<MessageGap> {
     let messages = 0;
-    (to.since(from) > SILENT).then_some(Gap { from, to, messages })
+    (to.since(from) > SILENT).then_some(MessageGap { from, to, messages })
 }
 
 /// Number of entries before this one that the recorder reported as lost.

@@ -98,7 +98,7 @@ const GAPS_MAX: usize = 1000;
 
 /// A period with missing messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Gap {
+pub struct MessageGap {
     /// The last moment before it.
     pub from: Moment,
     /// The first moment after it.
@@ -117,11 +117,11 @@ pub struct Damage {
     /// Number of messages missing by their numbers.
     pub messages: u64,
     /// Periods in which they are missing, at most a thousand.
-    pub gaps: Vec<Gap>,
+    pub gaps: Vec<MessageGap>,
 }
 
 impl Damage {
-    pub(crate) fn gap(&mut self, gap: Gap) {
+    pub(crate) fn gap(&mut self, gap: MessageGap) {
         self.messages = self.messages.saturating_add(gap.messages);
         if self.gaps.len() < GAPS_MAX {
             self.gaps.push(gap);

@@ -26,7 +26,7 @@ pub mod writer;
 
 pub use crate::record::file::channels::{SkipReason, SkippedTopic};
 pub use crate::record::file::contents::Contents;
-pub use crate::record::file::damage::{Damage, Gap, Remark};
+pub use crate::record::file::damage::{Damage, MessageGap, Remark};
 pub use crate::record::file::disk::{Disk, DiskFile, FilePlace, SystemDisk};
 pub use crate::record::file::format::opening::{Opening, Part};
 pub use crate::record::file::overview::{Counts, FileMark, Overview};

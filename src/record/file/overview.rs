@@ -118,7 +118,7 @@ pub struct Overview {
 
 /// A minute of an overview as stored in a file.
 #[derive(Debug, Serialize, Deserialize)]
-struct Block {
+struct OverviewBlock {
     /// Offset in the file of the first chunk that it covers.
     from: u64,
     counts: Counts,
@@ -315,7 +315,7 @@ impl Overview {
     pub(crate) fn give_block(&mut self, from: u64) -> Vec<u8> {
         let rows = std::mem::take(&mut self.rows);
         let marks = std::mem::take(&mut self.marks);
-        let block = Block {
+        let block = OverviewBlock {
             from,
             counts: std::mem::take(&mut self.counts),
             seconds: rows.iter().map(|row| row.second).collect(),
@@ -330,7 +330,7 @@ impl Overview {
 
     /// Adds a block of a file; returns the offset of the first chunk that it covers. `None` for bytes that are not a block.
     pub(crate) fn take_block(&mut self, bytes: &[u8]) -> Option<u64> {
-        let block: Block = cdr::decode(bytes)?;
+        let block: OverviewBlock = cdr::decode(bytes)?;
         let (least, _) = block.least.as_chunks::<LINES>();
         let (greatest, _) = block.greatest.as_chunks::<LINES>();
         let rows = block.seconds.iter().zip(least.iter().zip(greatest));

@@ -4,14 +4,14 @@ use crate::hand::Moment;
 use crate::record::file::by_time;
 use crate::record::file::channels::Definitions;
 use crate::record::file::clock;
-pub use crate::record::file::damage::{Damage, Gap, Remark};
+pub use crate::record::file::damage::{Damage, MessageGap, Remark};
 use crate::record::file::format::decode::EntryDecoder;
 use crate::record::file::format::opening::{METADATA, Opening, moment_of, nanos_of};
 use crate::record::file::format::topic::Topic;
 use crate::record::file::overview::{Overview, SECONDS_MAX};
 use crate::record::file::parts;
 use crate::record::file::walk::{
-    self, ChunkKind, ChunkMessage, ChunkPlace, ChunkRecord, Found, MAGIC, Place, Survey,
+    self, ByteRange, ChunkKind, ChunkMessage, ChunkPlace, ChunkRecord, Found, MAGIC, Survey,
     UNPACKED_MAX, UNPACKED_TIMES, long_records, messages, records,
 };
 use crate::record::file::writer::OVERVIEW;
@@ -102,7 +102,7 @@ pub struct RecordingFile {
     found: Found,
     /// Topic of each channel.
     topics: BTreeMap<u16, Topic>,
-    order: Order,
+    order: MessageOrder,
     /// Nanoseconds by which the log times are ahead of those in the messages.
     difference: i64,
     /// True if some of its messages have no log time.
@@ -119,7 +119,7 @@ pub struct RecordingFile {
 
 /// Order of the messages in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Order {
+enum MessageOrder {
     /// As Handscope wrote them: numbered consecutively, and nearly in the order of time.
     Numbered,
     /// Any order.
@@ -128,7 +128,7 @@ enum Order {
 
 /// Selects the entries to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stretch {
+pub struct TimeRange {
     /// Start of the time range.
     pub from: Moment,
     /// End of the time range, included.
@@ -137,7 +137,7 @@ pub struct Stretch {
     pub wire: bool,
 }
 
-impl Stretch {
+impl TimeRange {
     /// All of a file.
     pub const WHOLE: Self = Self {
         from: Moment::ZERO,
@@ -223,7 +223,7 @@ impl RecordingFile {
             path: path.to_owned(),
             file: Mutex::new(file),
             topics: topics.collect(),
-            order: Order::Numbered,
+            order: MessageOrder::Numbered,
             difference: 0,
             has_unlogged: false,
             damage: Damage {
@@ -290,7 +290,7 @@ impl RecordingFile {
             path: path.to_owned(),
             file: Mutex::new(file),
             topics,
-            order: Order::Any,
+            order: MessageOrder::Any,
             difference,
             has_unlogged: unlogged > 0,
             damage: Damage {
@@ -384,7 +384,7 @@ impl RecordingFile {
     /// The system's error.
     pub fn entries(
         &self,
-        stretch: Stretch,
+        stretch: TimeRange,
         mut take: impl FnMut(Entry) -> ControlFlow<()>,
     ) -> io::Result<Damage> {
         let warm = stretch.from.since(Moment::ZERO).saturating_sub(WARM_UP);
@@ -456,8 +456,8 @@ impl RecordingFile {
         take: impl FnMut(&ChunkMessage<'_>) -> ControlFlow<()>,
     ) -> io::Result<Damage> {
         match self.order {
-            Order::Numbered => self.each_numbered(from, to, take),
-            Order::Any => {
+            MessageOrder::Numbered => self.each_numbered(from, to, take),
+            MessageOrder::Any => {
                 let within = self.nanos(from, to);
                 self.each_by_time(within, take)?;
                 Ok(self.damage.clone())
@@ -538,7 +538,7 @@ impl RecordingFile {
         mut take: impl FnMut(&ChunkMessage<'_>) -> ControlFlow<()>,
     ) -> io::Result<Damage> {
         let mut damage = self.damage.clone();
-        let mut numbers = Numbers::default();
+        let mut numbers = NumberCheck::default();
         let at = |nanos| moment_of(self.opening.base_nanos, nanos);
         for (place, chunk) in self.reaching(from, to) {
             let mut bytes = self.read(chunk.place)?;
@@ -546,7 +546,7 @@ impl RecordingFile {
             numbers.chunk(place, nanos_of(self.opening.base_nanos, self.opening.began));
             let is_whole = messages(&mut bytes, chunk.kind, |message| {
                 if let Some((from, missing)) = numbers.message(message.sequence, message.times.0) {
-                    damage.gap(Gap {
+                    damage.gap(MessageGap {
                         from: at(from),
                         to: at(message.times.0),
                         messages: missing,
@@ -568,7 +568,7 @@ impl RecordingFile {
             let written = self.found.messages.unwrap_or_default();
             let messages = written.saturating_sub(u64::from(number));
             if messages > 0 || numbers.is_open() {
-                damage.gap(Gap {
+                damage.gap(MessageGap {
                     from: at(nanos),
                     to: at(last.last_nanos).max(at(nanos)),
                     messages,
@@ -599,7 +599,7 @@ impl RecordingFile {
         reaching.map(|(chunk, _)| chunk)
     }
 
-    fn read(&self, place: Place) -> io::Result<Vec<u8>> {
+    fn read(&self, place: ByteRange) -> io::Result<Vec<u8>> {
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         walk::whole(&mut *file, place)
     }
@@ -639,7 +639,7 @@ impl RecordingFile {
     /// Finds the hand named in its parameters, which are recorded soon after the beginning.
     fn find_hand(&mut self) -> io::Result<()> {
         let mut hand = None;
-        let stretch = Stretch {
+        let stretch = TimeRange {
             from: Moment::ZERO,
             to: Moment::ZERO.plus(PARAMETERS_TIMEOUT),
             wire: false,
@@ -664,15 +664,15 @@ impl RecordingFile {
 
     fn find_overview(&mut self) -> Result<(), OpenError> {
         let overview = match self.order {
-            Order::Numbered => {
+            MessageOrder::Numbered => {
                 let file = self.file.get_mut().unwrap_or_else(PoisonError::into_inner);
                 overview(file, &self.found, &self.opening)?
             }
-            Order::Any => {
+            MessageOrder::Any => {
                 let mut overview = Overview::default();
-                let stretch = Stretch {
+                let stretch = TimeRange {
                     wire: false,
-                    ..Stretch::WHOLE
+                    ..TimeRange::WHOLE
                 };
                 self.entries(stretch, |entry| {
                     overview.take(&entry);
@@ -695,7 +695,7 @@ fn is_moved(difference: i64) -> bool {
 
 /// Checks the message numbers across chunks.
 #[derive(Debug, Default)]
-struct Numbers {
+struct NumberCheck {
     /// Number and time of the last message.
     last: Option<(u32, u64)>,
     /// Index of the chunk after the last one.
@@ -704,7 +704,7 @@ struct Numbers {
     empty_chunks: bool,
 }
 
-impl Numbers {
+impl NumberCheck {
     /// Starts a chunk. Chunks that were skipped between two are not counted as missing.
     fn chunk(&mut self, place: usize, began_nanos: u64) {
         if place != self.next_chunk {
@@ -750,7 +750,7 @@ fn own(file: &mut File) -> io::Result<Option<Found>> {
     let mut has_messages = false;
     let mut is_whole = false;
     if walk::is_chunk(rest) {
-        let place = Place {
+        let place = ByteRange {
             offset: MAGIC.len() as u64 + (begin.len() - rest.len()) as u64,
             len: walk::record_len(rest),
         };
@@ -771,7 +771,7 @@ fn own(file: &mut File) -> io::Result<Option<Found>> {
 }
 
 /// The file's openings; several if recordings were merged.
-fn openings(file: &mut File, places: &[Place]) -> io::Result<Vec<Opening>> {
+fn openings(file: &mut File, places: &[ByteRange]) -> io::Result<Vec<Opening>> {
     let mut all = Vec::new();
     for place in places {
         let content = walk::content(file, *place)?;

@@ -103,7 +103,7 @@ impl Recorder {
             status: Arc::new(Mutex::new(RecorderStatus::default())),
             ends: Arc::new(AtomicBool::new(false)),
         };
-        let work = Work {
+        let work = RecorderThread {
             recording: recording.map_err(io::Error::other)?,
             taken,
             lost: input.lost,
@@ -155,7 +155,7 @@ fn now(began: Instant) -> Now {
 }
 
 /// Work of the thread: it dequeues entries, and runs the recording's due steps.
-struct Work {
+struct RecorderThread {
     recording: RecordingTask,
     taken: Receiver<Given>,
     lost: Arc<AtomicU64>,
@@ -164,7 +164,7 @@ struct Work {
     began: Instant,
 }
 
-impl Work {
+impl RecorderThread {
     fn run(mut self) {
         let mut ends = false;
         while !ends {

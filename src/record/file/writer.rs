@@ -2,7 +2,7 @@
 
 use crate::hand::Moment;
 use crate::record::Entry;
-use crate::record::file::format::encode::{EntryEncoder, Message};
+use crate::record::file::format::encode::{EncodedMessage, EntryEncoder};
 use crate::record::file::format::opening::{METADATA, Opening, nanos_of};
 use crate::record::file::format::topic::Topic;
 use crate::record::file::overview::Overview;
@@ -27,15 +27,15 @@ pub(crate) const OVERVIEW: &str = "handscope-overview";
 
 /// Bytes written by the mcap crate, not collected yet.
 #[derive(Debug, Clone, Default)]
-struct Waiting(Arc<Mutex<Vec<u8>>>);
+struct PendingBytes(Arc<Mutex<Vec<u8>>>);
 
-impl Waiting {
+impl PendingBytes {
     fn bytes(&self) -> MutexGuard<'_, Vec<u8>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Write for Waiting {
+impl Write for PendingBytes {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.bytes().extend(bytes);
         Ok(bytes.len())
@@ -64,8 +64,8 @@ impl Counted {
 
 /// Encodes one recording file. The crate's writer retains 300 bytes for each chunk until the end.
 pub struct RecordingWriter {
-    mcap: mcap::Writer<NoSeek<Waiting>>,
-    waiting: Waiting,
+    mcap: mcap::Writer<NoSeek<PendingBytes>>,
+    waiting: PendingBytes,
     encoder: EntryEncoder,
     overview: Overview,
     /// Number of bytes already collected.
@@ -97,7 +97,7 @@ impl RecordingWriter {
     }
 
     fn with_chunks(opening: &Opening, bytes: u64, grip: GripFollower) -> Result<Self, McapError> {
-        let waiting = Waiting::default();
+        let waiting = PendingBytes::default();
         let options = WriteOptions::new()
             .profile("ros2")
             .library(format!("handscope {}", opening.version))
@@ -167,7 +167,7 @@ impl RecordingWriter {
         Ok(())
     }
 
-    fn write(&mut self, message: &Message) -> Result<(), McapError> {
+    fn write(&mut self, message: &EncodedMessage) -> Result<(), McapError> {
         self.sequence = self.sequence.wrapping_add(1);
         let header = MessageHeader {
             channel_id: message.topic.channel(),
@@ -223,7 +223,7 @@ impl RecordingWriter {
 }
 
 /// Writes the definitions of all channels and their schemas.
-fn define(mcap: &mut mcap::Writer<NoSeek<Waiting>>) -> Result<(), McapError> {
+fn define(mcap: &mut mcap::Writer<NoSeek<PendingBytes>>) -> Result<(), McapError> {
     for topic in Topic::all() {
         let schema = topic.schema();
         mcap.add_schema_with_id(schema.id, schema.name, "ros2msg", schema.text.as_bytes())?;

@@ -14,7 +14,7 @@ use crate::record::export::cut::RecordingCopy;
 use crate::record::export::output::{Destination, ExportError, Unfinished};
 use crate::record::export::source::Broken;
 use crate::record::file::Opening;
-use crate::record::import::lines::{CsvLines, LineError, LineFault};
+use crate::record::import::lines::{CsvLineFault, CsvLines, LineError};
 use crate::record::{Entry, Event, EventKind, LinkState, Record};
 use std::collections::BTreeMap;
 use std::io::{self, BufRead};
@@ -68,7 +68,7 @@ pub enum ImportError {
 pub enum CsvFault {
     /// Its cells cannot be separated.
     #[error(transparent)]
-    Cells(#[from] LineFault),
+    Cells(#[from] CsvLineFault),
     /// The first line is not the header of such a file.
     #[error(
         "there is no column time_s between commas, semicolons or tabs, so these are not the values of a recording"

@@ -10,7 +10,7 @@ pub(crate) const CELLS_MAX: usize = 4096;
 
 /// Reason why the cells of a line cannot be separated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum LineFault {
+pub enum CsvLineFault {
     #[error("it is longer than {} KiB", LINE_MAX / 1024)]
     TooLong,
     #[error("it has more than {CELLS_MAX} cells")]
@@ -27,7 +27,7 @@ pub enum LineFault {
 #[derive(Debug)]
 pub(crate) enum LineError {
     System(io::Error),
-    Fault(LineFault),
+    Fault(CsvLineFault),
 }
 
 impl From<io::Error> for LineError {
@@ -85,7 +85,7 @@ impl<R: BufRead> CsvLines<R> {
                 continue;
             }
             let text = std::str::from_utf8(&self.bytes);
-            let text = text.map_err(|_utf8| LineError::Fault(LineFault::NotText))?;
+            let text = text.map_err(|_utf8| LineError::Fault(CsvLineFault::NotText))?;
             // Spreadsheets mark UTF-8 with a byte order mark.
             let text = text.strip_prefix('\u{feff}').unwrap_or(text);
             let separator = match self.separator {
@@ -116,7 +116,7 @@ impl<R: BufRead> CsvLines<R> {
             let mut from = self.from.by_ref().take(room);
             let read = from.read_until(b'\n', &mut self.bytes)?;
             if self.bytes.len() > LINE_MAX {
-                return Err(LineError::Fault(LineFault::TooLong));
+                return Err(LineError::Fault(CsvLineFault::TooLong));
             }
             let new = self.bytes.get(begin..).unwrap_or_default();
             let marks = new.iter().filter(|byte| **byte == b'"').count();
@@ -124,7 +124,7 @@ impl<R: BufRead> CsvLines<R> {
             let is_broken = new.last() == Some(&b'\n');
             self.next += u64::from(is_broken);
             if is_quoted && read == 0 {
-                return Err(LineError::Fault(LineFault::Unquoted));
+                return Err(LineError::Fault(CsvLineFault::Unquoted));
             }
             if !is_quoted {
                 if is_broken {
@@ -147,12 +147,12 @@ fn separator(line: &str) -> char {
     found.unwrap_or(',')
 }
 
-fn split(line: &str, separator: char, cells: &mut Vec<String>) -> Result<(), LineFault> {
+fn split(line: &str, separator: char, cells: &mut Vec<String>) -> Result<(), CsvLineFault> {
     cells.clear();
     let mut rest = line;
     loop {
         if cells.len() >= CELLS_MAX {
-            return Err(LineFault::TooManyCells);
+            return Err(CsvLineFault::TooManyCells);
         }
         let (cell, after) = match rest.strip_prefix('"') {
             Some(quoted) => unquoted(quoted)?,
@@ -160,7 +160,7 @@ fn split(line: &str, separator: char, cells: &mut Vec<String>) -> Result<(), Lin
                 let end = rest.find(separator).unwrap_or(rest.len());
                 let (cell, after) = rest.split_at(end);
                 if cell.contains('"') {
-                    return Err(LineFault::Unquoted);
+                    return Err(CsvLineFault::Unquoted);
                 }
                 (cell.to_owned(), after)
             }
@@ -169,13 +169,13 @@ fn split(line: &str, separator: char, cells: &mut Vec<String>) -> Result<(), Lin
         match after.strip_prefix(separator) {
             Some(next) => rest = next,
             None if after.is_empty() => return Ok(()),
-            None => return Err(LineFault::Unquoted),
+            None => return Err(CsvLineFault::Unquoted),
         }
     }
 }
 
 /// The text up to the closing quote, and the rest. Two quotes encode one.
-fn unquoted(mut rest: &str) -> Result<(String, &str), LineFault> {
+fn unquoted(mut rest: &str) -> Result<(String, &str), CsvLineFault> {
     let mut text = String::new();
     while let Some((part, after)) = rest.split_once('"') {
         text.push_str(part);
@@ -187,5 +187,5 @@ fn unquoted(mut rest: &str) -> Result<(String, &str), LineFault> {
             None => return Ok((text, after)),
         }
     }
-    Err(LineFault::Unquoted)
+    Err(CsvLineFault::Unquoted)
 }

@@ -28,7 +28,7 @@ impl OtherFollowers {
     pub fn open(node: &DdsNode, side: Side, clock: Clock) -> Self {
         let messages = node.reader(&topic(), KEPT);
         let (told, seen) = watch::channel(None);
-        let listening = Listening {
+        let listening = FleetListener {
             node: node.clone(),
             side,
             clock,
@@ -61,14 +61,14 @@ impl OtherFollowers {
     }
 }
 
-struct Listening {
+struct FleetListener {
     node: DdsNode,
     side: Side,
     clock: Clock,
     told: watch::Sender<Option<FleetCard>>,
 }
 
-impl Listening {
+impl FleetListener {
     async fn run(self, mut messages: mpsc::Receiver<DdsMessage>) {
         let mut book = FleetBook::default();
         let mut tick = interval(POLL_INTERVAL);

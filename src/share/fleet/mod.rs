@@ -13,7 +13,7 @@ pub use book::{FleetBook, HANDS_MAX};
 pub use followers::OtherFollowers;
 pub use list::FleetList;
 pub use notice::{FleetCard, FleetHand, NOTICE_BYTES_MAX, reachable, topic};
-pub use teller::{FleetTeller, host};
+pub use teller::{FleetAnnouncer, host};
 
 use std::time::Duration;
 

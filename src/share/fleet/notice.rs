@@ -48,7 +48,7 @@ pub struct FleetHand {
 }
 
 #[derive(Serialize, Deserialize)]
-struct Notice {
+struct Announcement {
     v: u8,
     #[serde(flatten)]
     hand: FleetHand,
@@ -86,7 +86,7 @@ impl FleetCard {
 impl FleetHand {
     /// Encodes the message in CDR with its header.
     pub fn message(&self) -> Vec<u8> {
-        let notice = Notice {
+        let notice = Announcement {
             v: VERSION,
             hand: Self {
                 card: self.card.clone().plain(),
@@ -103,7 +103,7 @@ impl FleetHand {
             return None;
         }
         let text: String = cdr::decode(bytes)?;
-        let notice: Notice = serde_json::from_str(&text).ok()?;
+        let notice: Announcement = serde_json::from_str(&text).ok()?;
         let mut hand = notice.hand;
         hand.card = hand.card.plain();
         hand.card.at = hand.card.at.and_then(|at| reachable(at, interface));

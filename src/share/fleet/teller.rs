@@ -10,16 +10,16 @@ use tokio_util::task::AbortOnDropHandle;
 
 /// Announces a hand until dropped, or until the link is closed.
 #[derive(Debug)]
-pub struct FleetTeller {
+pub struct FleetAnnouncer {
     card: watch::Sender<FleetCard>,
     _task: AbortOnDropHandle<()>,
 }
 
-impl FleetTeller {
+impl FleetAnnouncer {
     /// Announces this hand from now on, with the status of its link; its gateway only if listeners can reach it. Must be
     /// called within a tokio runtime.
     pub fn open(node: &DdsNode, link: &LinkHandle, card: FleetCard) -> Self {
-        let telling = Publishing {
+        let telling = FleetPublisher {
             writer: node.writer(&topic()),
             interface: node.address(),
             status: link.observe().status,
@@ -41,13 +41,13 @@ impl FleetTeller {
     }
 }
 
-struct Publishing {
+struct FleetPublisher {
     writer: DdsWriter,
     interface: Ipv4Addr,
     status: watch::Receiver<LinkStatus>,
 }
 
-impl Publishing {
+impl FleetPublisher {
     async fn run(mut self, mut cards: watch::Receiver<FleetCard>) {
         let of = |status: &LinkStatus| (status.state, status.holder.map(|holder| holder.owner));
         loop {

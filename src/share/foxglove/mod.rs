@@ -13,7 +13,7 @@ use crate::link::{LinkEntries, LinkHandle};
 use crate::record::file::Opening;
 use crate::share::foxglove::feed::feed;
 use crate::share::foxglove::protocol::Greeting;
-use crate::share::foxglove::viewer::Connection;
+use crate::share::foxglove::viewer::ViewerConnection;
 use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -107,7 +107,7 @@ async fn serve(listener: TcpListener, outlet: Outlet, greeting: Arc<Greeting>) {
             accepted = listener.accept() => match accepted {
                 Ok((stream, address)) => {
                     let Some(seat) = outlet.connect(address) else { continue };
-                    let connection = Connection::new(seat, Arc::clone(&greeting));
+                    let connection = ViewerConnection::new(seat, Arc::clone(&greeting));
                     // Without it messages would wait for the viewer's acknowledgement, up to 40 ms.
                     if stream.set_nodelay(true).is_ok() {
                         viewers.spawn(connection.serve(stream));

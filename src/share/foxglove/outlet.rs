@@ -1,7 +1,7 @@
 //! Distributes messages to all viewers: each message is encoded once, and each viewer receives its own topics. A viewer that is too
 //! slow misses the oldest; the publisher never waits.
 
-use crate::record::file::format::encode::Message;
+use crate::record::file::format::encode::EncodedMessage;
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::broadcast;
@@ -26,8 +26,8 @@ pub struct Viewer {
 /// Entry point for messages. Clones share the same viewers.
 #[derive(Debug, Clone)]
 pub struct Outlet {
-    messages: broadcast::Sender<Arc<Message>>,
-    board: Arc<Mutex<Board>>,
+    messages: broadcast::Sender<Arc<EncodedMessage>>,
+    board: Arc<Mutex<ViewerTable>>,
 }
 
 /// Identifies a connection of one server; never reused.
@@ -35,7 +35,7 @@ pub struct Outlet {
 struct ViewerId(u64);
 
 #[derive(Debug, Default)]
-struct Board {
+struct ViewerTable {
     viewers: Vec<(ViewerId, Viewer)>,
     last_id: u64,
     turned_away: u64,
@@ -55,7 +55,7 @@ impl Outlet {
     }
 
     /// Sends a message to all subscribers of its topic. Does not wait.
-    pub fn publish(&self, message: Message) {
+    pub fn publish(&self, message: EncodedMessage) {
         // Having no viewers is no error.
         let _viewers = self.messages.send(Arc::new(message));
     }
@@ -78,13 +78,13 @@ impl Outlet {
         })
     }
 
-    fn with<T>(&self, act: impl FnOnce(&mut Board) -> T) -> T {
+    fn with<T>(&self, act: impl FnOnce(&mut ViewerTable) -> T) -> T {
         // Each call leaves the board consistent, even one that panicked.
         act(&mut self.board.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-impl Board {
+impl ViewerTable {
     fn connect(&mut self, address: SocketAddr) -> Option<ViewerId> {
         if self.viewers.len() >= VIEWERS_MAX {
             self.turned_away += 1;
@@ -112,7 +112,7 @@ pub(crate) struct Seat {
 
 impl Seat {
     /// Subscribes to the messages from now on.
-    pub(crate) fn messages(&self) -> broadcast::Receiver<Arc<Message>> {
+    pub(crate) fn messages(&self) -> broadcast::Receiver<Arc<EncodedMessage>> {
         self.outlet.messages.subscribe()
     }
 

@@ -6,7 +6,7 @@
 use crate::model::urdf::urdf;
 use crate::record::file::Opening;
 use crate::record::file::format::cdr;
-use crate::record::file::format::encode::Message;
+use crate::record::file::format::encode::EncodedMessage;
 use crate::record::file::format::opening::nanos_of;
 use crate::record::file::format::topic::Topic;
 use serde::Deserialize;
@@ -26,7 +26,7 @@ const ERROR: u8 = 2;
 /// A viewer's request.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(tag = "op", rename_all = "camelCase")]
-pub(crate) enum Request {
+pub(crate) enum ViewerRequest {
     Subscribe {
         subscriptions: Vec<Subscription>,
     },
@@ -121,7 +121,7 @@ fn texts(opening: &Opening) -> [String; 2] {
 }
 
 /// Encodes a message for this subscription.
-pub(crate) fn message_data(subscription: u32, message: &Message) -> Vec<u8> {
+pub(crate) fn message_data(subscription: u32, message: &EncodedMessage) -> Vec<u8> {
     data(subscription, message.log_nanos, &message.bytes)
 }
 
@@ -159,20 +159,20 @@ mod tests {
         for (text, meant) in [
             (
                 r#"{"op":"subscribe","subscriptions":[{"id":7,"channelId":1},{"id":8,"channelId":12,"new":0}]}"#,
-                Request::Subscribe {
+                ViewerRequest::Subscribe {
                     subscriptions: vec![wanted(7, 1), wanted(8, 12)],
                 },
             ),
             (
                 r#"{"op":"unsubscribe","subscriptionIds":[7]}"#,
-                Request::Unsubscribe {
+                ViewerRequest::Unsubscribe {
                     subscription_ids: vec![7],
                 },
             ),
-            (r#"{"op":"advertise","channels":[]}"#, Request::Other),
-            (r#"{"op":"getParameters"}"#, Request::Other),
+            (r#"{"op":"advertise","channels":[]}"#, ViewerRequest::Other),
+            (r#"{"op":"getParameters"}"#, ViewerRequest::Other),
         ] {
-            assert_eq!(serde_json::from_str::<Request>(text).unwrap(), meant);
+            assert_eq!(serde_json::from_str::<ViewerRequest>(text).unwrap(), meant);
         }
         for nonsense in [
             "",
@@ -182,7 +182,7 @@ mod tests {
             r#"{"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]}"#,
         ] {
             assert!(
-                serde_json::from_str::<Request>(nonsense).is_err(),
+                serde_json::from_str::<ViewerRequest>(nonsense).is_err(),
                 "{nonsense}"
             );
         }
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn a_message_is_a_one_the_number_the_time_and_the_bytes() {
-        let message = Message {
+        let message = EncodedMessage {
             topic: Topic::State,
             log_nanos: 0x0102_0304_0506_0708,
             publish_nanos: 0,

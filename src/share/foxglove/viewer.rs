@@ -1,12 +1,12 @@
 //! One viewer's connection: after the greeting it subscribes, and receives its subscriptions until it leaves, stops reading, falls
 //! silent, or violates the protocol or its allowance.
 
-use crate::record::file::format::encode::Message;
+use crate::record::file::format::encode::EncodedMessage;
 use crate::record::file::format::topic::Topic;
 use crate::share::foxglove::allowance::Allowance;
 use crate::share::foxglove::outlet::Seat;
 use crate::share::foxglove::protocol::{
-    self, Greeting, MODEL_CHANNEL, Request, SUBPROTOCOLS, Subscription,
+    self, Greeting, MODEL_CHANNEL, SUBPROTOCOLS, Subscription, ViewerRequest,
 };
 use futures::{SinkExt as _, StreamExt as _};
 use std::io;
@@ -40,13 +40,13 @@ const IN_ONE_GO: usize = 64;
 type Socket = WebSocketStream<Allowance<TcpStream>>;
 
 /// A connected viewer.
-pub(crate) struct Connection {
+pub(crate) struct ViewerConnection {
     seat: Seat,
     greeting: Arc<Greeting>,
     subscriptions: Vec<Subscription>,
 }
 
-impl Connection {
+impl ViewerConnection {
     pub(crate) const fn new(seat: Seat, greeting: Arc<Greeting>) -> Self {
         Self {
             seat,
@@ -98,8 +98,8 @@ impl Connection {
     async fn pass_on(
         &self,
         socket: &mut Socket,
-        first: Result<Arc<Message>, RecvError>,
-        waiting: &mut Receiver<Arc<Message>>,
+        first: Result<Arc<EncodedMessage>, RecvError>,
+        waiting: &mut Receiver<Arc<EncodedMessage>>,
     ) -> io::Result<()> {
         let (mut next, mut left, mut sent) = (first, IN_ONE_GO, 0);
         loop {
@@ -139,18 +139,18 @@ impl Connection {
     fn answers(&mut self, said: &Frame) -> Vec<Frame> {
         let answers = match said {
             Frame::Text(text) => match serde_json::from_str(text) {
-                Ok(Request::Subscribe { subscriptions }) => {
+                Ok(ViewerRequest::Subscribe { subscriptions }) => {
                     let told = subscriptions
                         .into_iter()
                         .map(|wanted| self.subscribe(wanted));
                     told.flatten().collect()
                 }
-                Ok(Request::Unsubscribe { subscription_ids }) => {
+                Ok(ViewerRequest::Unsubscribe { subscription_ids }) => {
                     self.subscriptions
                         .retain(|own| !subscription_ids.contains(&own.id));
                     Vec::new()
                 }
-                Ok(Request::Other) => vec![warning(
+                Ok(ViewerRequest::Other) => vec![warning(
                     "ignored: this server shows its topics and takes nothing",
                 )],
                 Err(unknown) => vec![error(&format!("not understood: {unknown}"))],

@@ -77,10 +77,10 @@ pub enum MoverChange {
 
 /// The clients of one gateway, shared by their connections. Each lock lasts for one call.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct SharedBoard(Arc<Mutex<Board>>);
+pub(crate) struct SharedClientTable(Arc<Mutex<ClientTable>>);
 
-impl SharedBoard {
-    pub(crate) fn with<T>(&self, act: impl FnOnce(&mut Board) -> T) -> T {
+impl SharedClientTable {
+    pub(crate) fn with<T>(&self, act: impl FnOnce(&mut ClientTable) -> T) -> T {
         // Each call leaves the board consistent, even one that panicked.
         act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -88,8 +88,8 @@ impl SharedBoard {
 
 /// The clients of one gateway.
 #[derive(Debug, Default)]
-pub(crate) struct Board {
-    rows: Vec<Row>,
+pub(crate) struct ClientTable {
+    rows: Vec<Client>,
     last_id: u64,
     pub(crate) turned_away: u64,
     /// The client that is acquiring control.
@@ -110,7 +110,7 @@ pub(crate) struct Holder {
 
 /// One client's entry.
 #[derive(Debug)]
-pub(crate) struct Row {
+pub(crate) struct Client {
     shown: GatewayClient,
     pace: Pace,
     /// Time of its last request.
@@ -121,7 +121,7 @@ pub(crate) struct Row {
     pub(crate) granted: Arc<Notify>,
 }
 
-impl Row {
+impl Client {
     /// Counts a complete request.
     pub(crate) fn asked(&mut self, now: Moment) {
         self.heard = now;
@@ -161,7 +161,7 @@ impl Row {
     }
 }
 
-impl Board {
+impl ClientTable {
     /// Adds a new client, unless there are too many.
     pub(crate) fn connect(&mut self, address: SocketAddr, now: Moment) -> Option<ClientId> {
         if self.rows.len() >= CLIENTS_MAX {
@@ -170,7 +170,7 @@ impl Board {
         }
         self.last_id += 1;
         let id = ClientId(self.last_id);
-        self.rows.push(Row {
+        self.rows.push(Client {
             shown: GatewayClient {
                 id,
                 address,
@@ -249,13 +249,13 @@ impl Board {
         turn
     }
 
-    pub(crate) fn row(&mut self, id: ClientId) -> Option<&mut Row> {
+    pub(crate) fn row(&mut self, id: ClientId) -> Option<&mut Client> {
         self.rows.iter_mut().find(|row| row.shown.id == id)
     }
 
     /// All clients, the oldest first.
     pub(crate) fn shown(&self, now: Moment) -> Vec<GatewayClient> {
-        let shown = |row: &Row| GatewayClient {
+        let shown = |row: &Client| GatewayClient {
             hz: row.pace.hz(now),
             ..row.shown.clone()
         };
@@ -295,8 +295,8 @@ impl Pace {
 mod tests {
     use super::*;
 
-    fn board() -> Board {
-        Board::default()
+    fn board() -> ClientTable {
+        ClientTable::default()
     }
 
     fn address() -> SocketAddr {
@@ -310,7 +310,7 @@ mod tests {
         for nth in 0..300 {
             board.row(id).unwrap().asked(ms(10_000 + 10 * nth));
         }
-        let hz = |board: &Board, at| board.shown(ms(at))[0].hz;
+        let hz = |board: &ClientTable, at| board.shown(ms(at))[0].hz;
         assert_eq!(hz(&board, 12_995), 100);
         assert_eq!(hz(&board, 13_500), 100);
         assert_eq!(hz(&board, 14_500), 0);

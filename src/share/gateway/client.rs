@@ -5,7 +5,7 @@
 use crate::codec::mbap::{ADU_LEN_MAX, Adu, MbapSplitter};
 use crate::codec::pdu::{self, ModbusRole, Pdu};
 use crate::hand::ModbusException;
-use crate::share::gateway::board::{Board, ClientId};
+use crate::share::gateway::board::{ClientId, ClientTable};
 use crate::share::gateway::service::Service;
 use futures::future::{BoxFuture, FutureExt as _, OptionFuture};
 use futures::stream::{FuturesUnordered, StreamExt as _};
@@ -31,15 +31,15 @@ pub const WRITE_TIMEOUT: Duration = Duration::from_secs(2);
 const WAITING_MAX: usize = 16;
 
 /// A connected client: dropping this disconnects it, however its connection ends.
-pub(crate) struct Connection {
+pub(crate) struct ClientConnection {
     service: Service,
     id: ClientId,
     granted: Arc<Notify>,
 }
 
-impl Connection {
+impl ClientConnection {
     pub(crate) fn new(service: Service, id: ClientId) -> Self {
-        let row = |board: &mut Board| board.row(id).map(|row| Arc::clone(&row.granted));
+        let row = |board: &mut ClientTable| board.row(id).map(|row| Arc::clone(&row.granted));
         Self {
             granted: service.leases.board.with(row).unwrap_or_default(),
             service,
@@ -153,7 +153,7 @@ fn is_read(asked: &Adu) -> bool {
     )
 }
 
-impl Drop for Connection {
+impl Drop for ClientConnection {
     fn drop(&mut self) {
         self.service.leases.disconnect(self.id);
     }

@@ -9,7 +9,7 @@ use crate::link::{
 use crate::record::{ArmRefusal, Disarmed, LinkState, Record, WriteCause, WriteFate};
 use crate::share::gateway::allowed;
 use crate::share::gateway::board::{
-    Board, ClientId, ClientLease, Holder, MoverChange, SharedBoard,
+    ClientId, ClientLease, ClientTable, Holder, MoverChange, SharedClientTable,
 };
 use crate::share::gateway::refusal::WriteRefusal;
 use std::time::Duration;
@@ -36,7 +36,7 @@ pub enum Writers {
 
 /// Reason for acquiring control.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Claim {
+enum LeaseClaim {
     Wrote,
     /// The user chose the client.
     Chosen,
@@ -47,7 +47,7 @@ enum Claim {
 pub(crate) struct ClientLeases {
     pub(crate) link: LinkHandle,
     pub(crate) reads: RecentReads,
-    pub(crate) board: SharedBoard,
+    pub(crate) board: SharedClientTable,
     writers: Writers,
     silence: Duration,
 }
@@ -57,7 +57,7 @@ impl ClientLeases {
         Self {
             reads: RecentReads::of(&link),
             link,
-            board: SharedBoard::default(),
+            board: SharedClientTable::default(),
             writers,
             silence,
         }
@@ -79,7 +79,7 @@ impl ClientLeases {
             // A client without control may stop the hand while another controller moves it.
             lease => match self.obey_stop(client, request).await {
                 Some(done) => return done,
-                None if lease == ClientLease::Never => self.take(client, Claim::Wrote).await?,
+                None if lease == ClientLease::Never => self.take(client, LeaseClaim::Wrote).await?,
                 None => return Err(WriteRefusal::Over),
             },
         };
@@ -99,7 +99,7 @@ impl ClientLeases {
 
     /// Acquires control for this client, to which the user granted it.
     pub(crate) async fn granted(&self, client: ClientId) {
-        if let Err(refusal) = self.take(client, Claim::Chosen).await {
+        if let Err(refusal) = self.take(client, LeaseClaim::Chosen).await {
             self.board
                 .with(|board| board.row(client).map(|row| row.not_granted(refusal)));
         }
@@ -225,7 +225,7 @@ impl ClientLeases {
     /// and none moves elsewhere. Returns true if so.
     async fn stops(&self, client: ClientId, targets: &PerDof<i16>) -> bool {
         let now = Instant::now();
-        let stopped = |board: &mut Board| board.row(client).and_then(|row| row.stopped);
+        let stopped = |board: &mut ClientTable| board.row(client).and_then(|row| row.stopped);
         let stopped = self.board.with(stopped);
         let status = self.link.status();
         let may_stop = status.goes_on()
@@ -268,8 +268,8 @@ impl ClientLeases {
         )
     }
 
-    async fn take(&self, client: ClientId, claim: Claim) -> Result<Lease, WriteRefusal> {
-        if claim == Claim::Wrote && self.writers != Writers::First {
+    async fn take(&self, client: ClientId, claim: LeaseClaim) -> Result<Lease, WriteRefusal> {
+        if claim == LeaseClaim::Wrote && self.writers != Writers::First {
             return Err(WriteRefusal::NotGranted);
         }
         let begun = self.board.with(|board| board.begin_taking(client));
@@ -284,7 +284,7 @@ impl ClientLeases {
         &self,
         client: ClientId,
         owner: Owner,
-        claim: Claim,
+        claim: LeaseClaim,
     ) -> Result<Lease, WriteRefusal> {
         let refused = match self.link.status().state {
             LinkState::Offline | LinkState::Identifying => Some(ArmRefusal::Offline),
@@ -298,7 +298,7 @@ impl ClientLeases {
             return Err(WriteRefusal::NotArmed(reason));
         }
         let request = self.limits().await?;
-        if claim == Claim::Wrote && !self.is_free() {
+        if claim == LeaseClaim::Wrote && !self.is_free() {
             return Err(WriteRefusal::Taken);
         }
         // The client that had control loses it.

@@ -13,8 +13,8 @@ pub use leases::Writers;
 pub use refusal::WriteRefusal;
 
 use crate::link::LinkHandle;
-use crate::share::gateway::board::Board;
-use crate::share::gateway::client::Connection;
+use crate::share::gateway::board::ClientTable;
+use crate::share::gateway::client::ClientConnection;
 use crate::share::gateway::leases::ClientLeases;
 use crate::share::gateway::service::Service;
 use std::io;
@@ -89,7 +89,7 @@ impl Gateway {
 
     /// Control changes since the last call, each one, in order.
     pub fn movers(&self) -> Vec<MoverEvent> {
-        self.leases.board.with(Board::take_events)
+        self.leases.board.with(ClientTable::take_events)
     }
 
     /// Number of connections refused because there were [`CLIENTS_MAX`].
@@ -100,7 +100,7 @@ impl Gateway {
     /// Grants this client control of the hand: the present holder loses it, and the hand is armed with its present speeds and
     /// forces. Call only at the user's request. The result is the client's [`GatewayClient::lease`], or its refusal.
     pub fn grant(&self, client: ClientId) {
-        let tell = |row: &mut board::Row| row.granted.notify_one();
+        let tell = |row: &mut board::Client| row.granted.notify_one();
         self.leases.board.with(|board| board.row(client).map(tell));
     }
 }
@@ -142,7 +142,7 @@ fn begin(clients: &mut JoinSet<()>, leases: &ClientLeases, stream: TcpStream, ad
     let service = Service {
         leases: leases.clone(),
     };
-    let connection = Connection::new(service, id);
+    let connection = ClientConnection::new(service, id);
     // Without it answers would wait for the client's acknowledgement.
     if stream.set_nodelay(true).is_ok() {
         clients.spawn(connection.serve(stream));

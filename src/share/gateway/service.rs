@@ -5,7 +5,7 @@ use crate::codec::modbus::READ_WORDS_MAX;
 use crate::codec::pdu::{self, ModbusRole, Pdu};
 use crate::hand::{HandCommand, ModbusException, Span};
 use crate::share::gateway::allowed;
-use crate::share::gateway::board::{ClientId, Row};
+use crate::share::gateway::board::{Client, ClientId};
 use crate::share::gateway::leases::ClientLeases;
 use crate::share::gateway::refusal::{WriteRefusal, exception};
 
@@ -38,7 +38,7 @@ impl Service {
         match pdu::parse(ModbusRole::Client, request) {
             Pdu::Read { address, count } => {
                 let words = self.read(address, count).await?;
-                self.note(client, Row::read);
+                self.note(client, Client::read);
                 Ok(words)
             }
             Pdu::WriteOne { address, value } => {
@@ -106,7 +106,7 @@ impl Service {
         told
     }
 
-    fn note(&self, client: ClientId, what: impl FnOnce(&mut Row)) {
+    fn note(&self, client: ClientId, what: impl FnOnce(&mut Client)) {
         self.leases.board.with(|board| board.row(client).map(what));
     }
 }

@@ -17,7 +17,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// State shared between the window and the signal task.
 #[derive(Debug)]
-pub(crate) struct Ending {
+pub(crate) struct ShutdownState {
     clock: Clock,
     wanted: AtomicBool,
     /// True after the window has ended; it can no longer freeze.
@@ -27,7 +27,7 @@ pub(crate) struct Ending {
     window: OnceLock<egui::Context>,
 }
 
-impl Ending {
+impl ShutdownState {
     pub(crate) fn new(clock: Clock) -> Arc<Self> {
         Arc::new(Self {
             clock,
@@ -74,7 +74,7 @@ impl Ending {
 }
 
 /// Waits for a signal that ends the program, on the links' runtime, which the window cannot block.
-pub(crate) async fn on_signals(ending: Arc<Ending>) {
+pub(crate) async fn on_signals(ending: Arc<ShutdownState>) {
     let Ok(mut interrupt) = Interrupt::listen() else {
         return;
     };

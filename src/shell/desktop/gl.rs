@@ -1,7 +1,7 @@
 //! The window with OpenGL, by eframe.
 
 use crate::shell::desktop::failure::{DesktopError, cause_of};
-use crate::shell::desktop::program::{Beginning, Program, viewport};
+use crate::shell::desktop::program::{Beginning, DesktopProgram, viewport};
 use std::rc::Rc;
 
 /// Opens the window and runs until it is closed.
@@ -37,7 +37,7 @@ fn no_opengl(words: &str) -> DesktopError {
     }
 }
 
-struct GlWindow(Program);
+struct GlWindow(DesktopProgram);
 
 impl eframe::App for GlWindow {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {

@@ -16,5 +16,5 @@ pub(crate) mod start;
 
 pub use crate::shell::desktop::card::may_draw_with_a_card;
 pub use crate::shell::desktop::failure::DesktopError;
-pub use crate::shell::desktop::options::{DesktopStart, Drawing};
+pub use crate::shell::desktop::options::{DesktopStart, Renderer};
 pub use crate::shell::desktop::start::run;

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 /// Renderer of the window.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub enum Drawing {
+pub enum Renderer {
     #[default]
     OpenGl,
     /// Rendered by the program on the processor, at the user's request.
@@ -21,7 +21,7 @@ pub enum Drawing {
 pub struct DesktopStart {
     /// The hands named on the command line.
     pub endpoints: Vec<Endpoint>,
-    pub drawing: Drawing,
+    pub drawing: Renderer,
     /// Settings of the last run, and a notice about loading them.
     pub loaded: Loaded,
     /// Path of the settings file.

@@ -12,10 +12,10 @@ use crate::hand::Moment;
 use crate::inputs::pad::device::system_pads;
 use crate::link::{Clock, guard};
 use crate::shell::desktop::dialog::NativeDialog;
-use crate::shell::desktop::ending::{END_TIMEOUT, Ending};
+use crate::shell::desktop::ending::{END_TIMEOUT, ShutdownState};
 use crate::shell::desktop::file_manager;
 use crate::shell::desktop::icon::icon;
-use crate::shell::desktop::options::{DesktopStart, Drawing};
+use crate::shell::desktop::options::{DesktopStart, Renderer};
 use crate::shell::{DesktopApp, REST_FRAME_INTERVAL, SOFTWARE_REST_FRAME_INTERVAL};
 use egui::{Vec2, ViewportBuilder, ViewportCommand, ViewportInfo, WindowLevel};
 use mundy::{Interest, Preferences, Subscription};
@@ -51,7 +51,7 @@ pub(crate) struct Services {
     pub(crate) runtime: tokio::runtime::Handle,
     pub(crate) clock: Clock,
     /// Signals the window that the program has to end.
-    pub(crate) ending: Arc<Ending>,
+    pub(crate) ending: Arc<ShutdownState>,
 }
 
 /// Becomes the program once its window exists.
@@ -77,10 +77,10 @@ impl Beginning {
     }
 
     /// Starts the program; `None` if it was started before.
-    pub(crate) fn begin(&self, ctx: &egui::Context) -> Option<Program> {
+    pub(crate) fn begin(&self, ctx: &egui::Context) -> Option<DesktopProgram> {
         let (start, services) = self.waiting.take()?;
         self.stands.store(true, Ordering::Relaxed);
-        Some(Program::new(ctx, start, services))
+        Some(DesktopProgram::new(ctx, start, services))
     }
 }
 
@@ -99,7 +99,7 @@ fn follow_reduced_motion(ctx: &egui::Context) -> Subscription {
 }
 
 /// The program behind the window.
-pub(crate) struct Program {
+pub(crate) struct DesktopProgram {
     desktop_app: DesktopApp,
     clock: Clock,
     /// Maximum delay of a frame after an update while no hand moves.
@@ -112,11 +112,11 @@ pub(crate) struct Program {
     /// Full-screen state; `None` outside an exhibition.
     fills: Option<Filling>,
     closing: bool,
-    ending: Arc<Ending>,
+    ending: Arc<ShutdownState>,
     _reduced_motion: Subscription,
 }
 
-impl Drop for Program {
+impl Drop for DesktopProgram {
     /// However the window ends, even by a panic: holds each hand that may move, and gives it time to rest.
     fn drop(&mut self) {
         self.ending.ended();
@@ -124,7 +124,7 @@ impl Drop for Program {
     }
 }
 
-impl Program {
+impl DesktopProgram {
     fn new(ctx: &egui::Context, start: DesktopStart, services: Services) -> Self {
         let Services {
             runtime,
@@ -153,12 +153,12 @@ impl Program {
         };
         let mut app = App::new(env, start.loaded.settings);
         let at_rest = match start.drawing {
-            Drawing::OpenGl => REST_FRAME_INTERVAL,
-            Drawing::Software | Drawing::InPlaceOfOpenGl(_) => SOFTWARE_REST_FRAME_INTERVAL,
+            Renderer::OpenGl => REST_FRAME_INTERVAL,
+            Renderer::Software | Renderer::InPlaceOfOpenGl(_) => SOFTWARE_REST_FRAME_INTERVAL,
         };
         let without = match start.drawing {
-            Drawing::InPlaceOfOpenGl(reason) => Some(NoticeKind::DrawnWithoutOpenGl { reason }),
-            Drawing::OpenGl | Drawing::Software => None,
+            Renderer::InPlaceOfOpenGl(reason) => Some(NoticeKind::DrawnWithoutOpenGl { reason }),
+            Renderer::OpenGl | Renderer::Software => None,
         };
         for notice in start.loaded.notice.into_iter().chain(without) {
             app.tell(notice, clock.now());
@@ -404,9 +404,9 @@ mod tests {
     /// Draws frames until this is so.
     fn until(
         ctx: &egui::Context,
-        program: &mut Program,
+        program: &mut DesktopProgram,
         what: &str,
-        is_so: impl Fn(&Program) -> bool,
+        is_so: impl Fn(&DesktopProgram) -> bool,
     ) {
         let begun = std::time::Instant::now();
         while !is_so(program) {
@@ -437,7 +437,7 @@ mod tests {
         runtime.spawn(modbus_tcp::serve(hand.clone(), listener));
         let start = DesktopStart {
             endpoints: vec![endpoint.parse().unwrap()],
-            drawing: Drawing::Software,
+            drawing: Renderer::Software,
             loaded: crate::app::files::settings_file::Loaded::default(),
             settings_path: None,
             snap: crate::shell::headless::snap::snap,
@@ -449,15 +449,15 @@ mod tests {
         let services = Services {
             runtime: runtime.handle().clone(),
             clock,
-            ending: Ending::new(clock),
+            ending: ShutdownState::new(clock),
         };
         let ctx = egui::Context::default();
-        let mut program = Program::new(&ctx, start, services);
-        let angle = |program: &Program| {
+        let mut program = DesktopProgram::new(&ctx, start, services);
+        let angle = |program: &DesktopProgram| {
             let angle = program.desktop_app.state().hand().readings.sample.angle;
             angle.map_or(1000, |angle| angle.value[Dof::Index].raw())
         };
-        let is_armed = |program: &Program| {
+        let is_armed = |program: &DesktopProgram| {
             program
                 .desktop_app
                 .state()

@@ -1,7 +1,7 @@
 //! The window without OpenGL: its event loop and draw timing. The screen module handles the pixels.
 
 use crate::shell::desktop::failure::{DesktopError, cause_of};
-use crate::shell::desktop::program::{Beginning, Program, REPAINT_AT_LEAST, viewport};
+use crate::shell::desktop::program::{Beginning, DesktopProgram, REPAINT_AT_LEAST, viewport};
 use crate::shell::desktop::screen::{DrawnFrame, Screen};
 use egui::{Context, RawInput, ViewportCommand, ViewportEvent, ViewportId, ViewportInfo};
 use egui_winit::accesskit_winit::{self, WindowEvent as AccessEvent};
@@ -65,7 +65,7 @@ struct OpenWindow {
     window: Rc<Window>,
     state: State,
     screen: Screen,
-    program: Program,
+    program: DesktopProgram,
     info: ViewportInfo,
     /// Input that no frame has consumed yet.
     pending: RawInput,

@@ -1,10 +1,10 @@
 //! Chooses one of the two windows, and starts the thread for all links. Opens no window itself.
 
 use crate::link::Clock;
-use crate::shell::desktop::ending::{Ending, on_signals};
+use crate::shell::desktop::ending::{ShutdownState, on_signals};
 use crate::shell::desktop::failure::{DesktopError, panic_words};
 use crate::shell::desktop::gl::run as run_opengl;
-use crate::shell::desktop::options::{DesktopStart, Drawing};
+use crate::shell::desktop::options::{DesktopStart, Renderer};
 use crate::shell::desktop::program::{Beginning, Services};
 use crate::shell::desktop::software::run as run_software;
 use std::panic::AssertUnwindSafe;
@@ -29,7 +29,7 @@ pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
             cause: error.to_string(),
         })?;
     let clock = Clock::start();
-    let ending = Ending::new(clock);
+    let ending = ShutdownState::new(clock);
     // Listens before there is a window.
     runtime.spawn(on_signals(Arc::clone(&ending)));
     let services = Services {
@@ -42,8 +42,8 @@ pub fn run(start: DesktopStart) -> Result<(), DesktopError> {
     silence_until(&stands);
     let beginning = Rc::new(Beginning::new(start, services, Arc::clone(&stands)));
     let window = AssertUnwindSafe(|| match drawing {
-        Drawing::OpenGl => run_opengl(&beginning),
-        Drawing::Software | Drawing::InPlaceOfOpenGl(_) => run_software(&beginning),
+        Renderer::OpenGl => run_opengl(&beginning),
+        Renderer::Software | Renderer::InPlaceOfOpenGl(_) => run_software(&beginning),
     });
     let ended = std::panic::catch_unwind(window);
     runtime.shutdown_timeout(Duration::from_millis(200));

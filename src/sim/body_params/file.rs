@@ -28,15 +28,15 @@ pub struct BodyFileError {
     pub why: FileError,
 }
 
-type Numbers = BTreeMap<Spanned<String>, Spanned<Value>>;
+type NumberTable = BTreeMap<Spanned<String>, Spanned<Value>>;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BodyRow {
     #[serde(default)]
-    supply: Numbers,
+    supply: NumberTable,
     #[serde(default)]
-    joint: BTreeMap<Dof, Numbers>,
+    joint: BTreeMap<Dof, NumberTable>,
     #[serde(default)]
     fingertip: BTreeMap<Finger, FingertipRow>,
 }
@@ -80,7 +80,7 @@ pub fn parse(text: &str) -> Result<BodyParams, FileError> {
 /// Stores the numbers in their fields.
 fn take<T>(
     source: FileText<'_>,
-    numbers: &Numbers,
+    numbers: &NumberTable,
     keys: &[BodyKey<T>],
     into: &mut T,
 ) -> Result<(), FileError> {

@@ -108,7 +108,7 @@ impl Announced {
 
 /// A reader or writer, as announced by its participant.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Endpoint {
+pub(super) struct AnnouncedEndpoint {
     pub(super) guid: Guid,
     pub(super) topic: String,
     pub(super) type_name: String,
@@ -126,7 +126,7 @@ const BEST_EFFORT: u32 = 1;
 const RELIABLE: u32 = 2;
 const TRANSIENT_LOCAL: u32 = 1;
 
-impl Endpoint {
+impl AnnouncedEndpoint {
     pub(super) fn parse(payload: &[u8], is_writer: bool) -> Option<Self> {
         let (mut guid, mut topic, mut type_name) = (None, None, None);
         // By default writers are reliable, and readers are not.

@@ -76,12 +76,12 @@ pub struct DdsNode {
 
 /// A participant and its sockets. When dropped, it leaves, and its threads end soon afterwards.
 struct Open {
-    shared: Arc<Shared>,
+    shared: Arc<NodeState>,
     prefix: Prefix,
     address: Ipv4Addr,
 }
 
-struct Shared {
+struct NodeState {
     core: Mutex<Core>,
     sockets: Sockets,
     has_ended: AtomicBool,
@@ -107,7 +107,7 @@ impl DdsNode {
             everyone: sockets.everyone(),
         };
         let prefix = new_prefix();
-        let shared = Arc::new(Shared {
+        let shared = Arc::new(NodeState {
             core: Mutex::new(Core::new(prefix, places, Instant::now())),
             sockets,
             has_ended: AtomicBool::new(false),
@@ -159,7 +159,7 @@ impl DdsNode {
     /// Returns the messages of a topic from now on, of every writer, reliable or not; the newest `kept` are kept until
     /// they are read. Must be called within a tokio runtime.
     pub fn reader(&self, topic: &DdsTopic, kept: u16) -> mpsc::Receiver<DdsMessage> {
-        let waiting = Arc::new(Waiting {
+        let waiting = Arc::new(ReceiveQueue {
             messages: Mutex::new(VecDeque::new()),
             kept: usize::from(kept).max(1),
             arrived: Notify::new(),
@@ -191,7 +191,7 @@ impl Drop for Open {
     }
 }
 
-impl Shared {
+impl NodeState {
     /// Runs `work` on the participant, and sends the resulting datagrams; also returns false if some of them could not be sent.
     fn with<T>(&self, work: impl FnOnce(&mut Core, Instant) -> T) -> (T, bool) {
         let (done, outgoing) = {
@@ -243,13 +243,13 @@ fn new_prefix() -> Prefix {
 }
 
 /// Received messages that were not read yet.
-struct Waiting {
+struct ReceiveQueue {
     messages: Mutex<VecDeque<DdsMessage>>,
     kept: usize,
     arrived: Notify,
 }
 
-impl Waiting {
+impl ReceiveQueue {
     fn push(&self, message: DdsMessage) {
         let mut messages = lock(&self.messages);
         if messages.len() >= self.kept {

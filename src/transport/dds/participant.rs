@@ -2,16 +2,16 @@
 //! state about others is bounded.
 
 use crate::transport::dds::discovery::{
-    Announced, Endpoint, HAS_PUBLICATIONS_READER, HAS_PUBLICATIONS_WRITER,
+    Announced, AnnouncedEndpoint, HAS_PUBLICATIONS_READER, HAS_PUBLICATIONS_WRITER,
 };
 use crate::transport::dds::discovery::{
     HAS_SUBSCRIPTIONS_READER, HAS_SUBSCRIPTIONS_WRITER, key, keyed, reached,
 };
 use crate::transport::dds::message::{DdsMessage, DdsTopic, DdsWriterId};
 use crate::transport::dds::receive::{Assemblies, Received};
-use crate::transport::dds::send::{Change, Outgoing, Writer};
+use crate::transport::dds::send::{CacheChange, Outgoing, Writer};
 use crate::transport::dds::wire::{
-    Data, Datagram, Ends, EntityId, Guid, Message, Prefix, Submessage,
+    Data, Datagram, EndpointPair, EntityId, Guid, Message, Prefix, Submessage,
 };
 use std::collections::{BTreeMap, HashMap};
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -61,18 +61,18 @@ struct Participant {
     inquire_at: Instant,
     publications: Received,
     subscriptions: Received,
-    writers: BTreeMap<EntityId, Endpoint>,
-    readers: BTreeMap<EntityId, Endpoint>,
+    writers: BTreeMap<EntityId, AnnouncedEndpoint>,
+    readers: BTreeMap<EntityId, AnnouncedEndpoint>,
 }
 
 struct LocalReader {
-    endpoint: Endpoint,
+    endpoint: AnnouncedEndpoint,
     inbox: Inbox,
     sources: HashMap<Guid, Received>,
 }
 
 struct LocalWriter {
-    endpoint: Endpoint,
+    endpoint: AnnouncedEndpoint,
     writer: Writer,
 }
 
@@ -128,8 +128,8 @@ impl Core {
         self.entities
     }
 
-    fn endpoint(&self, entity: EntityId, topic: &DdsTopic) -> Endpoint {
-        Endpoint {
+    fn endpoint(&self, entity: EntityId, topic: &DdsTopic) -> AnnouncedEndpoint {
+        AnnouncedEndpoint {
             guid: self.guid(entity),
             topic: topic.name.clone(),
             type_name: topic.type_name.clone(),
@@ -156,7 +156,7 @@ impl Core {
                 participant.reads(&endpoint, &mut writer, reader, now);
             }
         }
-        let announced = Change::Payload(endpoint.payload());
+        let announced = CacheChange::Payload(endpoint.payload());
         let (own, never) = (self.prefix, (0, 0));
         self.outgoing
             .extend(self.publications.write(announced, own, never, now));
@@ -177,7 +177,7 @@ impl Core {
         let sources = sources
             .map(|writer| (writer.guid, Received::default()))
             .collect();
-        let announced = Change::Payload(endpoint.payload());
+        let announced = CacheChange::Payload(endpoint.payload());
         let (own, never) = (self.prefix, (0, 0));
         self.outgoing
             .extend(self.subscriptions.write(announced, own, never, now));
@@ -200,12 +200,12 @@ impl Core {
         } else {
             return;
         };
-        let of_it = |change: &Change| match change {
-            Change::Payload(payload) => keyed(payload) == Some(guid),
-            Change::Gone(..) => false,
+        let of_it = |change: &CacheChange| match change {
+            CacheChange::Payload(payload) => keyed(payload) == Some(guid),
+            CacheChange::Gone(..) => false,
         };
         announcing.forget(of_it);
-        let gone = Change::Gone(guid, key(guid));
+        let gone = CacheChange::Gone(guid, key(guid));
         self.outgoing
             .extend(announcing.write(gone, self.prefix, (0, 0), now));
     }
@@ -234,7 +234,7 @@ impl Core {
         let seconds = u32::try_from(since_1970.as_secs()).unwrap_or(u32::MAX);
         let fraction = (u64::from(since_1970.subsec_nanos()) << 32) / 1_000_000_000;
         let stamp = (seconds, u32::try_from(fraction).unwrap_or_default());
-        let change = Change::Payload(message);
+        let change = CacheChange::Payload(message);
         self.outgoing
             .extend(local.writer.write(change, self.prefix, stamp, now));
         true
@@ -465,7 +465,7 @@ impl Core {
         }
     }
 
-    fn data(&mut self, from: Prefix, ends: Ends, data: &Data<'_>, now: Instant) {
+    fn data(&mut self, from: Prefix, ends: EndpointPair, data: &Data<'_>, now: Instant) {
         let writer = Guid {
             prefix: from,
             entity: ends.writer,
@@ -526,7 +526,7 @@ impl Core {
             }
             return;
         }
-        let Some(endpoint) = Endpoint::parse(data.payload, is_writer) else {
+        let Some(endpoint) = AnnouncedEndpoint::parse(data.payload, is_writer) else {
             return;
         };
         if endpoint.guid.prefix != from || known >= ENDPOINTS_MAX {
@@ -545,7 +545,13 @@ impl Core {
         }
     }
 
-    fn heartbeat(&mut self, from: Prefix, ends: Ends, range: (u64, u64), wants_answer: bool) {
+    fn heartbeat(
+        &mut self,
+        from: Prefix,
+        ends: EndpointPair,
+        range: (u64, u64),
+        wants_answer: bool,
+    ) {
         let own = self.prefix;
         let Some(other) = self.participants.get_mut(&from) else {
             return;
@@ -584,21 +590,21 @@ impl Core {
 }
 
 /// The ends for announcements of participants.
-const SPDP: Ends = Ends {
+const SPDP: EndpointPair = EndpointPair {
     reader: EntityId::SPDP_READER,
     writer: EntityId::SPDP_WRITER,
 };
 
 /// The ends of a reply to an announcing writer.
-const fn answering(writer: EntityId) -> Ends {
+const fn answering(writer: EntityId) -> EndpointPair {
     let reader = match writer {
         EntityId::PUBLICATIONS_WRITER => EntityId::PUBLICATIONS_READER,
         _ => EntityId::SUBSCRIPTIONS_READER,
     };
-    Ends { reader, writer }
+    EndpointPair { reader, writer }
 }
 
-fn is_of_topic(one: &Endpoint, other: &Endpoint) -> bool {
+fn is_of_topic(one: &AnnouncedEndpoint, other: &AnnouncedEndpoint) -> bool {
     let same = one.topic == other.topic && one.type_name == other.type_name;
     same && !one.is_apart && !other.is_apart
 }
@@ -614,7 +620,13 @@ impl Participant {
     }
 
     /// Adds one of its readers to one of our writers, if they match.
-    fn reads(&self, endpoint: &Endpoint, writer: &mut Writer, reader: &Endpoint, now: Instant) {
+    fn reads(
+        &self,
+        endpoint: &AnnouncedEndpoint,
+        writer: &mut Writer,
+        reader: &AnnouncedEndpoint,
+        now: Instant,
+    ) {
         let own = reached(&reader.places, self.source);
         let Some(place) = own.or(self.messages) else {
             return;

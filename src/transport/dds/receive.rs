@@ -1,6 +1,6 @@
 //! Received messages of a writer, missing ones, and the fragments of long ones. All state is bounded regardless of the input.
 
-use crate::transport::dds::wire::{EntityId, Fragment, Guid, NumberSet, Request, SET_MAX};
+use crate::transport::dds::wire::{AckNackRequest, EntityId, Fragment, Guid, NumberSet, SET_MAX};
 use std::collections::{BTreeSet, VecDeque};
 
 /// A number this far behind is not a late message: its writer restarted, or a forged number preceded it.
@@ -58,7 +58,7 @@ impl Received {
         &mut self,
         (first, last): (u64, u64),
         wants_answer: bool,
-    ) -> Option<Request> {
+    ) -> Option<AckNackRequest> {
         self.is_known = true;
         // The writer restarted, or its earlier numbers were forged.
         let is_anew = last + 1 < self.next;
@@ -77,14 +77,14 @@ impl Received {
     }
 
     /// Requests a heartbeat from the writer.
-    pub(super) fn inquire(&mut self) -> Request {
+    pub(super) fn inquire(&mut self) -> AckNackRequest {
         self.request(Vec::new())
     }
 
-    fn request(&mut self, numbers: Vec<u64>) -> Request {
+    fn request(&mut self, numbers: Vec<u64>) -> AckNackRequest {
         self.acknacks = self.acknacks.wrapping_add(1);
         let base = self.next;
-        Request {
+        AckNackRequest {
             missing: NumberSet { base, numbers },
             wants_heartbeat: !self.is_known,
             count: self.acknacks,

@@ -1,6 +1,6 @@
 //! A writer: its history, its readers, and what each of them has acknowledged.
 
-use crate::transport::dds::wire::{Datagram, Ends, EntityId, Guid, NumberSet, Prefix};
+use crate::transport::dds::wire::{Datagram, EndpointPair, EntityId, Guid, NumberSet, Prefix};
 use std::collections::BTreeMap;
 use std::net::SocketAddrV4;
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ const ANSWER_INTERVAL: Duration = Duration::from_millis(5);
 
 /// One entry of the history.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Change {
+pub(super) enum CacheChange {
     /// A message with its header.
     Payload(Vec<u8>),
     /// The entity with this id was removed.
@@ -40,7 +40,7 @@ pub(super) struct ReaderProxy {
 pub(super) struct Writer {
     entity: EntityId,
     depth: usize,
-    changes: BTreeMap<u64, Change>,
+    changes: BTreeMap<u64, CacheChange>,
     last: u64,
     heartbeats: u32,
     readers: BTreeMap<Guid, ReaderProxy>,
@@ -99,14 +99,14 @@ impl Writer {
     }
 
     /// Drops history entries of an entity that was removed.
-    pub(super) fn forget(&mut self, is_it: impl Fn(&Change) -> bool) {
+    pub(super) fn forget(&mut self, is_it: impl Fn(&CacheChange) -> bool) {
         self.changes.retain(|_, change| !is_it(change));
     }
 
     /// Writes to all readers. `stamp` is the time, and `own` our participant.
     pub(super) fn write(
         &mut self,
-        change: Change,
+        change: CacheChange,
         own: Prefix,
         stamp: (u32, u32),
         now: Instant,
@@ -165,7 +165,7 @@ impl Writer {
         &mut self,
         reader: Guid,
         now: Instant,
-    ) -> Option<(SocketAddrV4, Ends, (u64, u64), bool)> {
+    ) -> Option<(SocketAddrV4, EndpointPair, (u64, u64), bool)> {
         let ends = self.ends(reader.entity);
         let first = self.first();
         let proxy = self.readers.get_mut(&reader)?;
@@ -234,9 +234,9 @@ impl Writer {
         first.map_or(self.last + 1, |(number, _)| *number)
     }
 
-    const fn ends(&self, reader: EntityId) -> Ends {
+    const fn ends(&self, reader: EntityId) -> EndpointPair {
         let writer = self.entity;
-        Ends { reader, writer }
+        EndpointPair { reader, writer }
     }
 
     #[cfg(test)]
@@ -245,8 +245,8 @@ impl Writer {
     }
 }
 
-impl Change {
-    fn put(&self, datagram: Datagram, ends: Ends, number: u64) -> Datagram {
+impl CacheChange {
+    fn put(&self, datagram: Datagram, ends: EndpointPair, number: u64) -> Datagram {
         match self {
             Self::Payload(payload) => datagram.data(ends, number, payload),
             Self::Gone(guid, payload) => datagram.disposal(ends, number, (*guid, payload)),

@@ -3,7 +3,9 @@
 use crate::transport::dds::message::{DdsMessage, DdsTopic};
 use crate::transport::dds::participant::{Core, Places};
 use crate::transport::dds::receive::{ASSEMBLED_MAX, Assemblies, Received};
-use crate::transport::dds::wire::{Datagram, Ends, EntityId, Fragment, Guid, Message, Prefix};
+use crate::transport::dds::wire::{
+    Datagram, EndpointPair, EntityId, Fragment, Guid, Message, Prefix,
+};
 use crate::transport::dds::wire::{NumberSet, Submessage};
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::sync::{Arc, Mutex};
@@ -305,7 +307,7 @@ fn a_heartbeat_of_a_million_million_messages_is_asked_for_256_and_heals() {
     let mut now = Instant::now();
     let mut peers = [peer(0, now), peer(1, now)];
     talk(&mut peers, &mut now, Duration::from_secs(2), |_| false);
-    let ends = Ends {
+    let ends = EndpointPair {
         reader: EntityId::UNKNOWN,
         writer: EntityId::PUBLICATIONS_WRITER,
     };
@@ -411,7 +413,7 @@ fn a_long_message_is_put_together_and_no_longer_one() {
 
 #[test]
 fn what_is_written_is_read_as_it_was() {
-    let ends = Ends {
+    let ends = EndpointPair {
         reader: EntityId([0, 0, 1, 4]),
         writer: EntityId([0, 0, 2, 3]),
     };

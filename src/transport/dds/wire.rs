@@ -200,7 +200,7 @@ impl NumberSet {
 
 /// A reader's request to a writer.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Request {
+pub(super) struct AckNackRequest {
     pub(super) missing: NumberSet,
     /// The reader does not know the writer's range.
     pub(super) wants_heartbeat: bool,
@@ -210,7 +210,7 @@ pub(super) struct Request {
 
 /// Reader and writer, within their participants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Ends {
+pub(super) struct EndpointPair {
     pub(super) reader: EntityId,
     pub(super) writer: EntityId,
 }
@@ -241,22 +241,22 @@ pub(super) struct Fragment<'a> {
 pub(super) enum Submessage<'a> {
     /// The following submessages are for this participant; all zeros: for all.
     Destination(Prefix),
-    Data(Ends, Data<'a>),
-    Fragment(Ends, Fragment<'a>),
+    Data(EndpointPair, Data<'a>),
+    Fragment(EndpointPair, Fragment<'a>),
     Heartbeat {
-        ends: Ends,
+        ends: EndpointPair,
         first: u64,
         /// One less than the first if there are none.
         last: u64,
         wants_answer: bool,
     },
     AckNack {
-        ends: Ends,
+        ends: EndpointPair,
         missing: NumberSet,
     },
     /// Numbers that will not come: from the start up to the base of the set, and those in it.
     Gap {
-        ends: Ends,
+        ends: EndpointPair,
         start: u64,
         set: NumberSet,
     },
@@ -345,8 +345,8 @@ impl<'a> Iterator for Message<'a> {
     }
 }
 
-fn ends(body: &mut Cursor<'_>) -> Option<Ends> {
-    Some(Ends {
+fn ends(body: &mut Cursor<'_>) -> Option<EndpointPair> {
+    Some(EndpointPair {
         reader: body.entity()?,
         writer: body.entity()?,
     })
@@ -382,7 +382,7 @@ fn gap(mut body: Cursor<'_>) -> Option<Submessage<'_>> {
 }
 
 /// Header of a message and of a fragment: the ends, the number, and the rest.
-fn data_head<'a>(body: &mut Cursor<'a>) -> Option<(Ends, u64, Cursor<'a>)> {
+fn data_head<'a>(body: &mut Cursor<'a>) -> Option<(EndpointPair, u64, Cursor<'a>)> {
     let _extra_flags = body.u16()?;
     let to_rest: usize = body.u16()?.into();
     let mut rest = *body;
@@ -517,7 +517,7 @@ impl Datagram {
         })
     }
 
-    pub(super) fn data(self, ends: Ends, number: u64, payload: &[u8]) -> Self {
+    pub(super) fn data(self, ends: EndpointPair, number: u64, payload: &[u8]) -> Self {
         self.with(DATA, HAS_DATA, |bytes| {
             data_head_le(bytes, ends, number);
             bytes.extend(payload);
@@ -525,7 +525,7 @@ impl Datagram {
     }
 
     /// Adds a notice that the entity with this key was removed.
-    pub(super) fn disposal(self, ends: Ends, number: u64, key: (Guid, &[u8])) -> Self {
+    pub(super) fn disposal(self, ends: EndpointPair, number: u64, key: (Guid, &[u8])) -> Self {
         let (guid, payload) = key;
         self.with(DATA, INLINE_QOS | HAS_KEY, |bytes| {
             data_head_le(bytes, ends, number);
@@ -542,7 +542,7 @@ impl Datagram {
 
     pub(super) fn heartbeat(
         self,
-        ends: Ends,
+        ends: EndpointPair,
         (first, last): (u64, u64),
         (count, wants_answer): (u32, bool),
     ) -> Self {
@@ -556,7 +556,7 @@ impl Datagram {
     }
 
     /// Adds an acknowledgement with a request for missing messages.
-    pub(super) fn acknack(self, ends: Ends, request: &Request) -> Self {
+    pub(super) fn acknack(self, ends: EndpointPair, request: &AckNackRequest) -> Self {
         let flags = if request.wants_heartbeat { 0 } else { FINAL };
         self.with(ACKNACK, flags, |bytes| {
             ends_le(bytes, ends);
@@ -566,7 +566,7 @@ impl Datagram {
     }
 
     /// Adds numbers that will not come: from the start up to the base of the set, and those in it.
-    pub(super) fn gap(self, ends: Ends, start: u64, set: &NumberSet) -> Self {
+    pub(super) fn gap(self, ends: EndpointPair, start: u64, set: &NumberSet) -> Self {
         self.with(GAP, 0, |bytes| {
             ends_le(bytes, ends);
             sequence_number(bytes, start);
@@ -575,12 +575,12 @@ impl Datagram {
     }
 }
 
-fn ends_le(bytes: &mut Vec<u8>, ends: Ends) {
+fn ends_le(bytes: &mut Vec<u8>, ends: EndpointPair) {
     bytes.extend(ends.reader.0);
     bytes.extend(ends.writer.0);
 }
 
-fn data_head_le(bytes: &mut Vec<u8>, ends: Ends, number: u64) {
+fn data_head_le(bytes: &mut Vec<u8>, ends: EndpointPair, number: u64) {
     u16_le(bytes, 0);
     u16_le(bytes, 16);
     ends_le(bytes, ends);

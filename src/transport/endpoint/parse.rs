@@ -31,7 +31,7 @@ impl FromStr for Endpoint {
         let unknown = || EndpointError::Kind { text: text.into() };
         let (kind, rest) = text.trim().split_once(':').ok_or_else(unknown)?;
         let (place, query) = rest.split_once('?').unwrap_or((rest, ""));
-        let keys = Query {
+        let keys = EndpointText {
             text,
             place,
             pairs: query,
@@ -52,13 +52,13 @@ impl FromStr for Endpoint {
 }
 
 /// The parts of an endpoint's text.
-struct Query<'a> {
+struct EndpointText<'a> {
     text: &'a str,
     place: &'a str,
     pairs: &'a str,
 }
 
-impl Query<'_> {
+impl EndpointText<'_> {
     fn pairs(&self) -> impl Iterator<Item = (&str, &str)> {
         self.pairs
             .split('&')

@@ -24,12 +24,12 @@ use handscope::hand::register::BytePacking;
 use handscope::hand::{HandId, Moment, REGISTERS, Span, TactileBlock};
 use handscope::hand::{HandSample, Reply, register};
 use handscope::link::traffic::cut::WAITING_MAX;
-use handscope::link::traffic::decode::Heard;
+use handscope::link::traffic::decode::TrafficEvent;
 use handscope::link::traffic::{Decoder, values};
 use handscope::params;
 use handscope::poses;
 use handscope::poses::library::PoseLibrary;
-use handscope::record::file::reader::Stretch;
+use handscope::record::file::reader::TimeRange;
 use handscope::record::file::writer::RecordingWriter;
 use handscope::record::file::{Opening, RecordingFile};
 use handscope::record::import::csv::{CsvValues, ImportError};
@@ -91,7 +91,7 @@ pub struct State {
     commands: CommandDecoder,
     packets: PacketDecoder,
     taps: Vec<Decoder>,
-    heard: Vec<Heard>,
+    heard: Vec<TrafficEvent>,
     at: u64,
     session: Option<NamedTempFile>,
     /// Frames that were accepted: a loop that accepts none proves nothing.
@@ -354,7 +354,7 @@ fn tap(state: &mut State, wire: usize, bytes: &[u8]) {
     decoder.push(&piece, heard);
     let mut cut = 0;
     for one in heard.drain(..) {
-        if let Heard::Frame(frame) = one {
+        if let TrafficEvent::Frame(frame) = one {
             state.accepted += u64::from(frame.wrong.is_none());
             cut += frame.bytes.len();
             let fields: usize = frame.fields().iter().map(|field| field.at.len()).sum();
@@ -528,7 +528,7 @@ fn recording_file(state: &mut State, bytes: &[u8]) {
         Err(why) => return assert!(!why.to_string().is_empty()),
     };
     state.accepted += 1;
-    let stretch = Stretch {
+    let stretch = TimeRange {
         from: session.first(),
         to: session.last(),
         wire: true,

@@ -7,7 +7,7 @@ use crate::setup::link::{self, Client};
 use crate::setup::referee::RefereeHand;
 use handscope::codec::rs485::{RequestDecoder, Rs485Request, encode_read_reply, encode_write_ack};
 use handscope::hand::{Angle, ArmEpoch, Dof, HandCommand, Setpoints, Target};
-use handscope::link::{LinkStatus, LinkTrouble, Series};
+use handscope::link::{DeviceSeries, LinkStatus, LinkTrouble};
 use handscope::record::LinkState;
 use handscope::sim::{Personality, SWITCHES, SimConfig};
 use handscope::transport::{Pipe, SystemDial};
@@ -132,7 +132,7 @@ const WIRES: [&str; 4] = [
 /// The link calls it a hand of the series before long, and never another.
 async fn is_ours(config: SimConfig, wire: &str, what: &str) {
     let mut link = link::connect(wire, link::to_hand(hand::shared(config)));
-    let ours = |status: &LinkStatus| status.series == Series::Ours && status.state.is_live();
+    let ours = |status: &LinkStatus| status.series == DeviceSeries::Ours && status.state.is_live();
     let status = link::until(&mut link, Duration::from_secs(2), ours).await;
     assert_ne!(status.state, LinkState::Offline, "{what} {wire}");
 }
@@ -163,7 +163,8 @@ async fn the_hand_by_another_author_passes_warm_or_cold() {
             return;
         };
         let mut link = link::connect(&referee.endpoint(), Arc::new(SystemDial));
-        let ours = |status: &LinkStatus| status.series == Series::Ours && status.state.is_live();
+        let ours =
+            |status: &LinkStatus| status.series == DeviceSeries::Ours && status.state.is_live();
         link::until(&mut link, Duration::from_secs(20), ours).await;
     }
 }

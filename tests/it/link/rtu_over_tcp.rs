@@ -2,7 +2,7 @@
 
 use crate::setup::hand;
 use crate::setup::link;
-use handscope::link::{LinkTrouble, Series};
+use handscope::link::{DeviceSeries, LinkTrouble};
 use handscope::record::LinkState;
 use handscope::sim::serve::modbus_rtu;
 use handscope::transport::{Dial as _, Endpoint, SystemDial};
@@ -20,7 +20,7 @@ async fn a_hand_behind_a_device_server_is_read_armed_and_stopped() {
     let mut link = link::connect("rtu+tcp:192.168.11.7:4001", dial);
     link::live(&mut link).await;
     link::pass(&mut link, Duration::from_secs(1)).await;
-    assert_eq!(link.status().series, Series::Ours);
+    assert_eq!(link.status().series, DeviceSeries::Ours);
     assert!(link.stats().state_reads > 20, "{:?}", link.stats());
     link.arm(link::gentle());
     link::until(&mut link, Duration::from_secs(1), |status| {

@@ -2,7 +2,7 @@
 
 use crate::setup::process::listen;
 use handscope::record::file::format::topic::Topic;
-use handscope::record::file::reader::{RecordingFile, Stretch};
+use handscope::record::file::reader::{RecordingFile, TimeRange};
 use handscope::record::file::walk::CHUNKS_MAX;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, Compression, WriteOptions, Writer};
@@ -30,7 +30,7 @@ fn child_reads_a_file_and_says_what_it_took() {
     let words = match RecordingFile::open(Path::new(&path)) {
         Ok(file) => {
             let mut entries = 0_u64;
-            let all = Stretch::WHOLE;
+            let all = TimeRange::WHOLE;
             let took = file.entries(all, |_| {
                 entries += 1;
                 ControlFlow::Continue(())

@@ -7,9 +7,9 @@ use handscope::hand::kinematics::Side;
 use handscope::hand::{
     Dof, Finger, Group, Groups, HandSample, Moment, Reply, Span, Target, register,
 };
-use handscope::record::export::{Destination, Source};
+use handscope::record::export::{Destination, ExportSource};
 use handscope::record::export::{csv, cut};
-use handscope::record::file::reader::{RecordingFile, Stretch};
+use handscope::record::file::reader::{RecordingFile, TimeRange};
 use handscope::record::file::writer::RecordingWriter;
 use handscope::record::file::{Counts, Opening};
 use handscope::record::import::csv::{self as values, ImportError, Imported};
@@ -136,7 +136,7 @@ impl Trial {
     /// The values of a recording as text.
     fn values(&self, recording: &str, csv: &str) -> String {
         let file = RecordingFile::open(&self.path(recording)).unwrap();
-        let source = Source::new(&file, Stretch::WHOLE);
+        let source = ExportSource::new(&file, TimeRange::WHOLE);
         csv::write(source, &Destination::Path(self.path(csv))).unwrap();
         std::fs::read_to_string(self.path(csv)).unwrap()
     }
@@ -155,7 +155,7 @@ impl Trial {
     fn read(&self) -> Vec<(HandSample, Groups)> {
         let file = RecordingFile::open(&self.path("out.mcap")).unwrap();
         let mut all = Vec::new();
-        let damage = file.entries(Stretch::WHOLE, |entry| {
+        let damage = file.entries(TimeRange::WHOLE, |entry| {
             if let Entry::Heard(Record::Reading { sample, fresh }) = entry {
                 all.push((*sample, fresh));
             }
@@ -219,7 +219,7 @@ fn every_value_and_every_event_comes_back_from_a_session_with_faults_and_gaps() 
     };
     assert_eq!(file.overview().counts, counts);
     // The same from a copy, and where no overview tells it.
-    let source = Source::new(&file, Stretch::WHOLE);
+    let source = ExportSource::new(&file, TimeRange::WHOLE);
     cut::recover(source, &Destination::Path(trial.path("c.mcap"))).unwrap();
     assert!(trial.values("c.mcap", "c.csv") == first);
     let mut bytes = std::fs::read(trial.path("b.mcap")).unwrap();

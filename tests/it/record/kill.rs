@@ -10,7 +10,7 @@ use crate::setup::time::Time;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{Group, Moment, Span, register};
 use handscope::link::{Clock, LinkConfig, PollRates, open};
-use handscope::record::file::reader::{RecordingFile, Stretch};
+use handscope::record::file::reader::{RecordingFile, TimeRange};
 use handscope::record::file::{Opening, PART_LENGTH, Recorder, RecordingPlan, SystemDisk};
 use handscope::record::{Direction, Entry, PieceKind, Record};
 use handscope::sim::serve::modbus_tcp;
@@ -196,7 +196,7 @@ fn compare(path: &Path, journal: &[Connection]) -> (Vec<usize>, usize) {
     let mut said = said.iter().peekable();
     let mut wires: Vec<Vec<u8>> = Vec::new();
     let mut readings = 0;
-    let all = Stretch {
+    let all = TimeRange {
         from: Moment::ZERO,
         to: file.last(),
         wire: true,

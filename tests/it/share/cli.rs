@@ -4,7 +4,7 @@ use crate::setup::busy::unless_busy;
 use crate::setup::process::{Running, listen, run, sim_on_link, sim_on_tcp, start};
 use crate::setup::skipped::skipped;
 use handscope::hand::{Angle, Dof};
-use handscope::record::file::reader::{RecordingFile, Stretch};
+use handscope::record::file::reader::{RecordingFile, TimeRange};
 use handscope::record::{Entry, Record};
 use nix::sys::signal::Signal;
 use std::io::{Read as _, Write as _};
@@ -172,7 +172,7 @@ fn clients_that_come_write_and_leave_between_two_looks_are_told_too() {
         // What clients wrote was recorded as it passed.
         let file = RecordingFile::open(&record).unwrap();
         let mut told = Vec::new();
-        let all = Stretch {
+        let all = TimeRange {
             from: file.first(),
             to: file.last(),
             wire: false,

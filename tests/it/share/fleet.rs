@@ -7,7 +7,7 @@ use crate::share::place::{PATIENCE, Place, config, share, share_as, until};
 use handscope::hand::kinematics::Side;
 use handscope::link::{self, Clock, LinkConfig, LinkHandle, Owner, PollRates, Records};
 use handscope::record::{ArmRefusal, LinkState, Record};
-use handscope::share::fleet::{FleetCard, FleetHand, FleetList, FleetTeller, host};
+use handscope::share::fleet::{FleetAnnouncer, FleetCard, FleetHand, FleetList, host};
 use handscope::share::gateway::{GatewayConfig, Writers};
 use handscope::transport::SystemDial;
 use handscope::transport::dds::{DdsNode, DdsPlace};
@@ -58,7 +58,7 @@ async fn a_shared_hand_is_listed_as_it_changes_and_not_longer_than_it_is_there()
     let (here, there) = (node(51), node(51));
     let mut list = look(&here);
     let place = share(PollRates::default(), Duration::ZERO).await;
-    let teller = FleetTeller::open(&there, &place.link, card("egg", &place));
+    let teller = FleetAnnouncer::open(&there, &place.link, card("egg", &place));
     let hands = listed(&mut list, |hands| !hands.is_empty()).await;
     let expected = FleetHand {
         card: card("egg", &place),
@@ -85,12 +85,12 @@ async fn a_hundred_hands_are_listed_right_after_each_change() {
     let here = node(52);
     let mut list = look(&here);
     let place = share(PollRates::default(), Duration::ZERO).await;
-    let mut programs: Vec<(DdsNode, Vec<FleetTeller>)> = Vec::new();
+    let mut programs: Vec<(DdsNode, Vec<FleetAnnouncer>)> = Vec::new();
     for program in 0..10 {
         let node = node(52);
         let hands = (0..10).map(|hand| {
             let card = card(&format!("{program} {hand}"), &place);
-            FleetTeller::open(&node, &place.link, card)
+            FleetAnnouncer::open(&node, &place.link, card)
         });
         let hands = hands.collect();
         programs.push((node, hands));
@@ -118,7 +118,7 @@ async fn nonsense_on_the_topic_is_survived_and_listed_as_nothing() {
     let mut list = look(&here);
     let place = share(PollRates::default(), Duration::ZERO).await;
     let noise = there.writer(&handscope::share::fleet::topic());
-    let teller = FleetTeller::open(&there, &place.link, card("egg", &place));
+    let teller = FleetAnnouncer::open(&there, &place.link, card("egg", &place));
     listed(&mut list, |hands| hands.len() == 1).await;
     let mut seed = fastrand::Rng::with_seed(7);
     let good = FleetHand {
@@ -162,7 +162,7 @@ async fn watch(hand: &FleetHand) -> (LinkHandle, Records) {
 async fn told(place: &Place) -> FleetHand {
     let (here, there) = (node(54), node(54));
     let mut list = look(&here);
-    let _teller = FleetTeller::open(&there, &place.link, card("egg", place));
+    let _teller = FleetAnnouncer::open(&there, &place.link, card("egg", place));
     let hands = listed(&mut list, |hands| hands.len() == 1).await;
     hands[0].clone()
 }

@@ -10,7 +10,7 @@ use handscope::link::{LinkHandle, Records};
 use handscope::record::LinkState;
 use handscope::record::file::Opening;
 use handscope::record::file::format::cdr;
-use handscope::record::file::format::encode::Message;
+use handscope::record::file::format::encode::EncodedMessage;
 use handscope::record::file::format::message::{
     EventMessage, JointState, StateMessage, TouchMessage,
 };
@@ -145,8 +145,8 @@ async fn is_closed(stream: &mut TcpStream, within: Duration) -> bool {
 }
 
 /// A message of so many bytes.
-fn large(bytes: usize) -> Message {
-    Message {
+fn large(bytes: usize) -> EncodedMessage {
+    EncodedMessage {
         topic: Topic::State,
         log_nanos: 1,
         publish_nanos: 1,
@@ -363,7 +363,7 @@ async fn a_viewer_that_is_too_slow_misses_the_oldest_and_that_is_counted() {
     client.message().await;
     let before = stage.server.viewers()[0].missed;
     for number in 0..3000 {
-        let message = Message {
+        let message = EncodedMessage {
             log_nanos: number,
             ..large(8)
         };

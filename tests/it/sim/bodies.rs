@@ -6,7 +6,7 @@ use handscope::sim::body_params::STROKE;
 use handscope::sim::body_params::random::random;
 use handscope::sim::body_params::{BodyParams, JointBody};
 use handscope::sim::drive::{Drive, DriveGoal, DriveSettings};
-use handscope::sim::{Contact, Object, Personality, Scenario, SimConfig, SimHand};
+use handscope::sim::{Object, Obstacle, Personality, Scenario, SimConfig, SimHand};
 
 const SLOW: DriveSettings = DriveSettings {
     speed: 100.0,
@@ -23,7 +23,7 @@ struct Close {
 }
 
 fn on_block(drive: &mut Drive, from: u64) -> Close {
-    drive.set_contact(Some(Contact {
+    drive.set_contact(Some(Obstacle {
         angle: 500.0,
         stiffness: RIGID_G_PER_COUNT,
         breaks_at_g: None,

@@ -13,7 +13,7 @@ use handscope::motion::series::{RATES, SeriesStep, arm_limits, trials};
 use handscope::record::Abort;
 use handscope::record::{LinkState, Record};
 use handscope::sim::body_params::random::random;
-use handscope::sim::{BodyParams, Contact, Object, Scenario, SimConfig, SimHand};
+use handscope::sim::{BodyParams, Object, Obstacle, Scenario, SimConfig, SimHand};
 use handscope::trials::TrialSeries;
 use handscope::trials::search::{
     Finding, NoClaim, SearchGoal, SearchStage, SettingsSearch, ThresholdReference,
@@ -320,7 +320,7 @@ fn what_keeps_it_from_a_claim_is_said() {
     let out_of_reach = meanwhile(usual, &block, &short, |_, _| ());
     assert_eq!(none(out_of_reach), NoClaim::NoContact { dof });
     let at_start = Object {
-        contacts: PerDof::splat(Some(Contact {
+        contacts: PerDof::splat(Some(Obstacle {
             angle: 1002.0,
             stiffness: 13.0,
             breaks_at_g: None,

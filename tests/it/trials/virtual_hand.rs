@@ -15,7 +15,7 @@ use handscope::sim::body_params::JointBody;
 use handscope::sim::body_params::random::random;
 use handscope::sim::body_params::run_on::{MetThreshold, run_on_g};
 use handscope::sim::{
-    BodyParams, Contact, ForceCompared, Object, Personality, Scenario, SimConfig, SimHand,
+    BodyParams, ForceCompared, Object, Obstacle, Personality, Scenario, SimConfig, SimHand,
 };
 use handscope::trials::search::tolerance::{Assurance, tolerance_factor};
 use handscope::trials::search::{Claim, Finding, FoundApproach, SearchGoal, SettingsSearch};
@@ -291,7 +291,7 @@ pub(crate) struct Run {
 
 pub(crate) fn object(stiffness: f64, breaks_at_g: Option<f64>) -> Object {
     Object {
-        contacts: PerDof::splat(Some(Contact {
+        contacts: PerDof::splat(Some(Obstacle {
             angle: PLACE,
             stiffness,
             breaks_at_g,

@@ -11,7 +11,7 @@ use handscope::poses::Preset;
 use handscope::poses::edit::LibraryEdit;
 use handscope::poses::library::{LibraryPose, StepGoal};
 use handscope::poses::player::{PlayEnd, PlayPhase};
-use handscope::sim::{Contact, Object, Scenario, SimConfig};
+use handscope::sim::{Object, Obstacle, Scenario, SimConfig};
 use handscope::ui::View;
 
 const BLOCK: &str = "Size of a block that is held, mm";
@@ -44,7 +44,7 @@ fn opened() -> Bench {
 fn hold(bench: &mut Bench, mm: f32) {
     let at = Gap::nearest(mm).angles();
     let contacts = PerDof::from_fn(|dof| {
-        matches!(dof, Dof::Index | Dof::ThumbBend).then(|| Contact {
+        matches!(dof, Dof::Index | Dof::ThumbBend).then(|| Obstacle {
             angle: f64::from(at[dof].get()),
             stiffness: 40.0,
             breaks_at_g: None,

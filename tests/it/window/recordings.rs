@@ -18,7 +18,7 @@ use handscope::inputs::mirror::MirrorScale;
 use handscope::record::Entry;
 use handscope::record::EventKind;
 use handscope::record::Rest;
-use handscope::record::file::reader::Stretch;
+use handscope::record::file::reader::TimeRange;
 use handscope::record::file::{OpenError, RecordingFile};
 use handscope::sim::{Scenario, SimConfig};
 use handscope::ui::View;
@@ -877,7 +877,7 @@ fn sessions_beyond_the_budget_are_told_and_go_a_day_later_when_a_recording_begin
 fn events(path: &Path, kind: EventKind) -> Vec<String> {
     let file = RecordingFile::open(path).unwrap();
     let mut words = Vec::new();
-    let all = Stretch {
+    let all = TimeRange {
         from: file.first(),
         to: file.last(),
         wire: false,

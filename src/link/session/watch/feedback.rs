@@ -38,7 +38,7 @@ const COMMANDS_MAX: usize = 512;
 
 /// Targets and speeds of the joints, in effect from one moment on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Command {
+struct TimedCommand {
     at: Moment,
     targets: PerDof<Option<i16>>,
     speeds: PerDof<Option<i16>>,
@@ -66,7 +66,7 @@ struct Unchanged {
 
 /// One joint: its last reading and its estimated position.
 #[derive(Debug, Clone, Copy)]
-struct Joint {
+struct JointEstimate {
     seen: i16,
     /// The previous reading.
     before: Option<(i16, Moment)>,
@@ -86,9 +86,9 @@ struct Joint {
 #[derive(Debug, Default)]
 pub(crate) struct FeedbackWatch {
     last: HandSample,
-    joints: PerDof<Option<Joint>>,
+    joints: PerDof<Option<JointEstimate>>,
     /// Oldest first.
-    commands: VecDeque<Command>,
+    commands: VecDeque<TimedCommand>,
     speeds_written: Option<Moment>,
     /// It is unknown whether this joint follows its command: the newest write to it was not acknowledged, or it was
     /// seen to move elsewhere.
@@ -156,16 +156,16 @@ impl FeedbackWatch {
         }
     }
 
-    fn tell(&mut self, at: Moment, change: impl FnOnce(&mut Command)) {
+    fn tell(&mut self, at: Moment, change: impl FnOnce(&mut TimedCommand)) {
         let before = self.commands.back().copied();
-        let mut command = Command {
+        let mut command = TimedCommand {
             at,
             targets: before.map_or(PerDof::splat(None), |command| command.targets),
             speeds: before.map_or(PerDof::splat(None), |command| command.speeds),
             gesture: before.is_some_and(|command| command.gesture),
         };
         change(&mut command);
-        let is_same = |before: Command| command == Command { at, ..before };
+        let is_same = |before: TimedCommand| command == TimedCommand { at, ..before };
         if before.is_some_and(is_same) {
             return;
         }
@@ -217,8 +217,9 @@ impl FeedbackWatch {
             return false;
         };
         let within = SetpointRegister::AngleSet.rounds_by().unsigned_abs();
-        let is_ours =
-            |told: &Command| told.targets[dof].is_some_and(|told| told.abs_diff(holds) <= within);
+        let is_ours = |told: &TimedCommand| {
+            told.targets[dof].is_some_and(|told| told.abs_diff(holds) <= within)
+        };
         let last = self.commands.back().and_then(|told| told.targets[dof]);
         last.is_some() && !self.commands.iter().any(is_ours)
     }
@@ -237,13 +238,13 @@ impl FeedbackWatch {
     }
 
     /// The state of a joint after this reading of its angle.
-    fn judged(&self, dof: Dof, angle: AngleReading, asked: Moment) -> Joint {
+    fn judged(&self, dof: Dof, angle: AngleReading, asked: Moment) -> JointEstimate {
         let seen = angle.raw();
         let status = self.last.status.map(|status| status.value[dof]);
         let is_stopped = status.is_some_and(Status::is_stopped);
         let known = self.joints[dof].filter(|joint| joint.seen == seen);
         let Some(mut joint) = known else {
-            return Joint {
+            return JointEstimate {
                 seen,
                 before: self.joints[dof].map(|before| (before.seen, before.at)),
                 estimate: f64::from(seen),
@@ -305,7 +306,7 @@ impl FeedbackWatch {
     }
 
     /// True if the drive itself reports why the joint does not move further as commanded.
-    fn has_reason(&self, dof: Dof, joint: &Joint) -> bool {
+    fn has_reason(&self, dof: Dof, joint: &JointEstimate) -> bool {
         let Some(status) = self.last.status.map(|status| status.value[dof]) else {
             return false;
         };
@@ -349,7 +350,7 @@ impl FeedbackWatch {
         }
     }
 
-    fn unchanged(&self) -> impl Iterator<Item = (&Joint, &Unchanged)> {
+    fn unchanged(&self) -> impl Iterator<Item = (&JointEstimate, &Unchanged)> {
         let joints = self.joints.iter().filter_map(|(_, joint)| joint.as_ref());
         joints.filter_map(|joint| Some((joint, joint.unchanged.as_ref()?)))
     }
@@ -358,7 +359,7 @@ impl FeedbackWatch {
     /// that never began to move and whose drive reports rest may as well be a dead drive, while the rest of the hand is
     /// live: that is no reason to end the motion.
     pub(crate) fn is_frozen(&self) -> bool {
-        let is_stopped = |(dof, _): &(Dof, Joint)| {
+        let is_stopped = |(dof, _): &(Dof, JointEstimate)| {
             let status = self.last.status.map(|status| status.value[*dof]);
             status.is_some_and(Status::is_stopped)
         };
@@ -385,7 +386,7 @@ impl FeedbackWatch {
     /// True if a stop in progress must not rely on the readings either: nothing in the hand changes, or a joint has not
     /// for long.
     pub(crate) fn is_suspect_in_stop(&self) -> bool {
-        let is_new = |joint: &Joint| !joint.doubted;
+        let is_new = |joint: &JointEstimate| !joint.doubted;
         self.unchanged().any(|(joint, unchanged)| {
             is_new(joint)
                 && (unchanged.is_long() || unchanged.is_suspect() && !unchanged.hand_lives)
@@ -415,7 +416,7 @@ impl FeedbackWatch {
         keep(&mut self.joints, &doubted);
         keep(&mut self.aims, &doubted);
         for (_, joint) in self.joints.iter_mut() {
-            *joint = joint.map(|joint| Joint {
+            *joint = joint.map(|joint| JointEstimate {
                 unchanged: None,
                 ..joint
             });
@@ -503,7 +504,7 @@ impl FeedbackWatch {
 
     /// Estimated position of a joint: from its previous estimate towards its commanded targets at the commanded speeds,
     /// and never beyond.
-    fn estimate(&self, dof: Dof, joint: &Joint, now: Moment) -> f64 {
+    fn estimate(&self, dof: Dof, joint: &JointEstimate, now: Moment) -> f64 {
         let mut angle = joint.estimate;
         let begins = self
             .commands
@@ -584,7 +585,7 @@ mod tests {
 
     /// Noise-free feedback of a hand at one time.
     #[derive(Clone, Copy)]
-    struct Told {
+    struct JointFeedback {
         angle: i16,
         force: i16,
         status: u8,
@@ -595,19 +596,19 @@ mod tests {
         name: &'static str,
         speed: i16,
         target: Target,
-        tells: fn(u64) -> Told,
+        tells: fn(u64) -> JointFeedback,
         frozen: Option<std::ops::Range<u64>>,
     }
 
-    fn at(angle: i16, status: u8) -> Told {
-        Told {
+    fn at(angle: i16, status: u8) -> JointFeedback {
+        JointFeedback {
             angle,
             force: 0,
             status,
         }
     }
 
-    fn sample(told: Told, now: Moment) -> (HandSample, Groups) {
+    fn sample(told: JointFeedback, now: Moment) -> (HandSample, Groups) {
         fn timed<T>(value: T, now: Moment) -> Option<Timed<PerDof<T>>>
         where
             T: Copy,
@@ -795,7 +796,7 @@ mod tests {
                 name: "pushes without a word of its drive: only its force changes",
                 speed: 250,
                 target: go(0),
-                tells: |t| Told {
+                tells: |t| JointFeedback {
                     force: i16::try_from(t / 100 % 3).unwrap(),
                     ..at(1000, 1)
                 },

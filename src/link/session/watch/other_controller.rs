@@ -4,7 +4,7 @@
 use crate::hand::feedback::sample::SET_OUT_OF_RANGE;
 use crate::hand::{AngleReading, Force, RegisterWrite, Speed, Target};
 use crate::hand::{Group, Groups, HandSample, Moment, PerDof, register};
-use crate::link::session::watch::setpoint::{Seen, SetpointWatch, Wrote};
+use crate::link::session::watch::setpoint::{SetpointCheck, SetpointWatch, Wrote};
 use crate::record::{SetpointConflict, SetpointRegister};
 use arrayvec::ArrayVec;
 use std::time::Duration;
@@ -127,12 +127,12 @@ impl OtherController {
         let mut again = false;
         let read = self.doubted.iter_mut().zip(seen);
         for (doubted, (seen, at)) in read.filter_map(|(doubted, seen)| Some((doubted, seen?))) {
-            *doubted = seen == Seen::Doubtful;
+            *doubted = seen == SetpointCheck::Doubtful;
             again |= *doubted;
             match seen {
-                Seen::Usual | Seen::Doubtful => {}
-                Seen::NotTaken(conflict) => self.not_taken = Some(conflict),
-                Seen::Foreign(conflict) => {
+                SetpointCheck::Usual | SetpointCheck::Doubtful => {}
+                SetpointCheck::NotTaken(conflict) => self.not_taken = Some(conflict),
+                SetpointCheck::Foreign(conflict) => {
                     self.changes += 1;
                     self.noticed = Some(at);
                     self.foreign = Some(conflict);

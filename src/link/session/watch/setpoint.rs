@@ -44,7 +44,7 @@ struct OwnWrite {
 }
 
 #[derive(Debug, Clone, Copy, Default)]
-struct Joint {
+struct JointSetpoint {
     /// The last value held that was explained.
     held: Option<i16>,
     /// Writes before this number can no longer take effect.
@@ -59,7 +59,7 @@ struct Joint {
     wrote: Option<i16>,
 }
 
-impl Joint {
+impl JointSetpoint {
     /// Records a value that the joint was seen to hold.
     fn saw(&mut self, value: i16) {
         if value != LEAVE && value != SET_OUT_OF_RANGE {
@@ -84,7 +84,7 @@ impl Joint {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Verdict {
+enum ValueOrigin {
     Ours,
     /// Not written by this program, and no write of ours is pending.
     Changed,
@@ -96,7 +96,7 @@ enum Verdict {
 
 /// Result of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Seen {
+pub(crate) enum SetpointCheck {
     /// Nothing unusual.
     Usual,
     /// Not proven by one reading: read again soon.
@@ -115,7 +115,7 @@ pub(crate) struct SetpointWatch {
     next: u64,
     /// Writes before this number were sent through a previous wire: they may take effect late, in any order.
     reopened: u64,
-    joints: PerDof<Joint>,
+    joints: PerDof<JointSetpoint>,
     /// The previous reading had an unexplained value.
     doubted: bool,
     misses: ArrayVec<Moment, MISSES>,
@@ -132,7 +132,7 @@ impl SetpointWatch {
             writes: VecDeque::new(),
             next: 0,
             reopened: 0,
-            joints: PerDof::splat(Joint::default()),
+            joints: PerDof::splat(JointSetpoint::default()),
             doubted: false,
             misses: ArrayVec::new(),
             hand_decides_until: None,
@@ -144,9 +144,9 @@ impl SetpointWatch {
     pub(crate) fn begin(&mut self) {
         self.reopened = self.next;
         for (_, joint) in self.joints.iter_mut() {
-            *joint = Joint {
+            *joint = JointSetpoint {
                 open_from: self.next,
-                ..Joint::default()
+                ..JointSetpoint::default()
             };
         }
         self.doubted = false;
@@ -212,27 +212,29 @@ impl SetpointWatch {
         values: &PerDof<i16>,
         angles: Option<PerDof<i16>>,
         asked: Moment,
-    ) -> Seen {
+    ) -> SetpointCheck {
         self.forget_old(asked);
         if self.hand_decides_until.is_some_and(|until| asked < until) {
             self.accept(values);
-            return Seen::Usual;
+            return SetpointCheck::Usual;
         }
         let verdicts = PerDof::from_fn(|dof| {
             let angle = angles.map(|angles| angles[dof]);
             self.judge(dof, values[dof], angle)
         });
-        let first = |wanted: &[Verdict]| {
+        let first = |wanted: &[ValueOrigin]| {
             let mut all = verdicts.iter();
             let found = all.find(|(_, verdict)| wanted.contains(verdict))?;
             Some(self.conflict(found.0, values))
         };
-        let foreign = first(&[Verdict::Changed, Verdict::Strange]);
-        let not_taken = first(&[Verdict::NotTaken]);
-        let is_changed = verdicts.iter().any(|(_, seen)| *seen == Verdict::Changed);
+        let foreign = first(&[ValueOrigin::Changed, ValueOrigin::Strange]);
+        let not_taken = first(&[ValueOrigin::NotTaken]);
+        let is_changed = verdicts
+            .iter()
+            .any(|(_, seen)| *seen == ValueOrigin::Changed);
         let was_doubted = std::mem::replace(&mut self.doubted, is_changed);
         let Some(foreign) = foreign else {
-            return not_taken.map_or(Seen::Usual, Seen::NotTaken);
+            return not_taken.map_or(SetpointCheck::Usual, SetpointCheck::NotTaken);
         };
         if self.misses.is_full() {
             self.misses.remove(0);
@@ -241,12 +243,12 @@ impl SetpointWatch {
         let oldest = self.misses.first().filter(|_| self.misses.is_full());
         let many = oldest.is_some_and(|at| asked.since(*at) <= WITHIN);
         if !(many || is_changed && was_doubted) {
-            return Seen::Doubtful;
+            return SetpointCheck::Doubtful;
         }
         self.misses.clear();
         self.doubted = false;
         self.accept(values);
-        Seen::Foreign(foreign)
+        SetpointCheck::Foreign(foreign)
     }
 
     fn conflict(&self, dof: Dof, values: &PerDof<i16>) -> SetpointConflict {
@@ -269,14 +271,14 @@ impl SetpointWatch {
         }
     }
 
-    fn judge(&mut self, dof: Dof, read: i16, angle: Option<i16>) -> Verdict {
+    fn judge(&mut self, dof: Dof, read: i16, angle: Option<i16>) -> ValueOrigin {
         let joint = self.joints[dof];
         let open = self.open(dof);
         if joint.held == Some(read) {
             if !open.is_empty() && open.iter().all(|(_, wrote)| *wrote == Wrote::Value(read)) {
                 self.joints[dof].saw(read);
                 self.settle(dof, read, self.next);
-                return Verdict::Ours;
+                return ValueOrigin::Ours;
             }
             let says_this =
                 |value| matches!(value, Wrote::Value(_)) && self.may_be(value, read, angle);
@@ -284,9 +286,9 @@ impl SetpointWatch {
             // The value held before may equal a later write.
             let is_newer = || self.writes.iter().any(|write| says_this(write.values[dof]));
             return if joint.due.is_some_and(is_late) && !is_newer() {
-                Verdict::NotTaken
+                ValueOrigin::NotTaken
             } else {
-                Verdict::Ours
+                ValueOrigin::Ours
             };
         }
         let is_this = |(_, value): &&(u64, Wrote)| self.may_be(*value, read, angle);
@@ -298,7 +300,7 @@ impl SetpointWatch {
             if matches!(value, Wrote::Value(_)) {
                 self.joints[dof].saw(read);
             }
-            return Verdict::Ours;
+            return ValueOrigin::Ours;
         }
         let earlier = self
             .writes
@@ -308,17 +310,17 @@ impl SetpointWatch {
         if joint.held.is_none() || earlier.any(|value| self.may_be(value, read, angle)) {
             self.joints[dof].held = Some(read);
             self.joints[dof].saw(read);
-            return Verdict::Ours;
+            return ValueOrigin::Ours;
         }
         let is_limit = |(_, wrote): &&(u64, Wrote)| joint.limits(*wrote, read);
         match open.iter().find(is_limit).copied() {
             Some((number, _)) => {
                 self.settle(dof, read, number + 1);
                 self.joints[dof].saw(read);
-                Verdict::NotTaken
+                ValueOrigin::NotTaken
             }
-            None if open.is_empty() => Verdict::Changed,
-            None => Verdict::Strange,
+            None if open.is_empty() => ValueOrigin::Changed,
+            None => ValueOrigin::Strange,
         }
     }
 
@@ -375,7 +377,7 @@ mod tests {
     }
 
     /// Streams to a hand for 20 s, at 50 or 1 per second, and reads ten times per second; returns all unusual results.
-    fn streamed(takes: Takes, tells: fn(u64) -> Wrote, late_ms: u64) -> Vec<Seen> {
+    fn streamed(takes: Takes, tells: fn(u64) -> Wrote, late_ms: u64) -> Vec<SetpointCheck> {
         let mut all = Vec::new();
         for every in [20, 1000] {
             let mut watch = SetpointWatch::new(SetpointRegister::AngleSet);
@@ -391,7 +393,7 @@ mod tests {
                 if t % 97 == 0 {
                     let at = Some(PerDof::splat(holds));
                     let seen = watch.read(&PerDof::splat(holds), at, ms(t));
-                    all.extend(Some(seen).filter(|seen| *seen != Seen::Usual));
+                    all.extend(Some(seen).filter(|seen| *seen != SetpointCheck::Usual));
                 }
             }
         }
@@ -428,9 +430,13 @@ mod tests {
         for (name, takes, is_told) in ways {
             for late_ms in [0, 30, 300, 1900] {
                 let seen = streamed(takes, sweep, late_ms);
-                let foreign = seen.iter().find(|seen| matches!(seen, Seen::Foreign(_)));
+                let foreign = seen
+                    .iter()
+                    .find(|seen| matches!(seen, SetpointCheck::Foreign(_)));
                 assert_eq!(foreign, None, "{name}, {late_ms} ms late");
-                let told = seen.iter().any(|seen| matches!(seen, Seen::NotTaken(_)));
+                let told = seen
+                    .iter()
+                    .any(|seen| matches!(seen, SetpointCheck::NotTaken(_)));
                 assert_eq!(told, is_told, "{name}, {late_ms} ms late: {seen:?}");
             }
         }
@@ -470,11 +476,14 @@ mod tests {
             watch.wrote(PerDof::splat(Wrote::Value(told)), ms(100));
             for (value, t) in [(held, 101), (told, 150), (told, 200), (told, 5000)] {
                 let seen = watch.read(&PerDof::splat(value), None, ms(t));
-                assert_eq!(seen, Seen::Usual, "{held}, {told}: {value} at {t}");
+                assert_eq!(seen, SetpointCheck::Usual, "{held}, {told}: {value} at {t}");
             }
             watch.read(&PerDof::splat(held + 100), None, ms(5050));
             let foreign = watch.read(&PerDof::splat(held + 100), None, ms(5100));
-            assert!(matches!(foreign, Seen::Foreign(_)), "{held}, {told}");
+            assert!(
+                matches!(foreign, SetpointCheck::Foreign(_)),
+                "{held}, {told}"
+            );
         }
     }
 
@@ -492,11 +501,11 @@ mod tests {
             let read = |watch: &mut SetpointWatch, value, t| {
                 watch.read(&PerDof::splat(value), None, ms(t))
             };
-            assert_eq!(read(&mut watch, held, 0), Seen::Usual);
+            assert_eq!(read(&mut watch, held, 0), SetpointCheck::Usual);
             watch.wrote(PerDof::splat(Wrote::Value(told)), ms(100));
             let seen = (0..10).map(|nth| read(&mut watch, foreign, 110 + 40 * nth));
             let foreign = seen.collect::<Vec<_>>();
-            let is_foreign = |seen: &Seen| matches!(seen, Seen::Foreign(_));
+            let is_foreign = |seen: &SetpointCheck| matches!(seen, SetpointCheck::Foreign(_));
             assert!(
                 foreign[..3].iter().any(is_foreign),
                 "{held}, {told}: {foreign:?}"
@@ -512,15 +521,15 @@ mod tests {
         let write = |watch: &mut SetpointWatch, value, t| {
             watch.wrote(PerDof::splat(Wrote::Value(value)), ms(t));
         };
-        assert_eq!(read(&mut watch, 1000, 0), Seen::Usual);
+        assert_eq!(read(&mut watch, 1000, 0), SetpointCheck::Usual);
         for (nth, value) in (0..200).map(|nth| (nth, 900 - 4 * i16::try_from(nth).unwrap())) {
             write(&mut watch, value, 100 + 20 * nth);
             if nth % 5 == 0 {
                 // Some readings are wrong.
                 let seen = if nth % 100 == 50 { 7 } else { value };
                 let said = read(&mut watch, seen, 105 + 20 * nth);
-                assert_eq!(said == Seen::Usual, seen == value, "{nth}");
-                assert!(!matches!(said, Seen::Foreign(_)), "{nth}");
+                assert_eq!(said == SetpointCheck::Usual, seen == value, "{nth}");
+                assert!(!matches!(said, SetpointCheck::Foreign(_)), "{nth}");
             }
         }
         // Another controller streams as well: every other reading shows its values.
@@ -529,7 +538,7 @@ mod tests {
             write(&mut watch, 300, t);
             write(&mut watch, 330, t + 5);
             match read(&mut watch, if nth % 2 == 0 { 800 } else { 330 }, t + 10) {
-                Seen::Foreign(conflict) => Some((nth, conflict)),
+                SetpointCheck::Foreign(conflict) => Some((nth, conflict)),
                 _ => None,
             }
         });

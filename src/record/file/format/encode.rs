@@ -22,7 +22,7 @@ pub(crate) const ARM_REFUSED: &str = "arm_refused";
 
 /// One message, ready to be written.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Message {
+pub struct EncodedMessage {
     pub topic: Topic,
     /// Time of receipt, nanoseconds since 1970.
     pub log_nanos: u64,
@@ -76,9 +76,14 @@ impl EntryEncoder {
         Time::of_nanos(self.nanos(at))
     }
 
-    fn message<T: serde::Serialize>(&self, topic: Topic, at: Moment, message: &T) -> Message {
+    fn message<T: serde::Serialize>(
+        &self,
+        topic: Topic,
+        at: Moment,
+        message: &T,
+    ) -> EncodedMessage {
         let nanos = self.nanos(at);
-        Message {
+        EncodedMessage {
             topic,
             log_nanos: nanos,
             publish_nanos: nanos,
@@ -86,7 +91,7 @@ impl EntryEncoder {
         }
     }
 
-    pub(crate) fn encode(&mut self, entry: &Entry) -> Vec<Message> {
+    pub(crate) fn encode(&mut self, entry: &Entry) -> Vec<EncodedMessage> {
         let mut messages = self.own(entry);
         let at = entry.at();
         // At the start of a file or a cut, and when readings stop, the grip is known at most a second later.
@@ -96,7 +101,7 @@ impl EntryEncoder {
     }
 
     /// A message with the grip, if it changed or was not written for a while.
-    fn tell(&mut self, grip: &Grip, at: Moment) -> Option<Message> {
+    fn tell(&mut self, grip: &Grip, at: Moment) -> Option<EncodedMessage> {
         let is_told = |(told, before): (Moment, [GripState; 6])| {
             before == states(grip) && at.since(told) < GRIP_INTERVAL
         };
@@ -118,7 +123,7 @@ impl EntryEncoder {
         Some(self.message(Topic::Grip, at, &message))
     }
 
-    fn own(&self, entry: &Entry) -> Vec<Message> {
+    fn own(&self, entry: &Entry) -> Vec<EncodedMessage> {
         match entry {
             Entry::Heard(Record::Reading { sample, fresh }) => self.reading(sample, *fresh),
             Entry::Heard(record) => self.record(record).into_iter().collect(),
@@ -138,7 +143,7 @@ impl EntryEncoder {
         }
     }
 
-    pub(crate) fn event(&self, at: Moment, kind: &str, words: &str) -> Message {
+    pub(crate) fn event(&self, at: Moment, kind: &str, words: &str) -> EncodedMessage {
         let event = EventMessage {
             at: self.time(at),
             kind: kind.into(),
@@ -147,7 +152,7 @@ impl EntryEncoder {
         self.message(Topic::Event, at, &event)
     }
 
-    fn record(&self, record: &Record) -> Option<Message> {
+    fn record(&self, record: &Record) -> Option<EncodedMessage> {
         Some(match record {
             Record::Reading { .. } => return None,
             Record::State { at, state } => {
@@ -198,7 +203,7 @@ impl EntryEncoder {
         })
     }
 
-    fn wire(&self, piece: &Piece) -> Message {
+    fn wire(&self, piece: &Piece) -> EncodedMessage {
         let wire = WireMessage {
             at: self.time(piece.at),
             kind: match piece.kind {
@@ -214,7 +219,7 @@ impl EntryEncoder {
     }
 
     /// Messages of one reply: one for the joints' groups, one for each fingertip.
-    fn reading(&self, sample: &HandSample, fresh: Groups) -> Vec<Message> {
+    fn reading(&self, sample: &HandSample, fresh: Groups) -> Vec<EncodedMessage> {
         let mut messages = Vec::new();
         let of_joints = Group::ALL
             .into_iter()

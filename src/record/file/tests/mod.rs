@@ -12,7 +12,7 @@ use crate::hand::{
 };
 use crate::record::file::Contents;
 use crate::record::file::format::opening::Opening;
-use crate::record::file::reader::{Damage, RecordingFile, Stretch};
+use crate::record::file::reader::{Damage, RecordingFile, TimeRange};
 use crate::record::file::writer::RecordingWriter;
 use crate::record::{
     ArmRefusal, Direction, Entry, Event, EventKind, LinkReport, LinkState, Piece, PieceKind,
@@ -154,7 +154,7 @@ pub(crate) fn read(path: &Path) -> Option<(Vec<Atom>, RecordingFile, Damage)> {
     let file = RecordingFile::open(path).ok()?;
     let mut all = Vec::new();
     let damage = file
-        .entries(Stretch::WHOLE, |entry| {
+        .entries(TimeRange::WHOLE, |entry| {
             all.extend(atoms(&entry));
             ControlFlow::Continue(())
         })
@@ -343,7 +343,7 @@ fn a_stretch_begins_with_what_was_known_before_it() {
     let to = Moment::from_micros(12_100_000);
     let mut first = None;
     let mut times = Vec::new();
-    let stretch = Stretch {
+    let stretch = TimeRange {
         from,
         to,
         wire: false,

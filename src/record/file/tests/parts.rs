@@ -7,7 +7,7 @@ use crate::record::file::damage::Remark;
 use crate::record::file::disk::SystemDisk;
 use crate::record::file::format::opening::Opening;
 use crate::record::file::parts::recordings;
-use crate::record::file::reader::{RecordingFile, Stretch};
+use crate::record::file::reader::{RecordingFile, TimeRange};
 use crate::record::file::recording::{Given, Now, RecordingPlan, RecordingTask};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -116,7 +116,7 @@ fn a_stretch_over_the_border_of_two_files_is_read_from_both() {
     let stretch = |from, to| {
         let (from, to) = (Moment::from_micros(from), Moment::from_micros(to));
         let mut all = Vec::new();
-        let stretch = Stretch {
+        let stretch = TimeRange {
             from,
             to,
             wire: true,

@@ -11,7 +11,7 @@ use crate::record::Entry;
 use crate::record::file::channels::SkipReason;
 use crate::record::file::damage::{Damage, Remark};
 use crate::record::file::format::opening::METADATA;
-use crate::record::file::reader::{OpenError, RecordingFile, Stretch};
+use crate::record::file::reader::{OpenError, RecordingFile, TimeRange};
 use crate::record::file::walk::{self, ChunkKind, survey, whole};
 use crate::record::file::writer::RecordingWriter;
 use crate::soak;
@@ -534,7 +534,7 @@ fn seconds(file: &RecordingFile) -> Vec<u64> {
         all.push(u64::try_from(from_start.as_micros()).unwrap());
         ControlFlow::Continue(())
     };
-    file.entries(Stretch::WHOLE, each).unwrap();
+    file.entries(TimeRange::WHOLE, each).unwrap();
     all
 }
 

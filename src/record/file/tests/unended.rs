@@ -7,7 +7,7 @@
 
 use super::{BASE, opening};
 use crate::hand::Moment;
-use crate::record::file::reader::{Damage, RecordingFile, Stretch};
+use crate::record::file::reader::{Damage, RecordingFile, TimeRange};
 use crate::record::file::walk::walk;
 use crate::record::file::writer::RecordingWriter;
 use crate::record::{Entry, Event, EventKind};
@@ -39,7 +39,7 @@ fn at(number: u64) -> Moment {
 /// The notes of a stretch, and what is missing.
 fn notes(file: &RecordingFile, from: Moment, to: Moment) -> (Vec<Moment>, Damage) {
     let mut all = Vec::new();
-    let stretch = Stretch {
+    let stretch = TimeRange {
         from,
         to,
         wire: true,

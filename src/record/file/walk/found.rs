@@ -24,7 +24,7 @@ pub(super) const HEAD_LEN: usize = 9;
 
 /// Position of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
+pub struct ByteRange {
     /// Offset of its operation code.
     pub offset: u64,
     /// Bytes after operation code and length.
@@ -36,7 +36,7 @@ pub struct Place {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ChunkPlace {
     pub kind: ChunkKind,
-    pub place: Place,
+    pub place: ByteRange,
     /// Time of its first message.
     pub first_nanos: u64,
     /// Time of its last message.
@@ -61,8 +61,8 @@ pub enum ChunkKind {
 pub struct Found {
     /// In file order.
     pub chunks: Vec<ChunkPlace>,
-    pub attachments: Vec<Place>,
-    pub metadata: Vec<Place>,
+    pub attachments: Vec<ByteRange>,
+    pub metadata: Vec<ByteRange>,
     /// True if the file was closed properly.
     pub closed: bool,
     /// True if the file has an index that is damaged or does not match; it was ignored.
@@ -82,13 +82,13 @@ impl Found {
         }
     }
 
-    pub(super) fn attachment(&mut self, place: Place) {
+    pub(super) fn attachment(&mut self, place: ByteRange) {
         if self.attachments.len() < PLACES_MAX {
             self.attachments.push(place);
         }
     }
 
-    pub(super) fn metadata(&mut self, place: Place) {
+    pub(super) fn metadata(&mut self, place: ByteRange) {
         if self.metadata.len() < PLACES_MAX {
             self.metadata.push(place);
         }
@@ -118,7 +118,7 @@ pub(super) fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
 ///
 /// # Errors
 /// The system's error.
-pub(crate) fn content<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<Vec<u8>> {
+pub(crate) fn content<F: Read + Seek>(file: &mut F, place: ByteRange) -> io::Result<Vec<u8>> {
     let mut bytes = vec![0; usize::try_from(place.len.min(RECORD_MAX)).unwrap_or_default()];
     read_at(file, place.offset + HEAD, &mut bytes)?;
     Ok(bytes)
@@ -128,7 +128,7 @@ pub(crate) fn content<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<
 ///
 /// # Errors
 /// The system's error.
-pub(crate) fn whole<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<Vec<u8>> {
+pub(crate) fn whole<F: Read + Seek>(file: &mut F, place: ByteRange) -> io::Result<Vec<u8>> {
     let len = place.len.min(RECORD_MAX) + HEAD;
     let mut bytes = vec![0; usize::try_from(len).unwrap_or_default()];
     read_at(file, place.offset, &mut bytes)?;
@@ -139,7 +139,10 @@ pub(crate) fn whole<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<Ve
 ///
 /// # Errors
 /// The system's error.
-pub(crate) fn reader<F: Read + Seek>(file: &mut F, place: Place) -> io::Result<io::Take<&mut F>> {
+pub(crate) fn reader<F: Read + Seek>(
+    file: &mut F,
+    place: ByteRange,
+) -> io::Result<io::Take<&mut F>> {
     file.seek(SeekFrom::Start(place.offset))?;
     Ok(file.take(place.len + HEAD))
 }

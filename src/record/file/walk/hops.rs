@@ -1,7 +1,8 @@
 //! Finds the records of a file one after the other. After damage it continues at the next possible start of a chunk.
 
 use super::found::{
-    ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, Place, RECORD_MAX, read_at, u32_at, u64_at,
+    ByteRange, ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, RECORD_MAX, read_at, u32_at,
+    u64_at,
 };
 use mcap::records::op;
 use std::io::{self, Read, Seek};
@@ -125,7 +126,7 @@ pub(super) fn chunk_head(head: &[u8]) -> Option<ChunkHead> {
 }
 
 fn note(head: &[u8], at: u64, found: &mut Found) {
-    let place = Place {
+    let place = ByteRange {
         offset: at,
         len: u64_at(head, 1).unwrap_or_default(),
     };

@@ -1,7 +1,8 @@
 //! The records of a closed file, from its own index.
 
 use super::found::{
-    ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, Place, RECORD_MAX, read_at, u32_at, u64_at,
+    ByteRange, ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, RECORD_MAX, read_at, u32_at,
+    u64_at,
 };
 use mcap::records::op;
 use std::io::{self, Read, Seek};
@@ -132,11 +133,11 @@ impl Index {
         self.told = self.told.saturating_add(bytes);
     }
 
-    fn place(&mut self, offset: u64, whole: u64) -> Option<Place> {
+    fn place(&mut self, offset: u64, whole: u64) -> Option<ByteRange> {
         self.tell(whole);
         let len = whole.checked_sub(HEAD).filter(|len| *len <= RECORD_MAX)?;
         let end = offset.checked_add(whole)?;
-        (len > 0 && end <= self.start).then_some(Place { offset, len })
+        (len > 0 && end <= self.start).then_some(ByteRange { offset, len })
     }
 }
 

@@ -11,7 +11,7 @@ mod survey;
 mod times;
 
 pub use found::{
-    CHUNKS_MAX, ChunkKind, ChunkPlace, Found, LONG_MESSAGE_MAX, PLACES_MAX, Place, RECORD_MAX,
+    ByteRange, CHUNKS_MAX, ChunkKind, ChunkPlace, Found, LONG_MESSAGE_MAX, PLACES_MAX, RECORD_MAX,
     UNPACKED_MAX, UNPACKED_TIMES,
 };
 pub(crate) use found::{MAGIC, content, reader, whole};

@@ -2,7 +2,7 @@
 //! any numbers. The whole file is read once; its own index is only compared with the result.
 
 use super::found::{
-    ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, Place, RECORD_MAX, UNPACKED_MAX,
+    ByteRange, ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, RECORD_MAX, UNPACKED_MAX,
     UNPACKED_TIMES, reader, u32_at, u64_at, whole,
 };
 use super::hops::{ChunkHead, LOOKED_AT, chunk_head, chunk_times, next_place, plausible};
@@ -108,7 +108,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
                 continue;
             };
             let code = head.first().copied().unwrap_or_default();
-            let place = Place {
+            let place = ByteRange {
                 offset: at,
                 len: next - at - HEAD,
             };
@@ -183,7 +183,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         let Some((from, to)) = self.loose.take() else {
             return Ok(());
         };
-        let place = Place {
+        let place = ByteRange {
             offset: from,
             len: to - from - HEAD,
         };
@@ -191,7 +191,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
     }
 
     /// Reads a chunk, unless it claims to unpack to more than any recording does.
-    fn look_at_chunk(&mut self, chunk: ChunkHead, place: Place) -> io::Result<()> {
+    fn look_at_chunk(&mut self, chunk: ChunkHead, place: ByteRange) -> io::Result<()> {
         let survey = &mut self.survey;
         survey.unpacked = survey.unpacked.saturating_add(chunk.unpacked);
         let times = self.len.saturating_mul(UNPACKED_TIMES);
@@ -216,7 +216,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
     }
 
     /// Reads a chunk: its definitions, its messages, and their times.
-    fn look_at(&mut self, kind: ChunkKind, place: Place) -> io::Result<()> {
+    fn look_at(&mut self, kind: ChunkKind, place: ByteRange) -> io::Result<()> {
         let mut times: Option<(u64, u64)> = None;
         let (definitions, clock) = (&mut self.survey.definitions, &mut self.survey.clock);
         let mut has_unlogged = false;
