@@ -53,7 +53,7 @@ mod tests {
         );
         assert_eq!(read(&one).unwrap(), FreeForce::default());
         let mut close = FreeClose::default();
-        close.take(240, 87.0);
+        close.push(240, 87.0);
         let mut free = FreeForce::default();
         free.put(Dof::Little, &close);
         keep(&one, &free).unwrap();

@@ -142,7 +142,7 @@ impl StepRecord {
         for force in self.curve(dof, |own| own.force).points() {
             if let Some(angle) = angle.at(force.t) {
                 #[expect(clippy::cast_possible_truncation, reason = "both were 16 bits")]
-                close.take(angle as i16, (force.v - zero_g) as f32);
+                close.push(angle as i16, (force.v - zero_g) as f32);
             }
         }
         close

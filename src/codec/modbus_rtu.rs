@@ -139,10 +139,10 @@ impl RtuSplitter {
     pub fn next(&mut self) -> Option<RtuReply> {
         loop {
             match self.start() {
-                ReplyStart::Good(len) => return Some(self.take(len)),
+                ReplyStart::Good(len) => return Some(self.split_reply(len)),
                 ReplyStart::Open => return None,
-                ReplyStart::Echo(len) => self.take_echo(len),
-                ReplyStart::Bad | ReplyStart::None if self.take_foreign() => {}
+                ReplyStart::Echo(len) => self.drop_echo(len),
+                ReplyStart::Bad | ReplyStart::None if self.drop_foreign() => {}
                 ReplyStart::Bad => {
                     self.noise.checksum_errors += u64::from(!self.skipping);
                     self.skip();
@@ -157,8 +157,8 @@ impl RtuSplitter {
         while !self.buffer.is_empty() {
             match self.start() {
                 ReplyStart::Good(_) => return,
-                ReplyStart::Echo(len) => self.take_echo(len),
-                ReplyStart::Bad | ReplyStart::Open | ReplyStart::None if self.take_foreign() => {}
+                ReplyStart::Echo(len) => self.drop_echo(len),
+                ReplyStart::Bad | ReplyStart::Open | ReplyStart::None if self.drop_foreign() => {}
                 ReplyStart::Bad | ReplyStart::Open | ReplyStart::None => self.skip(),
             }
         }
@@ -205,7 +205,7 @@ impl RtuSplitter {
         }
     }
 
-    fn take_echo(&mut self, len: usize) {
+    fn drop_echo(&mut self, len: usize) {
         self.requests.echoes += 1;
         self.echo.clear();
         self.skipping = false;
@@ -213,7 +213,7 @@ impl RtuSplitter {
     }
 
     /// Removes another controller's whole request from the front of the buffer; returns false if there is none.
-    fn take_foreign(&mut self) -> bool {
+    fn drop_foreign(&mut self) -> bool {
         let bytes = self.buffer.as_slice();
         let len = match bytes {
             [1..=247, 3 | 6, ..] => REQUEST_LEN,
@@ -232,7 +232,7 @@ impl RtuSplitter {
         is_good
     }
 
-    fn take(&mut self, len: usize) -> RtuReply {
+    fn split_reply(&mut self, len: usize) -> RtuReply {
         self.skipping = false;
         RtuReply {
             bytes: self.buffer.drain(..len).collect(),

@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn the_manuals_messages_are_told_apart_and_measured() {
         // Manual 2.5.1 to 2.5.3 without header.
-        for (side, bytes, said) in [
+        for (side, bytes, expected) in [
             (
                 ModbusRole::Client,
                 &[3, 0x06, 0x0A, 0, 3][..],
@@ -198,7 +198,7 @@ mod tests {
                 },
             ),
         ] {
-            assert_eq!(parse(side, bytes), said);
+            assert_eq!(parse(side, bytes), expected);
             assert_eq!(len(side, bytes), Len::Known(bytes.len()), "{bytes:?}");
         }
     }

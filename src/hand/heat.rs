@@ -80,7 +80,7 @@ mod tests {
             ([255, 101, 30, 30, 30, 30], Some((Dof::Little, 255)), true),
         ] {
             let mut sample = HandSample::default();
-            sample.take(&Reply {
+            sample.apply(&Reply {
                 span: Group::Temperature.span(),
                 bytes: &celsius,
                 asked: at,

@@ -31,12 +31,12 @@ impl Extremes {
 
     fn of(value: f32) -> Self {
         let mut one = Self::NONE;
-        one.take(value);
+        one.push(value);
         one
     }
 
     /// Adds one value. NaN is a gap.
-    pub(crate) fn take(&mut self, value: f32) {
+    pub(crate) fn push(&mut self, value: f32) {
         self.gap |= value.is_nan();
         self.min = self.min.min(value);
         self.max = self.max.max(value);
@@ -64,7 +64,7 @@ pub(crate) struct ColumnSum {
 }
 
 impl ColumnSum {
-    fn take(&mut self, value: f32) {
+    fn push(&mut self, value: f32) {
         if !value.is_nan() {
             self.sum += f64::from(value);
             self.count += 1;
@@ -106,7 +106,7 @@ impl Column {
         for (level, ring) in (1..).zip(&mut self.levels) {
             let starts = row.is_multiple_of(span(level));
             match ring.last_mut().filter(|_| !starts) {
-                Some(newest) => newest.take(value),
+                Some(newest) => newest.push(value),
                 None => ring.push(Extremes::of(value)),
             }
         }
@@ -115,7 +115,7 @@ impl Column {
                 ring.push(ColumnSum::default());
             }
             if let Some(newest) = ring.last_mut() {
-                newest.take(value);
+                newest.push(value);
             }
         }
     }
@@ -153,7 +153,7 @@ impl Column {
                 all.join(stretch);
                 row += span(level);
             } else {
-                all.take(self.values.get(row).unwrap_or(f32::NAN));
+                all.push(self.values.get(row).unwrap_or(f32::NAN));
                 row += 1;
             }
         }
@@ -219,8 +219,8 @@ mod tests {
                 let seen = values.get(rows.clone()).unwrap_or_default();
                 let (mut extremes, mut sum) = (Extremes::NONE, ColumnSum::default());
                 for raw in seen {
-                    extremes.take(value(raw));
-                    sum.take(value(raw));
+                    extremes.push(value(raw));
+                    sum.push(value(raw));
                 }
                 prop_assert_eq!(column.extremes(rows.clone()), extremes);
                 prop_assert_eq!(column.sum(rows), sum);
@@ -245,7 +245,7 @@ mod tests {
             let want = (from..to)
                 .map(value)
                 .fold(Extremes::NONE, |mut all, value| {
-                    all.take(value);
+                    all.push(value);
                     all
                 });
             assert_eq!(column.extremes(from..to), want, "{from}..{to}");

@@ -99,14 +99,14 @@ mod tests {
         say(9.0, Status::ForceReached);
         all.gap();
         all.push(9.5, |_| (Some(Status::ForceReached), none));
-        let told = |from_s, to_s| -> Vec<(f64, f64)> {
+        let shown = |from_s, to_s| -> Vec<(f64, f64)> {
             let runs = all.between(Dof::Index, from_s, to_s);
             runs.map(|run| (run.from_s, run.until_s)).collect()
         };
         let whole = [(1.0, 1.2), (1.2, 1.2), (9.0, 9.0), (9.5, 9.5)];
-        assert_eq!(told(0.0, 10.0), whole);
-        assert_eq!(told(1.15, 1.3), [(1.0, 1.2), (1.2, 1.2)]);
-        assert_eq!(told(2.0, 8.0), []);
+        assert_eq!(shown(0.0, 10.0), whole);
+        assert_eq!(shown(1.15, 1.3), [(1.0, 1.2), (1.2, 1.2)]);
+        assert_eq!(shown(2.0, 8.0), []);
     }
 
     #[test]

@@ -67,11 +67,11 @@ impl LinkEntries {
                 record = self.observed.records.next() => match record {
                     Some(record) => return Some(Entry::Heard(record)),
                     None => {
-                        self.look();
+                        self.collect();
                         self.is_over = true;
                     }
                 },
-                _ = self.tick.tick() => self.look(),
+                _ = self.tick.tick() => self.collect(),
             }
         }
     }
@@ -81,7 +81,7 @@ impl LinkEntries {
         std::mem::take(&mut self.missed)
     }
 
-    fn look(&mut self) {
+    fn collect(&mut self) {
         let lost = self.observed.records.lost();
         self.missed += lost - self.lost_records;
         self.lost_records = lost;

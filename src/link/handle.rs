@@ -467,7 +467,7 @@ impl LinkStopper {
     /// writes nothing otherwise. True if a stop was requested.
     pub fn stop_if_moved(&self) -> bool {
         let link = self.0.upgrade().map(LinkHandle);
-        let moved = link.filter(|link| link.status().goes_on());
+        let moved = link.filter(|link| link.status().may_continue());
         let stop = moved.map(|link| link.stop());
         stop.is_some()
     }

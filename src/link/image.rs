@@ -110,7 +110,7 @@ impl RegisterImage {
     }
 
     /// Applies a reply to every block that it covers.
-    pub(crate) fn take(&mut self, reply: &Reply<'_>) {
+    pub(crate) fn apply(&mut self, reply: &Reply<'_>) {
         let held = self
             .blocks
             .iter_mut()
@@ -129,7 +129,7 @@ impl RegisterImage {
     }
 
     /// Stores the result of a requested range.
-    pub(crate) fn take_area(
+    pub(crate) fn store_area(
         &mut self,
         span: Span,
         asked: Moment,
@@ -153,7 +153,7 @@ impl RegisterImage {
     }
 
     /// Looks up a range at `now`, for a client that has waited since `since`.
-    pub(crate) fn look(&self, span: Span, since: Moment, now: Moment) -> ImageLookup {
+    pub(crate) fn look_up(&self, span: Span, since: Moment, now: Moment) -> ImageLookup {
         if !self.is_live {
             return ImageLookup::Offline;
         }
@@ -162,7 +162,7 @@ impl RegisterImage {
         let mut at = u32::from(span.address);
         while at < span.end() {
             let run = self.run(at, span.end());
-            match self.look_at(run, since, now) {
+            match self.look_up_run(run, since, now) {
                 ImageLookup::Bytes(more) => bytes.extend(more),
                 ImageLookup::Soon(until) => {
                     soon = Some(soon.map_or(until, |soon: Moment| soon.min(until)))
@@ -186,7 +186,7 @@ impl RegisterImage {
         Span::new(part(at), part(until - at))
     }
 
-    fn look_at(&self, run: Span, since: Moment, now: Moment) -> ImageLookup {
+    fn look_up_run(&self, run: Span, since: Moment, now: Moment) -> ImageLookup {
         let block = self.blocks.iter().find(|block| block.span.covers(run));
         if let Some(bytes) = block.and_then(|block| block.fresh(run, now)) {
             return ImageLookup::Bytes(bytes);
@@ -264,8 +264,8 @@ mod tests {
         Moment::from_micros(ms * 1000)
     }
 
-    fn take(image: &mut RegisterImage, span: Span, ms: u64, fill: u8) {
-        image.take(&Reply {
+    fn apply(image: &mut RegisterImage, span: Span, ms: u64, fill: u8) {
+        image.apply(&Reply {
             span,
             bytes: &vec![fill; usize::from(span.len)],
             asked: at(ms),
@@ -274,14 +274,14 @@ mod tests {
     }
 
     fn seen(image: &RegisterImage, span: Span, ms: u64) -> ImageLookup {
-        image.look(span, at(ms), at(ms))
+        image.look_up(span, at(ms), at(ms))
     }
 
     #[test]
     fn bytes_are_given_for_one_period_and_then_the_next_read_is_waited_for() {
         let mut image = image();
         assert_eq!(seen(&image, ANGLES, 5), ImageLookup::Soon(at(255)));
-        take(&mut image, Span::new(1546, 24), 10, 7);
+        apply(&mut image, Span::new(1546, 24), 10, 7);
         assert_eq!(seen(&image, ANGLES, 20), ImageLookup::Bytes(vec![7; 12]));
         assert_eq!(
             seen(&image, Span::new(1549, 3), 20),
@@ -289,7 +289,7 @@ mod tests {
         );
         assert_eq!(seen(&image, ANGLES, 21), ImageLookup::Soon(at(270)));
         // A session that polls as fast as it can, every 30 ms, serves each reply for that long.
-        take(&mut image, ANGLES, 40, 8);
+        apply(&mut image, ANGLES, 40, 8);
         assert_eq!(seen(&image, ANGLES, 70), ImageLookup::Bytes(vec![8; 12]));
         assert_eq!(seen(&image, ANGLES, 71), ImageLookup::Soon(at(320)));
         assert_eq!(seen(&image, ANGLES, 320), ImageLookup::Missing(ANGLES));
@@ -298,8 +298,8 @@ mod tests {
     #[test]
     fn a_part_of_a_block_is_never_mixed_into_it() {
         let mut image = image();
-        take(&mut image, ANGLES, 10, 7);
-        take(&mut image, Span::new(1550, 8), 12, 8);
+        apply(&mut image, ANGLES, 10, 7);
+        apply(&mut image, Span::new(1550, 8), 12, 8);
         assert_eq!(seen(&image, ANGLES, 13), ImageLookup::Bytes(vec![7; 12]));
     }
 
@@ -307,14 +307,14 @@ mod tests {
     fn what_is_not_read_by_itself_is_asked_for_once_and_then_shared() {
         let (mut image, id) = (image(), Span::new(1000, 2));
         assert_eq!(seen(&image, id, 10), ImageLookup::Missing(id));
-        image.take_area(id, at(10), Ok(vec![1, 0]));
+        image.store_area(id, at(10), Ok(vec![1, 0]));
         assert_eq!(seen(&image, id, 510), ImageLookup::Bytes(vec![1, 0]));
         assert_eq!(seen(&image, id, 511), ImageLookup::Missing(id));
         let lost = RequestError::LinkLost;
-        image.take_area(id, at(600), Err(lost.clone()));
+        image.store_area(id, at(600), Err(lost.clone()));
         assert_eq!(seen(&image, id, 601), ImageLookup::Failed(lost));
         // Bytes of two reads are not combined.
-        image.take_area(Span::new(1002, 2), at(602), Ok(vec![3, 0]));
+        image.store_area(Span::new(1002, 2), at(602), Ok(vec![3, 0]));
         assert_eq!(
             seen(&image, Span::new(1001, 2), 603),
             ImageLookup::Missing(Span::new(1001, 2))
@@ -325,7 +325,7 @@ mod tests {
     fn a_read_over_several_blocks_needs_all_of_them() {
         let mut image = image();
         let all = Span::new(1546, 48);
-        take(&mut image, all, 10, 7);
+        apply(&mut image, all, 10, 7);
         assert_eq!(
             seen(&image, all, 11),
             ImageLookup::Bytes(vec![7; 48]),
@@ -338,12 +338,12 @@ mod tests {
     #[test]
     fn what_was_written_is_asked_for_again() {
         let mut image = image();
-        take(&mut image, Span::new(1486, 48), 10, 7);
+        apply(&mut image, Span::new(1486, 48), 10, 7);
         assert_eq!(seen(&image, SET, 100), ImageLookup::Bytes(vec![7; 12]));
         image.forget(Span::new(1488, 2));
         let block = Span::new(1486, 24);
         assert_eq!(seen(&image, SET, 100), ImageLookup::Missing(block));
-        image.take_area(block, at(100), Ok(vec![9; 24]));
+        image.store_area(block, at(100), Ok(vec![9; 24]));
         assert_eq!(seen(&image, SET, 101), ImageLookup::Bytes(vec![9; 12]));
         image.forget(Span::new(1488, 2));
         assert_eq!(seen(&image, SET, 101), ImageLookup::Missing(block));
@@ -359,7 +359,7 @@ mod tests {
     fn the_oldest_areas_make_room() {
         let mut image = image();
         for nth in 0..20 {
-            image.take_area(Span::new(2000 + 2 * nth, 2), at(1), Ok(vec![0, 0]));
+            image.store_area(Span::new(2000 + 2 * nth, 2), at(1), Ok(vec![0, 0]));
         }
         assert_eq!(image.areas.len(), AREAS_MAX);
         assert_eq!(

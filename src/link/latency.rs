@@ -20,7 +20,7 @@ pub struct Ticks {
 
 impl Ticks {
     /// Records that a reply of this many memory bytes took this long, measured at this end.
-    pub fn took(&mut self, bytes: u16, trip: Duration) {
+    pub fn record(&mut self, bytes: u16, trip: Duration) {
         if bytes > KEPT_MAX {
             return;
         }
@@ -47,9 +47,9 @@ mod tests {
     fn seen(micros: impl Fn(u64) -> u64) -> bool {
         let mut ticks = Ticks::default();
         for n in 0..40 {
-            ticks.took(12, Duration::from_micros(micros(n)));
+            ticks.record(12, Duration::from_micros(micros(n)));
             // Long replies do not wait, and do not count.
-            ticks.took(232, Duration::from_millis(40));
+            ticks.record(232, Duration::from_millis(40));
         }
         ticks.are_seen()
     }
@@ -68,7 +68,7 @@ mod tests {
         assert!(!seen(|n| 4_000 + n % 13 * 2_000));
         assert!(!seen(|_| 300));
         let mut few = Ticks::default();
-        few.took(12, Duration::from_millis(16));
+        few.record(12, Duration::from_millis(16));
         assert!(!few.are_seen());
     }
 }

@@ -10,7 +10,7 @@ static IS_RAISED: AtomicBool = AtomicBool::new(false);
 
 /// Requests a higher priority for the calling thread, on which links will run.
 pub fn raise() {
-    IS_RAISED.store(asked(), Ordering::Relaxed);
+    IS_RAISED.store(try_raise(), Ordering::Relaxed);
 }
 
 /// True if the system granted that priority.
@@ -20,12 +20,12 @@ pub fn is_raised() -> bool {
 
 /// On Linux, process 0 of this call is the calling thread alone.
 #[cfg(target_os = "linux")]
-fn asked() -> bool {
+fn try_raise() -> bool {
     rustix::process::setpriority_process(None, NICE).is_ok()
 }
 
 #[cfg(not(target_os = "linux"))]
-fn asked() -> bool {
+fn try_raise() -> bool {
     false
 }
 
@@ -37,7 +37,7 @@ mod tests {
     fn what_is_reported_is_what_the_system_granted() {
         let thread = std::thread::spawn(|| {
             let before = rustix::process::getpriority_process(None).unwrap_or_default();
-            let granted = asked();
+            let granted = try_raise();
             let after = rustix::process::getpriority_process(None).unwrap_or_default();
             (before, granted, after)
         });

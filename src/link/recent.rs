@@ -74,12 +74,12 @@ impl RecentReads {
         loop {
             let seen = image
                 .borrow_and_update()
-                .look(span, since, self.clock.now());
+                .look_up(span, since, self.clock.now());
             match seen {
                 ImageLookup::Bytes(bytes) => return Ok(bytes),
                 ImageLookup::Failed(error) => return Err(error),
                 ImageLookup::Offline => return Err(RequestError::NotConnected),
-                ImageLookup::Missing(part) => self.ask(part).await?,
+                ImageLookup::Missing(part) => self.request(part).await?,
                 ImageLookup::Soon(until) => {
                     let over = sleep_until(self.clock.instant(until));
                     tokio::select! {
@@ -94,7 +94,7 @@ impl RecentReads {
 
     /// Reads from the hand, one range at a time and at a limited rate, unless another client did so meanwhile. The
     /// session stores the reply in the image.
-    async fn ask(&self, span: Span) -> Result<(), RequestError> {
+    async fn request(&self, span: Span) -> Result<(), RequestError> {
         let [parts, others] = &self.turns;
         let is_part = ReadPart::ALL.into_iter().any(|part| part.span() == span);
         let (turn, pause_min) = if is_part {
@@ -110,7 +110,7 @@ impl RecentReads {
         }
         let now = self.clock.now();
         if !matches!(
-            self.image.borrow().look(span, since, now),
+            self.image.borrow().look_up(span, since, now),
             ImageLookup::Missing(_)
         ) {
             return Ok(());

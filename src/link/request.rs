@@ -31,7 +31,7 @@ impl Request {
     /// Reports that the request was not done.
     pub(crate) fn fail(self, error: RequestError) {
         // The requester may have dropped its receiver.
-        let _told = match self {
+        let _sent = match self {
             Self::Command(_, _, answer) => answer.send(Err(error)).is_ok(),
             Self::Read(_, answer) => answer.send(Err(error)).is_ok(),
             Self::Set(_, answer) => answer.send(Err(error)).is_ok(),

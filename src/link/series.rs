@@ -221,14 +221,14 @@ fn drives(span: Span, bytes: &[u8]) -> Sign {
         .iter()
         .filter(|byte| WARM.contains(byte))
         .count();
-    let told = temperatures
+    let known = temperatures
         .iter()
         .filter(|byte| **byte != NOT_KNOWN)
         .count();
     let odd = status
         .iter()
         .filter(|code| **code > STATUS_MAX && **code != NOT_KNOWN);
-    if odd.count() >= WARM_LEAST || warm == 0 && told >= WARM_LEAST {
+    if odd.count() >= WARM_LEAST || warm == 0 && known >= WARM_LEAST {
         Sign::Against
     } else if warm >= WARM_LEAST {
         Sign::For

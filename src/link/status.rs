@@ -71,7 +71,7 @@ pub struct LinkStatus {
 
 impl LinkStatus {
     /// True if the hand may continue to its target or be sent a new one, and no stop is in progress.
-    pub fn goes_on(&self) -> bool {
+    pub fn may_continue(&self) -> bool {
         let is_left = self.may_move && self.state != LinkState::Holding;
         self.holder.is_some() || is_left
     }

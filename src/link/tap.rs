@@ -222,12 +222,12 @@ mod tests {
         assert_eq!(wire.read(&mut [0; 9]).await.unwrap(), 0);
         drop(wire);
         let noted: Vec<_> = tap.after(0).pieces;
-        let told: Vec<_> = noted
+        let pieces: Vec<_> = noted
             .iter()
             .map(|piece| (piece.at.micros(), piece.kind, piece.bytes.as_slice()))
             .collect();
         assert_eq!(
-            told,
+            pieces,
             [
                 (0, PieceKind::Opened, &b""[..]),
                 (0, OUT, b"ask"),

@@ -25,7 +25,7 @@ pub struct Rod {
 
 /// A box, in mm, in the frame of its segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Block {
+pub struct Cuboid {
     pub middle: [f32; 3],
     pub edges: [f32; 3],
 }
@@ -33,7 +33,7 @@ pub struct Block {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
     Rod(Rod),
-    Block(Block),
+    Block(Cuboid),
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -160,7 +160,7 @@ fn mirrored_shape(side: Side, shape: Shape) -> Shape {
             ends: rod.ends.map(|end| mirrored(side, end)),
             ..rod
         }),
-        Shape::Block(block) => Shape::Block(Block {
+        Shape::Block(block) => Shape::Block(Cuboid {
             middle: mirrored(side, block.middle),
             ..block
         }),
@@ -177,7 +177,7 @@ const fn shape(segment: Segment) -> Shape {
         })
     }
     match segment {
-        Palm => Shape::Block(Block {
+        Palm => Shape::Block(Cuboid {
             middle: [-2.0, 0.0, 72.5],
             edges: [86.0, 34.0, 145.0],
         }),

@@ -194,7 +194,7 @@ impl CheckupFiles {
     fn keep_free_force(&self, measured: &FreeForce) {
         if let Some(file) = &self.free_force {
             let mut known = free_file::read(file).unwrap_or_default();
-            known.take(measured);
+            known.merge(measured);
             let _kept = free_file::keep(file, &known);
         }
     }

@@ -118,7 +118,7 @@ impl Program for GripRun {
 
     fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         self.setpoints.read(sample, fresh);
-        self.start.grip.take(sample, fresh, now);
+        self.start.grip.apply(sample, fresh, now);
     }
 
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {

@@ -89,7 +89,7 @@ impl Program for Moving {
 
     fn read(&mut self, sample: &HandSample, fresh: Groups, _now: Moment) {
         let read = sample.newest(fresh).unwrap_or_default();
-        self.start.grip.take(sample, fresh, read);
+        self.start.grip.apply(sample, fresh, read);
     }
 
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {

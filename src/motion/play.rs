@@ -137,7 +137,7 @@ impl Program for Playing {
 
     fn read(&mut self, sample: &HandSample, fresh: Groups, _now: Moment) {
         let read = sample.newest(fresh).unwrap_or_default();
-        self.grip.take(sample, fresh, read);
+        self.grip.apply(sample, fresh, read);
     }
 
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {

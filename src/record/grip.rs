@@ -22,11 +22,11 @@ struct FeedbackDoubt {
 
 impl GripFollower {
     /// Applies an entry. Returns the grip after it, if it is a reading or ends the readings.
-    pub(crate) fn take(&mut self, entry: &Entry) -> Option<Grip> {
+    pub(crate) fn apply(&mut self, entry: &Entry) -> Option<Grip> {
         match entry {
             Entry::Heard(Record::Reading { sample, fresh }) => {
                 let at = entry.at();
-                let grip = self.estimator.take(sample, *fresh, at).at(at);
+                let grip = self.estimator.apply(sample, *fresh, at).at(at);
                 Some(self.doubted.map_or(grip, Grip::unknown))
             }
             Entry::Heard(Record::State { at, state }) if !state.is_live() => {
@@ -193,7 +193,7 @@ mod tests {
             for _ in 0..50 {
                 ms += 10;
                 let entry = reading(Moment::from_micros(ms * 1000));
-                states = super::states(&follower.take(&entry).unwrap());
+                states = super::states(&follower.apply(&entry).unwrap());
             }
             states
         };
@@ -207,14 +207,14 @@ mod tests {
                 figures: String::new(),
             })
         };
-        follower.take(&report(r#"{"feedback_in_doubt":true}"#));
-        follower.take(&report(""));
+        follower.apply(&report(r#"{"feedback_in_doubt":true}"#));
+        follower.apply(&report(""));
         assert_eq!(held(&mut follower), [GripState::Unknown; 6]);
-        follower.take(&report(r#"{"feedback_in_doubt":false}"#));
+        follower.apply(&report(r#"{"feedback_in_doubt":false}"#));
         assert_eq!(held(&mut follower), [GripState::Holding; 6]);
         let at = Moment::from_micros(9_000_000);
         let state = LinkState::Offline;
-        let gone = follower.take(&Entry::Heard(Record::State { at, state }));
+        let gone = follower.apply(&Entry::Heard(Record::State { at, state }));
         assert_eq!(gone, Some(Grip::unknown(at)));
     }
 }

@@ -109,7 +109,7 @@ pub struct DdsCounts {
 /// Publishes everything about one hand until dropped.
 #[derive(Debug)]
 pub struct DdsPublisher {
-    told: watch::Receiver<DdsCounts>,
+    counts: watch::Receiver<DdsCounts>,
     _task: AbortOnDropHandle<()>,
 }
 
@@ -118,29 +118,29 @@ impl DdsPublisher {
     pub fn open(node: &DdsNode, link: &LinkHandle, side: Side) -> Self {
         let writers = HandWriters::open(node, side);
         let others = OtherHands {
-            told: node.reader(&motors::topic(), MOTORS_KEPT),
+            messages: node.reader(&motors::topic(), MOTORS_KEPT),
             node: node.clone(),
         };
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
         let now = (link.clock().now(), since_1970.unwrap_or_default());
-        let (told, view) = watch::channel(DdsCounts::default());
-        let telling = HandPublisher {
+        let (counts, view) = watch::channel(DdsCounts::default());
+        let publisher = HandPublisher {
             writers,
             motors: MotorPair::new(side),
             encoder: EntryEncoder::new(&Opening::begin(String::new(), now, side)),
             clock: link.clock(),
-            told,
+            counts,
         };
         let entries = LinkEntries::new(link.observe(), link.clock());
         Self {
-            told: view,
-            _task: AbortOnDropHandle::new(tokio::spawn(telling.run(entries, others))),
+            counts: view,
+            _task: AbortOnDropHandle::new(tokio::spawn(publisher.run(entries, others))),
         }
     }
 
     /// Counts so far.
-    pub fn told(&self) -> DdsCounts {
-        *self.told.borrow()
+    pub fn counts(&self) -> DdsCounts {
+        *self.counts.borrow()
     }
 }
 
@@ -150,7 +150,7 @@ pub struct SharedOnDds {
     /// DDS participant, for other readers and writers.
     pub node: DdsNode,
     publisher: DdsPublisher,
-    teller: FleetAnnouncer,
+    announcer: FleetAnnouncer,
 }
 
 impl SharedOnDds {
@@ -158,25 +158,25 @@ impl SharedOnDds {
     pub fn open(node: DdsNode, link: &LinkHandle, card: FleetCard) -> Self {
         Self {
             publisher: DdsPublisher::open(&node, link, card.side),
-            teller: FleetAnnouncer::open(&node, link, card),
+            announcer: FleetAnnouncer::open(&node, link, card),
             node,
         }
     }
 
     /// Counts so far.
-    pub fn told(&self) -> DdsCounts {
-        self.publisher.told()
+    pub fn counts(&self) -> DdsCounts {
+        self.publisher.counts()
     }
 
     /// Announces the hand with this card from now on.
-    pub fn say(&self, card: FleetCard) {
-        self.teller.say(card);
+    pub fn announce(&self, card: FleetCard) {
+        self.announcer.announce(card);
     }
 }
 
 /// States of both hands of a robot from other participants.
 struct OtherHands {
-    told: mpsc::Receiver<DdsMessage>,
+    messages: mpsc::Receiver<DdsMessage>,
     node: DdsNode,
 }
 
@@ -232,7 +232,7 @@ struct HandPublisher {
     motors: MotorPair,
     encoder: EntryEncoder,
     clock: Clock,
-    told: watch::Sender<DdsCounts>,
+    counts: watch::Sender<DdsCounts>,
 }
 
 impl HandPublisher {
@@ -243,9 +243,9 @@ impl HandPublisher {
                     Some(entry) => entry,
                     None => return,
                 },
-                Some(message) = others.told.recv() => {
+                Some(message) = others.messages.recv() => {
                     if !others.node.wrote(&message) {
-                        self.motors.heard(&message.bytes, self.clock.now());
+                        self.motors.receive(&message.bytes, self.clock.now());
                     }
                     continue;
                 }
@@ -266,15 +266,15 @@ impl HandPublisher {
         }
         let now = self.clock.now();
         let Some(state) = InspireState::of(sample, now) else {
-            self.told.send_modify(|told| told.incomplete += 1);
+            self.counts.send_modify(|counts| counts.incomplete += 1);
             return;
         };
         let is_sent = self.writers.state.send(state.message());
         let motors = self.motors.message(state.angles(), state.celsius(), now);
         let are_sent = motors.is_none_or(|motors| self.writers.motors.send(motors));
-        self.told.send_modify(|told| {
-            told.states += u64::from(is_sent);
-            told.lost += u64::from(!is_sent) + u64::from(!are_sent);
+        self.counts.send_modify(|counts| {
+            counts.states += u64::from(is_sent);
+            counts.lost += u64::from(!is_sent) + u64::from(!are_sent);
         });
     }
 
@@ -296,7 +296,7 @@ impl HandPublisher {
                 _ => continue,
             };
             if !writer.send(message.bytes) {
-                self.told.send_modify(|told| told.lost += 1);
+                self.counts.send_modify(|counts| counts.lost += 1);
             }
         }
     }
@@ -334,8 +334,8 @@ mod tests {
         shorts.chain(bytes).collect()
     }
 
-    fn take(sample: &mut HandSample, (group, bytes): &(Group, Vec<u8>), asked: Moment) {
-        sample.take(&Reply {
+    fn apply(sample: &mut HandSample, (group, bytes): &(Group, Vec<u8>), asked: Moment) {
+        sample.apply(&Reply {
             span: group.span(),
             bytes,
             asked,
@@ -348,7 +348,7 @@ mod tests {
         let mut sample = HandSample::default();
         lists()
             .iter()
-            .for_each(|list| take(&mut sample, list, ms(0)));
+            .for_each(|list| apply(&mut sample, list, ms(0)));
         let state = InspireState::of(&sample, ms(5)).unwrap();
         let message = state.message();
         let hex = message.iter().map(|byte| format!("{byte:02x}"));
@@ -361,11 +361,11 @@ mod tests {
             let mut sample = HandSample::default();
             for (nth, list) in lists().iter().enumerate() {
                 if nth != left_out {
-                    take(&mut sample, list, ms(1000));
+                    apply(&mut sample, list, ms(1000));
                 }
             }
             assert_eq!(InspireState::of(&sample, ms(1001)), None, "{left_out}");
-            take(&mut sample, &lists()[left_out], ms(500));
+            apply(&mut sample, &lists()[left_out], ms(500));
             assert!(InspireState::of(&sample, ms(1500)).is_some());
             assert_eq!(InspireState::of(&sample, ms(1501)), None, "{left_out}");
         }

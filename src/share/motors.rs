@@ -83,7 +83,7 @@ impl MotorPair {
     }
 
     /// Handles a message from another participant.
-    pub(crate) fn heard(&mut self, bytes: &[u8], now: Moment) {
+    pub(crate) fn receive(&mut self, bytes: &[u8], now: Moment) {
         let Some(Motors { states }) = cdr::decode(bytes) else {
             return;
         };
@@ -113,8 +113,8 @@ impl MotorPair {
         celsius: &[u8; JOINTS],
         now: Moment,
     ) -> Option<Vec<u8>> {
-        let is_told = |at: Moment| now.since(at) < DRIVER_MAX_AGE;
-        if self.driver.is_some_and(is_told) {
+        let is_current = |at: Moment| now.since(at) < DRIVER_MAX_AGE;
+        if self.driver.is_some_and(is_current) {
             return None;
         }
         let mut all = angles.iter().zip(celsius);
@@ -182,25 +182,25 @@ mod tests {
             "the left one is not known"
         );
         let left = MotorPair::new(Side::Left);
-        let told = q(&left.message(&ANGLES, &CELSIUS, ms(0)).unwrap());
-        assert!(told[..6].iter().all(|q| q.is_nan()) && told[9] == 0.25);
+        let published = q(&left.message(&ANGLES, &CELSIUS, ms(0)).unwrap());
+        assert!(published[..6].iter().all(|q| q.is_nan()) && published[9] == 0.25);
     }
 
     #[test]
     fn two_handscopes_tell_both_hands_and_what_is_passed_on_is_not_passed_on_again() {
         let (mut right, mut left) = (MotorPair::new(Side::Right), MotorPair::new(Side::Left));
         let of_left = left.message(&[700; 6], &CELSIUS, ms(0)).unwrap();
-        right.heard(&of_left, ms(1));
+        right.receive(&of_left, ms(1));
         let of_right = right.message(&[300; 6], &CELSIUS, ms(2)).unwrap();
         assert_eq!(q(&of_right), [[0.3; 6], [0.7; 6]].concat());
         // A second right hand hears of the left one only from the left one.
         let mut second = MotorPair::new(Side::Right);
-        second.heard(&of_right, ms(3));
-        let told = q(&second.message(&[300; 6], &CELSIUS, ms(3)).unwrap());
-        assert!(told[6..].iter().all(|q| q.is_nan()), "{told:?}");
-        left.heard(&of_right, ms(3));
-        let told = q(&left.message(&[700; 6], &CELSIUS, ms(4)).unwrap());
-        assert_eq!(told, [[0.3; 6], [0.7; 6]].concat());
+        second.receive(&of_right, ms(3));
+        let published = q(&second.message(&[300; 6], &CELSIUS, ms(3)).unwrap());
+        assert!(published[6..].iter().all(|q| q.is_nan()), "{published:?}");
+        left.receive(&of_right, ms(3));
+        let published = q(&left.message(&[700; 6], &CELSIUS, ms(4)).unwrap());
+        assert_eq!(published, [[0.3; 6], [0.7; 6]].concat());
         // What is old is not known any more.
         let late = q(&right.message(&[300; 6], &CELSIUS, ms(251)).unwrap());
         assert!(late[6..].iter().all(|q| q.is_nan()), "{late:?}");
@@ -217,11 +217,11 @@ mod tests {
             };
             Side::MOTORS
         ];
-        pair.heard(&cdr::encode(&Motors { states }), ms(100));
+        pair.receive(&cdr::encode(&Motors { states }), ms(100));
         assert_eq!(pair.message(&ANGLES, &CELSIUS, ms(2099)), None);
         assert!(pair.message(&ANGLES, &CELSIUS, ms(2100)).is_some());
         for odd in [&[][..], &[0, 1, 0, 0], &[0, 1, 0, 0, 255, 255, 255, 255]] {
-            pair.heard(odd, ms(3000));
+            pair.receive(odd, ms(3000));
         }
         assert!(pair.message(&ANGLES, &CELSIUS, ms(3000)).is_some());
     }

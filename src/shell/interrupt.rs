@@ -40,8 +40,8 @@ impl Interrupt {
                 .inspect(|_status| CAME.store(true, Ordering::Relaxed))
                 .boxed()
         };
-        let heard = system::end().map(|signals| signals.into_iter().map(noted).collect());
-        Self::of("Ctrl-C", heard)
+        let signals = system::end().map(|signals| signals.into_iter().map(noted).collect());
+        Self::of("Ctrl-C", signals)
     }
 
     /// Listens for a request to cut the simulated hand's power for a moment: SIGUSR1. Must be called within a tokio runtime.
@@ -55,8 +55,8 @@ impl Interrupt {
         Self::of("SIGUSR2", system::freeze())
     }
 
-    fn of(signal: &'static str, heard: Signals) -> Result<Self, ListenError> {
-        match heard {
+    fn of(signal: &'static str, signals: Signals) -> Result<Self, ListenError> {
+        match signals {
             Ok(signals) => Ok(Self {
                 signals: select_all(signals),
             }),
@@ -79,7 +79,7 @@ impl Interrupt {
     }
 }
 
-fn heard(
+fn signal_stream(
     status: i32,
     mut poll: impl FnMut(&mut Context<'_>) -> Poll<Option<()>> + Send + 'static,
 ) -> BoxStream<'static, i32> {
@@ -88,7 +88,7 @@ fn heard(
 
 #[cfg(unix)]
 mod system {
-    use super::{BoxStream, Signals, heard};
+    use super::{BoxStream, Signals, signal_stream};
     use std::io;
     use tokio::signal::unix::{SignalKind, signal};
 
@@ -112,13 +112,15 @@ mod system {
     fn on(kind: SignalKind) -> io::Result<BoxStream<'static, i32>> {
         let mut signal = signal(kind)?;
         let status = 128 + kind.as_raw_value();
-        Ok(heard(status, move |context| signal.poll_recv(context)))
+        Ok(signal_stream(status, move |context| {
+            signal.poll_recv(context)
+        }))
     }
 }
 
 #[cfg(windows)]
 mod system {
-    use super::{Signals, heard};
+    use super::{Signals, signal_stream};
     use tokio::signal::windows::{ctrl_break, ctrl_c, ctrl_close, ctrl_logoff, ctrl_shutdown};
 
     /// Exit status that Windows gives a program ended by Ctrl-C: 0xC000013A.
@@ -130,11 +132,11 @@ mod system {
         let (mut close, mut logoff, mut shutdown) =
             (ctrl_close()?, ctrl_logoff()?, ctrl_shutdown()?);
         Ok(vec![
-            heard(ENDED, move |context| key.poll_recv(context)),
-            heard(ENDED, move |context| break_key.poll_recv(context)),
-            heard(ENDED, move |context| close.poll_recv(context)),
-            heard(ENDED, move |context| logoff.poll_recv(context)),
-            heard(ENDED, move |context| shutdown.poll_recv(context)),
+            signal_stream(ENDED, move |context| key.poll_recv(context)),
+            signal_stream(ENDED, move |context| break_key.poll_recv(context)),
+            signal_stream(ENDED, move |context| close.poll_recv(context)),
+            signal_stream(ENDED, move |context| logoff.poll_recv(context)),
+            signal_stream(ENDED, move |context| shutdown.poll_recv(context)),
         ])
     }
 

@@ -548,7 +548,7 @@ impl SimHand {
 
     fn script_grasp(&mut self) {
         if let Some(order) = scenario::grasp_order(self.now_ms) {
-            self.obey(&order);
+            self.execute(&order);
         }
         let slip = scenario::slip(Scenario::Grasp, self.now_ms);
         for dof in Dof::ALL {
@@ -601,7 +601,7 @@ impl SimHand {
 
     /// Moves as an action stored in the hand would. The setpoint registers keep a controller's last values: a change there
     /// would look like another controller.
-    fn obey(&mut self, order: &ActionSetpoints) {
+    fn execute(&mut self, order: &ActionSetpoints) {
         for dof in Dof::ALL {
             self.go_to_angle(dof, order.angles[dof]);
         }

@@ -3,13 +3,13 @@
 pub mod body;
 pub mod body_params;
 pub mod drive;
+mod effects;
 mod extremes;
 pub mod gesture;
 pub mod hand;
 mod live;
 pub mod memory;
 mod number;
-mod obey;
 pub mod object;
 pub mod personality;
 pub mod pull;

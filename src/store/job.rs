@@ -38,12 +38,12 @@ impl<T: Send + 'static> BackgroundJob<T> {
         wake: &Arc<dyn Fn() + Send + Sync>,
         work: impl Future<Output = Option<T>> + Send + 'static,
     ) -> Self {
-        let (told, ended) = oneshot::channel();
+        let (sender, ended) = oneshot::channel();
         let wake = Arc::clone(wake);
         runtime.spawn(async move {
             if let Some(end) = work.await {
                 // A dropped receiver means that the result is not needed.
-                let _told = told.send(end);
+                let _sent = sender.send(end);
             }
             wake();
         });

@@ -72,11 +72,11 @@ impl<'a> FileText<'a> {
     }
 
     fn toml_error(self, error: &toml::de::Error) -> FileError {
-        let said = error.message().trim();
+        let message = error.message().trim();
         let (named, cause) = match self.0.parse::<toml::Table>() {
-            Ok(_) => plain(said),
-            Err(_) if said == "duplicate key" => (None, FileCause::KeyTwice),
-            Err(_) => (None, FileCause::Syntax(said.into())),
+            Ok(_) => plain(message),
+            Err(_) if message == "duplicate key" => (None, FileCause::KeyTwice),
+            Err(_) => (None, FileCause::Syntax(message.into())),
         };
         let span = error.span().unwrap_or(0..0);
         FileError {

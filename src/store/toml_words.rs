@@ -3,39 +3,41 @@
 use crate::store::file_error::{FileCause, ValueKind};
 
 /// Returns the named key, if any, and the cause.
-pub(super) fn plain(said: &str) -> (Option<String>, FileCause) {
-    let said = said.trim().replace('\n', " ");
-    if let Some(key) = said.strip_prefix("missing field ") {
+pub(super) fn plain(message: &str) -> (Option<String>, FileCause) {
+    let message = message.trim().replace('\n', " ");
+    if let Some(key) = message.strip_prefix("missing field ") {
         return (names(key).next(), FileCause::Missing);
     }
-    if let Some((key, known)) = named(&said, "unknown field ") {
+    if let Some((key, known)) = named(&message, "unknown field ") {
         return (Some(key), FileCause::Unknown { known });
     }
-    if let Some((got, known)) = named(&said, "unknown variant ") {
+    if let Some((got, known)) = named(&message, "unknown variant ") {
         return (None, FileCause::Choice { got, known });
     }
     (
         None,
-        kind(&said)
-            .or_else(|| range(&said))
-            .unwrap_or(FileCause::Malformed(said)),
+        kind(&message)
+            .or_else(|| range(&message))
+            .unwrap_or(FileCause::Malformed(message)),
     )
 }
 
 /// Returns the invalid word and the known ones.
-fn named(said: &str, start: &str) -> Option<(String, String)> {
-    let mut names = names(said.strip_prefix(start)?);
+fn named(message: &str, start: &str) -> Option<(String, String)> {
+    let mut names = names(message.strip_prefix(start)?);
     let got = names.next()?;
     Some((got, names.collect::<Vec<_>>().join(", ")))
 }
 
 /// Words in backticks.
-fn names(said: &str) -> impl Iterator<Item = String> {
-    said.split('`').skip(1).step_by(2).map(str::to_owned)
+fn names(message: &str) -> impl Iterator<Item = String> {
+    message.split('`').skip(1).step_by(2).map(str::to_owned)
 }
 
-fn kind(said: &str) -> Option<FileCause> {
-    let (got, wanted) = said.strip_prefix("invalid ")?.split_once(", expected ")?;
+fn kind(message: &str) -> Option<FileCause> {
+    let (got, wanted) = message
+        .strip_prefix("invalid ")?
+        .split_once(", expected ")?;
     let (_, got) = got.split_once(": ")?;
     let wanted = match wanted {
         "a boolean" => ValueKind::Truth,
@@ -58,8 +60,8 @@ fn kind(said: &str) -> Option<FileCause> {
     Some(FileCause::Kind { got, wanted })
 }
 
-fn range(said: &str) -> Option<FileCause> {
-    let (got, range) = said.split_once(" is outside ")?;
+fn range(message: &str) -> Option<FileCause> {
+    let (got, range) = message.split_once(" is outside ")?;
     let numbers = range
         .rsplit_once(": ")
         .map_or(range, |(_, numbers)| numbers);
@@ -75,7 +77,7 @@ mod tests {
 
     #[test]
     fn the_words_of_the_reader_are_said_plainly() {
-        for (said, key, words) in [
+        for (message, key, words) in [
             ("missing field `x`", Some("x"), "it is missing: add it"),
             (
                 "unknown field `retry`, expected one of `grip`, `retries`",
@@ -120,7 +122,7 @@ mod tests {
             ),
             ("\"é\" is no key", None, "\"é\" is no key"),
         ] {
-            let (named, cause) = plain(said);
+            let (named, cause) = plain(message);
             assert_eq!((named.as_deref(), cause.to_string().as_str()), (key, words));
         }
     }

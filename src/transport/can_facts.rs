@@ -38,7 +38,7 @@ pub fn can_facts(interface: &str, sys: &Path) -> CanFacts {
     let flags = text("flags")
         .and_then(|text| u32::from_str_radix(text.trim().trim_start_matches("0x"), 16).ok());
     let exists = folder.exists();
-    let details = exists.then(|| asked(interface)).flatten();
+    let details = exists.then(|| link_details(interface)).flatten();
     let (bitrate, state) = details.as_ref().map_or((None, None), controller);
     CanFacts {
         exists,
@@ -51,7 +51,7 @@ pub fn can_facts(interface: &str, sys: &Path) -> CanFacts {
 }
 
 /// Output of `ip`; `None` if it is not installed or lacks JSON output.
-fn asked(interface: &str) -> Option<Value> {
+fn link_details(interface: &str) -> Option<Value> {
     let args = ["-json", "-details", "link", "show", "dev", interface];
     let printed = Command::new("ip").args(args).output().ok()?;
     serde_json::from_slice(&printed.stdout).ok()

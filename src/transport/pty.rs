@@ -232,14 +232,14 @@ impl AsyncWrite for PtyLink {
             self.garbled.extend(bytes);
         }
         let this = self.as_mut().get_mut();
-        let said = if this.garbled.is_empty() {
+        let sent = if this.garbled.is_empty() {
             buf
         } else {
             &this.garbled
         };
         let put = loop {
             let mut guard = ready!(this.master.poll_write_ready(cx))?;
-            match guard.try_io(|master| master.get_ref().write(said)) {
+            match guard.try_io(|master| master.get_ref().write(sent)) {
                 Ok(put) => break put?,
                 Err(_would_block) => {}
             }

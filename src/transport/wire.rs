@@ -251,16 +251,16 @@ mod tests {
 
     #[test]
     fn a_failure_is_its_words_in_json() {
-        let told = |failure| TransportError::Io {
+        let error = |failure| TransportError::Io {
             place: "/dev/x".into(),
             failure,
         };
         let denied = SystemError::from(std::io::Error::from_raw_os_error(13));
         let words = denied.to_string();
-        let json = serde_json::to_value(told(denied.into())).unwrap();
+        let json = serde_json::to_value(error(denied.into())).unwrap();
         let expected = serde_json::json!({"Io": {"place": "/dev/x", "message": words}});
         assert_eq!(json, expected);
         let read: TransportError = serde_json::from_value(json).unwrap();
-        assert_eq!(read, told(WireFailure::Recorded(words)));
+        assert_eq!(read, error(WireFailure::Recorded(words)));
     }
 }

@@ -64,7 +64,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
         let begun = Instant::now();
         let name = format!("renamed {change}");
         for hand in programs.iter().flat_map(|program| &program.hands) {
-            hand.say(card(&name));
+            hand.announce(card(&name));
         }
         let is_right = |hands: &[FleetHand]| {
             hands.len() == HANDS && hands.iter().all(|hand| hand.card.name == name)

@@ -101,7 +101,7 @@ pub(crate) fn grasps(hands: std::ops::Range<u64>) -> GripTable {
                 let Some(fresh) = hand.read(&mut sample, &now, &plan, begins, ms) else {
                     continue;
                 };
-                let grip: Grip = estimator.take(&sample, fresh, moment(begins + ms));
+                let grip: Grip = estimator.apply(&sample, fresh, moment(begins + ms));
                 seen.take(&grip, &truth, ms, &mut table);
             }
             seen.end_of_fingers(&truth, plan.event.kind(), &mut table);

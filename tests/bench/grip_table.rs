@@ -169,7 +169,7 @@ impl Reader {
                 asked: at(ms.saturating_sub(3)),
                 received: at(ms),
             };
-            fresh = self.sample.take(&reply);
+            fresh = self.sample.apply(&reply);
         };
         if ms % self.touch_each == 1 {
             take(TOUCH);
@@ -178,7 +178,7 @@ impl Reader {
         } else {
             return None;
         }
-        Some(self.estimator.take(&self.sample, fresh, at(ms)))
+        Some(self.estimator.apply(&self.sample, fresh, at(ms)))
     }
 }
 

@@ -49,7 +49,7 @@ impl HandFreeForce {
             Some(Ok(known)) => {
                 self.kept = grip.learned();
                 self.known = Some(known);
-                grip.know(known);
+                grip.set_free_force(known);
             }
             Some(Err(error)) => {
                 self.known.get_or_insert_default();
@@ -63,7 +63,7 @@ impl HandFreeForce {
         if grip.learned() == 0 && *grip.free_force() != known {
             // A new connection to the same hand.
             self.kept = 0;
-            grip.know(known);
+            grip.set_free_force(known);
         } else if grip.learned() > self.kept {
             let learnt = *grip.free_force();
             (self.known, self.kept) = (Some(learnt), grip.learned());

@@ -176,7 +176,7 @@ impl HandInputs {
         }
         self.dds_view = self.dds.as_ref().map(|joined| DdsState {
             at: joined.shared.node.address(),
-            told: joined.shared.told(),
+            told: joined.shared.counts(),
             view: joined.source.view(),
             other: joined.others.now(),
         });

@@ -113,7 +113,7 @@ pub(super) fn tick(hand: &mut Hand, settings: &Settings, poses: &PoseState, ctx:
     }
     inputs.look();
     if let Some(joined) = &inputs.dds {
-        joined.shared.say(card);
+        joined.shared.announce(card);
     }
     if follows_dds && inputs.other_follows_dds() {
         // Each hears of the other, and both stop.

@@ -77,7 +77,7 @@ impl Readings {
                 self.tip_pace[finger].push(block.asked);
             }
         }
-        self.grip.take(sample, fresh, at);
+        self.grip.apply(sample, fresh, at);
         self.tare.begin(sample);
         if fresh.contains(Group::Force) {
             self.peaks.update(sample);

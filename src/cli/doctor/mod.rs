@@ -156,7 +156,7 @@ impl BlockReader {
                     Ok(_bytes) => {
                         let trip = asked.elapsed();
                         window.add(trip);
-                        self.ticks.took(window.span.len, trip);
+                        self.ticks.record(window.span.len, trip);
                     }
                     Err(RequestError::Refused { .. } | RequestError::WrongLength { .. }) => {
                         window.refused += 1;

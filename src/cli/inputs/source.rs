@@ -332,7 +332,7 @@ fn dds_progress(view: &DdsView, out: &SharedOnDds) -> (String, Value) {
         .map(|(fault, count)| (fault.name(), *count))
         .collect();
     let newest = view.refused.keys().next_back();
-    let sent = out.told();
+    let sent = out.counts();
     let words = format!(
         "{:6.1} messages/s  {} taken  {} refused{}  {} states out",
         view.rate_hz,

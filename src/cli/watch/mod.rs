@@ -158,7 +158,7 @@ impl<'a> WatchRun<'a> {
             return Ok(());
         };
         let read = sample.newest(fresh).unwrap_or_default();
-        let mut grip = self.grip.take(&sample, fresh, read);
+        let mut grip = self.grip.apply(&sample, fresh, read);
         // Feedback that does not follow the commands says nothing about the grip.
         if self.link.status().feedback_in_doubt {
             grip = Grip::default();

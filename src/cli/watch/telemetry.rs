@@ -310,7 +310,7 @@ mod tests {
         bytes[77] = 255;
         let mut sample = HandSample::default();
         let at = Moment::ZERO;
-        sample.take(&Reply {
+        sample.apply(&Reply {
             span: register::STATE,
             bytes: &bytes,
             asked: at,

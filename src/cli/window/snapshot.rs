@@ -131,7 +131,7 @@ fn start(args: &SnapshotArgs, card: Option<SceneCard>) -> anyhow::Result<Driver>
         theme: Theme::default(),
         language: Language::default(),
     };
-    if card.is_some_and(SceneCard::wants_built_in) && !scene.endpoint.is_sim() {
+    if card.is_some_and(SceneCard::needs_built_in) && !scene.endpoint.is_sim() {
         let why = "this dialog is drawn only with the built-in hand, because it writes to the hand";
         return Err(WrongUsage(why.into()).into());
     }

@@ -15,7 +15,7 @@ const FALL_PER_MM: f32 = 0.0016;
 
 /// One solid to draw.
 #[derive(Debug)]
-pub struct Part<'a> {
+pub struct PlacedSolid<'a> {
     pub solid: &'a Solid,
     /// Segment that it belongs to, for the pointer and the shadows; `None` if it is not part of the hand.
     pub segment: Option<Segment>,
@@ -63,7 +63,7 @@ impl Light {
     }
 
     /// Returns the light on a part; `frame` is the part's frame in eye coordinates.
-    pub(crate) fn on(&self, part: &Part<'_>, frame: &Affine3) -> Shade<'_> {
+    pub(crate) fn on(&self, part: &PlacedSolid<'_>, frame: &Affine3) -> Shade<'_> {
         let middle = frame.transform_point3(part.solid.middle);
         Shade {
             light: self,

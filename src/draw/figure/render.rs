@@ -1,7 +1,7 @@
 //! Projects solids to the screen: culls back faces, sorts by depth, smooths edges. Yields one plain mesh.
 
 use crate::figure::camera::{Camera, EYE_MM};
-use crate::figure::light::{Light, Part};
+use crate::figure::light::{Light, PlacedSolid};
 use crate::figure::solid::Face;
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2};
@@ -36,7 +36,7 @@ pub struct SeenPlace {
 pub struct Model<'a> {
     pub camera: &'a Camera,
     pub light: &'a Light,
-    pub parts: &'a [Part<'a>],
+    pub parts: &'a [PlacedSolid<'a>],
     /// Width of a soft edge in points.
     pub feather: f32,
 }
@@ -79,7 +79,7 @@ impl Sketch {
         }
     }
 
-    fn part(&mut self, camera: &Camera, light: &Light, part: &Part<'_>, mesh: &mut Mesh) {
+    fn part(&mut self, camera: &Camera, light: &Light, part: &PlacedSolid<'_>, mesh: &mut Mesh) {
         let frame = camera.hand * part.frame;
         let eye = frame.inverse().transform_point3(Vec3::Z * EYE_MM);
         let faces = part.solid.faces.iter();

@@ -77,23 +77,23 @@ pub struct Reply<'a> {
 
 impl HandSample {
     /// Decodes every group that the reply covers entirely, and returns those groups. Partly covered groups are unchanged.
-    pub fn take(&mut self, reply: &Reply<'_>) -> Groups {
+    pub fn apply(&mut self, reply: &Reply<'_>) -> Groups {
         let is_held = |group: &Group| {
             let Some(bytes) = reply.span.slice(reply.bytes, group.span()) else {
                 return false;
             };
             match *group {
-                Group::AngleSet => take_six(&mut self.angle_set, reply, bytes),
-                Group::ForceSet => take_six(&mut self.force_set, reply, bytes),
-                Group::SpeedSet => take_six(&mut self.speed_set, reply, bytes),
-                Group::Position => take_six(&mut self.position, reply, bytes),
-                Group::Angle => take_six(&mut self.angle, reply, bytes),
-                Group::Force => take_six(&mut self.force, reply, bytes),
-                Group::Current => take_six(&mut self.current, reply, bytes),
-                Group::Faults => take_six(&mut self.faults, reply, bytes),
-                Group::Status => take_six(&mut self.status, reply, bytes),
-                Group::Temperature => take_six(&mut self.temperature, reply, bytes),
-                Group::Tactile(finger) => take(
+                Group::AngleSet => store_six(&mut self.angle_set, reply, bytes),
+                Group::ForceSet => store_six(&mut self.force_set, reply, bytes),
+                Group::SpeedSet => store_six(&mut self.speed_set, reply, bytes),
+                Group::Position => store_six(&mut self.position, reply, bytes),
+                Group::Angle => store_six(&mut self.angle, reply, bytes),
+                Group::Force => store_six(&mut self.force, reply, bytes),
+                Group::Current => store_six(&mut self.current, reply, bytes),
+                Group::Faults => store_six(&mut self.faults, reply, bytes),
+                Group::Status => store_six(&mut self.status, reply, bytes),
+                Group::Temperature => store_six(&mut self.temperature, reply, bytes),
+                Group::Tactile(finger) => store(
                     &mut self.tactile[finger],
                     reply,
                     TactileBlock::decode(bytes),
@@ -168,7 +168,7 @@ impl HandSample {
     }
 }
 
-fn take_six<T: JointValue>(
+fn store_six<T: JointValue>(
     into: &mut Option<Timed<PerDof<T>>>,
     reply: &Reply<'_>,
     bytes: &[u8],
@@ -180,10 +180,10 @@ fn take_six<T: JointValue>(
         })
     };
     let six: ArrayVec<T, { Dof::ALL.len() }> = bytes.chunks_exact(T::BYTES).map(value).collect();
-    take(into, reply, six.into_inner().ok().map(PerDof::new))
+    store(into, reply, six.into_inner().ok().map(PerDof::new))
 }
 
-fn take<T>(into: &mut Option<Timed<T>>, reply: &Reply<'_>, value: Option<T>) -> bool {
+fn store<T>(into: &mut Option<Timed<T>>, reply: &Reply<'_>, value: Option<T>) -> bool {
     let is_there = value.is_some();
     if let Some(value) = value {
         *into = Some(Timed {
@@ -216,7 +216,7 @@ mod tests {
         // Manual 2.2.1: 100, 100, 100, 100, 2000, 0. The fifth is outside ANGLE_ACT's own range.
         let data = [0x64, 0, 0x64, 0, 0x64, 0, 0x64, 0, 0xD0, 0x07, 0, 0];
         let mut sample = HandSample::default();
-        let fresh = sample.take(&reply(register::ANGLE_ACT.span(), &data));
+        let fresh = sample.apply(&reply(register::ANGLE_ACT.span(), &data));
         assert!(fresh.contains(Group::Angle) && !fresh.contains(Group::Force));
         let angle = sample.angle.unwrap();
         assert_eq!(
@@ -235,7 +235,7 @@ mod tests {
     fn a_group_covered_in_part_is_left_as_it_was() {
         let span = Span::new(1546, 77);
         let mut sample = HandSample::default();
-        let fresh = sample.take(&reply(span, &[0; 77]));
+        let fresh = sample.apply(&reply(span, &[0; 77]));
         assert!(fresh.contains(Group::Status) && !fresh.contains(Group::Temperature));
         assert!(sample.temperature.is_none() && sample.position.is_none());
     }
@@ -245,7 +245,7 @@ mod tests {
         for len in 0..78 {
             let mut sample = HandSample::default();
             let bytes = vec![0; len];
-            let fresh = sample.take(&reply(register::STATE, &bytes));
+            let fresh = sample.apply(&reply(register::STATE, &bytes));
             assert_eq!(fresh.contains(Group::Angle), len >= 12);
             assert!(!fresh.contains(Group::Temperature));
         }
@@ -258,9 +258,9 @@ mod tests {
             memory[usize::from(finger) * 58] = finger + 1;
         }
         let mut sample = HandSample::default();
-        sample.take(&reply(Span::new(3000, 232), &memory[..232]));
+        sample.apply(&reply(Span::new(3000, 232), &memory[..232]));
         assert!(sample.tactile[Finger::Thumb].is_none());
-        sample.take(&reply(Span::new(3232, 58), &memory[232..]));
+        sample.apply(&reply(Span::new(3232, 58), &memory[232..]));
         for (finger, block) in sample.tactile.iter() {
             assert_eq!(block.unwrap().value.raw[0], finger as u32 + 1);
         }

@@ -40,18 +40,18 @@ impl TactileBlock {
         let mut at = ByteReader(bytes.as_slice());
         let mut raw = [0; 8];
         for channel in &mut raw {
-            *channel = u32::from_le_bytes(at.take()?);
+            *channel = u32::from_le_bytes(at.read()?);
         }
         Some(Self {
             raw,
-            normal_n: f32::from_le_bytes(at.take()?),
-            normal_delta: i32::from_le_bytes(at.take()?),
-            tangential_n: f32::from_le_bytes(at.take()?),
-            tangential_delta: i32::from_le_bytes(at.take()?),
-            direction_raw: u16::from_le_bytes(at.take()?),
-            proximity: i32::from_le_bytes(at.take()?),
-            check: u16::from_le_bytes(at.take()?),
-            reserved: at.take()?,
+            normal_n: f32::from_le_bytes(at.read()?),
+            normal_delta: i32::from_le_bytes(at.read()?),
+            tangential_n: f32::from_le_bytes(at.read()?),
+            tangential_delta: i32::from_le_bytes(at.read()?),
+            direction_raw: u16::from_le_bytes(at.read()?),
+            proximity: i32::from_le_bytes(at.read()?),
+            check: u16::from_le_bytes(at.read()?),
+            reserved: at.read()?,
             sum: sum16(bytes.get(..CHECKED_LEN)?),
         })
     }
@@ -119,7 +119,7 @@ fn sum16(bytes: &[u8]) -> u16 {
 struct ByteReader<'a>(&'a [u8]);
 
 impl ByteReader<'_> {
-    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+    fn read<const N: usize>(&mut self) -> Option<[u8; N]> {
         let (head, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
         Some(*head)

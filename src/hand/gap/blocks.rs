@@ -178,10 +178,10 @@ mod tests {
             (84.0, 70.0),
             (3.0, 0.0),
         ] {
-            let told = own.size(pads(gap, None));
+            let got = own.size(pads(gap, None));
             assert!(
-                matches!(told, HeldSize::Block(mm) if (mm - size).abs() < 0.01),
-                "{told:?}"
+                matches!(got, HeldSize::Block(mm) if (mm - size).abs() < 0.01),
+                "{got:?}"
             );
         }
         for few in [&[][..], &[block(10.0, 24.0)]] {

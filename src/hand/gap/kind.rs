@@ -115,14 +115,14 @@ mod tests {
     #[test]
     fn only_the_index_meets_the_thumb_and_the_others_stay_as_far_as_is_said() {
         assert!(least(Finger::Index) < 3.1);
-        for (finger, said, kind) in [
+        for (finger, text, kind) in [
             (Finger::Middle, "25 mm", GripKind::ThreeFingers),
             (Finger::Ring, "46 mm", GripKind::AllFingers),
             (Finger::Little, "66 mm", GripKind::AllFingers),
         ] {
             let words = kind.offered().unwrap_err().to_string();
-            assert_eq!(format!("{:.0} mm", least(finger)), said);
-            assert!(words.contains(said), "{words}");
+            assert_eq!(format!("{:.0} mm", least(finger)), text);
+            assert!(words.contains(text), "{words}");
         }
         assert_eq!(GripKind::Pinch.offered(), Ok(()));
         GripKind::Around.offered().unwrap_err();

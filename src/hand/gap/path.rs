@@ -420,8 +420,8 @@ mod tests {
             }
             held_gap(&grip, &angles)
         };
-        let told = held(&[Finger::Index, Finger::Thumb]).unwrap();
-        assert!((told.mm - 30.0).abs() < 0.2, "{told:?}");
+        let got = held(&[Finger::Index, Finger::Thumb]).unwrap();
+        assert!((got.mm - 30.0).abs() < 0.2, "{got:?}");
         assert_eq!(held(&[Finger::Index]), None);
         assert_eq!(held(&[Finger::Index, Finger::Thumb, Finger::Middle]), None);
         assert_eq!(held(&[]), None);
@@ -442,7 +442,7 @@ mod tests {
     }
 
     /// Degrees between the line from pad to pad and where each pad looks: the index along its x, the thumb towards the palm.
-    fn looks(counts: &PerDof<f32>) -> [f32; 2] {
+    fn pad_angles(counts: &PerDof<f32>) -> [f32; 2] {
         let [(index, index_looks), (thumb, thumb_looks)] = pads(counts);
         let line = thumb - index;
         [
@@ -462,13 +462,13 @@ mod tests {
             (33.3, 36.7),
             (42.4, 45.3),
         ] {
-            let told = pinch_gap(&counts(Gap::nearest(gap))).unwrap();
-            let off = told.ball_mm.unwrap() - ball;
-            assert!(off.abs() < 0.3, "{told:?} {ball}");
+            let got = pinch_gap(&counts(Gap::nearest(gap))).unwrap();
+            let off = got.ball_mm.unwrap() - ball;
+            assert!(off.abs() < 0.3, "{got:?} {ball}");
         }
         for edges in [3.0, 5.0, 7.9, 120.0] {
-            let told = pinch_gap(&counts(Gap::nearest(edges)));
-            assert_eq!(told.and_then(|told| told.ball_mm), None, "{edges} mm");
+            let got = pinch_gap(&counts(Gap::nearest(edges)));
+            assert_eq!(got.and_then(|got| got.ball_mm), None, "{edges} mm");
         }
     }
 
@@ -476,10 +476,10 @@ mod tests {
     fn the_ball_touches_both_pads_near_their_middles() {
         for gap in all_gaps() {
             let pads = pads(&counts(gap));
-            let Some(told) = pinch_gap(&counts(gap)).and_then(|told| told.ball_mm) else {
+            let Some(got) = pinch_gap(&counts(gap)).and_then(|got| got.ball_mm) else {
                 continue;
             };
-            let radius = told / 2.0;
+            let radius = got / 2.0;
             let middle = pads.iter().map(|(at, looks)| at + looks * radius);
             let middle = middle.sum::<Vec3>() / 2.0;
             for (at, looks) in pads {
@@ -498,7 +498,7 @@ mod tests {
         for gap in all_gaps() {
             // Nearer than this the pads touch at their sides, where the 3 mm between their middles lie.
             let most = if gap.mm() < 8.0 { 100.0 } else { 46.0 };
-            for away in looks(&counts(gap)) {
+            for away in pad_angles(&counts(gap)) {
                 assert!(away < most, "{gap:?}: {away:.0} degrees");
             }
         }

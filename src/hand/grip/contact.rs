@@ -62,8 +62,8 @@ impl Contact {
                 Some(false) | None => Self::Unclear,
             },
             None => {
-                let is_told = felt.is_free_known || felt.is_stopped_by_force;
-                if is_sure || is_told || felt.touched {
+                let is_reliable = felt.is_free_known || felt.is_stopped_by_force;
+                if is_sure || is_reliable || felt.touched {
                     Self::Touching
                 } else {
                     Self::Unclear
@@ -168,8 +168,8 @@ mod tests {
             ),
         ];
         for (name, felt, contact) in rows {
-            let told = Contact::of(&felt, &GripThresholds::default());
-            assert_eq!(told, contact, "{name}");
+            let got = Contact::of(&felt, &GripThresholds::default());
+            assert_eq!(got, contact, "{name}");
         }
     }
 }

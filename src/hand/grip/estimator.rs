@@ -57,7 +57,7 @@ impl GripEstimator {
     }
 
     /// Replaces the known free-motion forces of this hand's joints.
-    pub const fn know(&mut self, free: FreeForce) {
+    pub const fn set_free_force(&mut self, free: FreeForce) {
         self.free = free;
     }
 
@@ -88,7 +88,7 @@ impl GripEstimator {
     }
 
     /// Updates the grip with a sample read at `at`, in which the groups `fresh` are new, and returns it.
-    pub fn take(&mut self, sample: &HandSample, fresh: Groups, at: Moment) -> Grip {
+    pub fn apply(&mut self, sample: &HandSample, fresh: Groups, at: Moment) -> Grip {
         let reading = ReadingAt {
             at,
             fresh,
@@ -107,7 +107,7 @@ impl GripEstimator {
         };
         for (finger, estimator) in self.fingers.iter_mut() {
             match &evidence[finger] {
-                Some(evidence) => estimator.take(evidence, scene),
+                Some(evidence) => estimator.apply(evidence, scene),
                 None => estimator.forget(at, &self.thresholds),
             }
         }
@@ -210,7 +210,7 @@ mod tests {
                 self.ms += 10;
                 let at = Moment::from_micros(self.ms * 1000);
                 let (sample, fresh) = self.sample(at);
-                self.estimator.take(&sample, fresh, at);
+                self.estimator.apply(&sample, fresh, at);
             }
             self.estimator.grip().fingers[Finger::Index].state
         }
@@ -299,16 +299,16 @@ mod tests {
         let (sample, _) = hand.sample(Moment::from_micros(hand.ms * 1000));
         hand.ms += 600;
         let at = Moment::from_micros(hand.ms * 1000);
-        let grip = hand.estimator.take(&sample, Groups::default(), at);
+        let grip = hand.estimator.apply(&sample, Groups::default(), at);
         assert_eq!(grip.grasp.state, GripState::Unknown);
         assert_eq!(
             grip.fingers[Finger::Index].age(at),
             Some(Duration::from_millis(600))
         );
         hand.normal_n = Some(0.0);
-        let told = hand.after(600);
+        let states = hand.after(600);
         assert_eq!(
-            told,
+            states,
             GripState::Unknown,
             "force stopped it, from a zero that is not known"
         );
@@ -336,16 +336,16 @@ mod tests {
     #[expect(clippy::cast_possible_truncation, reason = "at most 100 g")]
     fn close_in_the_air(hand: &mut Reading, friction_g: i16) -> Vec<GripState> {
         hand.status = Status::Grasping;
-        let mut told = Vec::new();
+        let mut states = Vec::new();
         for angle in (240..1000).rev().step_by(10) {
             hand.angle = angle;
             let share = f32::from(1000 - angle) / 760.0;
             hand.force_g = 230 + (share * f32::from(friction_g)) as i16;
-            told.push(hand.after(10));
+            states.push(hand.after(10));
         }
         hand.status = Status::PositionReached;
-        told.extend((0..100).map(|_| hand.after(10)));
-        told
+        states.extend((0..100).map(|_| hand.after(10)));
+        states
     }
 
     fn open_again(hand: &mut Reading) {
@@ -360,15 +360,15 @@ mod tests {
     fn friction_in_the_air_is_never_holding_and_is_learnt_by_the_close() {
         let mut hand = Reading::new(Some(0.0));
         assert_eq!(hand.after(200), GripState::Open);
-        let told = close_in_the_air(&mut hand, 87);
-        assert!(!told.contains(&GripState::Holding), "{told:?}");
-        let rests = told.last().copied().unwrap();
+        let states = close_in_the_air(&mut hand, 87);
+        assert!(!states.contains(&GripState::Holding), "{states:?}");
+        let rests = states.last().copied().unwrap();
         assert_eq!(rests, GripState::Unknown, "no close excuses itself");
         open_again(&mut hand);
         assert!(hand.estimator.learned() > 0);
-        let told = close_in_the_air(&mut hand, 87);
-        assert!(!told.contains(&GripState::Holding), "{told:?}");
-        assert_eq!(told.last(), Some(&GripState::Empty), "it knows it now");
+        let states = close_in_the_air(&mut hand, 87);
+        assert!(!states.contains(&GripState::Holding), "{states:?}");
+        assert_eq!(states.last(), Some(&GripState::Empty), "it knows it now");
         hand.force_g = 900;
         assert_eq!(hand.after(100), GripState::Holding, "by its side");
         open_again(&mut hand);
@@ -376,8 +376,8 @@ mod tests {
         let free = *hand.estimator.free_force();
         hand.estimator = GripEstimator::knowing(free);
         assert_eq!(hand.after(200), GripState::Open);
-        let told = close_in_the_air(&mut hand, 87);
-        assert_eq!(told.last(), Some(&GripState::Empty));
+        let states = close_in_the_air(&mut hand, 87);
+        assert_eq!(states.last(), Some(&GripState::Empty));
     }
 
     #[test]

@@ -98,12 +98,12 @@ impl FingerEstimator {
     }
 
     /// Updates the state with the evidence of one reading.
-    pub(super) fn take(&mut self, evidence: &FingerEvidence, scene: FingerContext<'_>) {
+    pub(super) fn apply(&mut self, evidence: &FingerEvidence, scene: FingerContext<'_>) {
         for joint in &evidence.joints {
-            self.motion[joint.dof].take(evidence.angle_at, joint.angle);
+            self.motion[joint.dof].push(evidence.angle_at, joint.angle);
         }
         self.feel(evidence.tip, scene.thresholds);
-        let Some(now) = self.look(evidence, scene) else {
+        let Some(now) = self.assess(evidence, scene) else {
             self.forget(scene.at, scene.thresholds);
             return;
         };
@@ -117,7 +117,7 @@ impl FingerEstimator {
         self.estimate.become_state(state, scene.at, asked);
     }
 
-    fn look(&mut self, evidence: &FingerEvidence, scene: FingerContext<'_>) -> Option<FingerNow> {
+    fn assess(&mut self, evidence: &FingerEvidence, scene: FingerContext<'_>) -> Option<FingerNow> {
         let bend = evidence.bend()?;
         let joints = evidence.joints.iter();
         let felt = self.felt(evidence, bend.status == Status::ForceReached, scene);
@@ -174,7 +174,7 @@ impl FingerEstimator {
         if f64::from(tip.normal_n) < HELD_N {
             self.slip = SlipDetector::new(thresholds);
         } else if let Some(moment) = tip.news {
-            self.slip.take(moment);
+            self.slip.push(moment);
         }
     }
 
@@ -219,7 +219,7 @@ impl FingerEstimator {
             }
             let own = way.joints.iter_mut().find(|(dof, _)| *dof == joint.dof);
             if let Some((_, close)) = own {
-                close.take(joint.angle, f32::from(joint.force_g) - zero_g);
+                close.push(joint.angle, f32::from(joint.force_g) - zero_g);
             }
         }
     }

@@ -100,7 +100,7 @@ impl FreeForce {
     }
 
     /// Replaces the values of each joint that `newer` knows.
-    pub fn take(&mut self, newer: &Self) {
+    pub fn merge(&mut self, newer: &Self) {
         for dof in newer.known() {
             self.0[dof] = newer.0[dof];
         }
@@ -127,7 +127,7 @@ pub struct FreeClose([(f32, f32); KNOTS]);
 
 impl FreeClose {
     /// Adds one reading, in g over the zero of the joint.
-    pub fn take(&mut self, angle: i16, force_g: f32) {
+    pub fn push(&mut self, angle: i16, force_g: f32) {
         let knot = usize::try_from(angle.saturating_add(KNOT / 2) / KNOT).unwrap_or_default();
         if let Some((sum, count)) = self.0.get_mut(knot) {
             *sum += force_g;
@@ -149,7 +149,7 @@ mod tests {
     fn close(g: impl Fn(i16) -> f32) -> FreeClose {
         let mut close = FreeClose::default();
         for angle in (240..=1000).step_by(7) {
-            close.take(angle, g(angle));
+            close.push(angle, g(angle));
         }
         close
     }

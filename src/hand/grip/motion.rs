@@ -25,7 +25,7 @@ pub(super) struct JointMotion {
 
 impl JointMotion {
     /// Adds an angle, 0..=1000, with the time at which it was read.
-    pub(super) fn take(&mut self, at: Moment, angle: i16) {
+    pub(super) fn push(&mut self, at: Moment, angle: i16) {
         self.began.get_or_insert(at);
         if let Some((newest, known)) = self.angles.back_mut()
             && at.since(*newest) < STEP
@@ -73,7 +73,7 @@ mod tests {
         for n in 0..100 {
             #[expect(clippy::cast_possible_truncation, reason = "at most 1000")]
             let angle = (900.0 - units_a_second * f64::from(n) * 0.01).round() as i16;
-            motion.take(at(n), angle);
+            motion.push(at(n), angle);
         }
         motion.is_moving(at(99), status)
     }
@@ -94,7 +94,7 @@ mod tests {
     #[test]
     fn what_a_drive_says_counts_before_its_angle_is_known_for_long() {
         let mut motion = JointMotion::default();
-        motion.take(Moment::ZERO, 700);
+        motion.push(Moment::ZERO, 700);
         assert!(motion.is_moving(Moment::ZERO, Status::Grasping));
         assert!(!motion.is_moving(Moment::ZERO, Status::PositionReached));
     }

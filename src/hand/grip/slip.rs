@@ -85,7 +85,7 @@ impl SlipDetector {
     }
 
     /// Adds the next reading. Returns the first and the second of two rises in a row.
-    pub fn take(&mut self, now: HeldMoment) -> Option<(SlipJump, SlipJump)> {
+    pub fn push(&mut self, now: HeldMoment) -> Option<(SlipJump, SlipJump)> {
         let jump = self.jump(&now);
         if self.held.len() >= KEPT_MAX {
             self.held.pop_front();
@@ -182,7 +182,7 @@ mod tests {
                 ratio: ratio(*t),
                 direction: Some(direction(*t).rem_euclid(360.0)),
             };
-            detector.take(moment).is_some()
+            detector.push(moment).is_some()
         });
         seen.collect()
     }

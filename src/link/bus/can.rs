@@ -150,7 +150,7 @@ impl Can {
         want: usize,
         limit: Duration,
     ) -> Result<CanData, BusError> {
-        self.take_waiting()?;
+        self.drain_received()?;
         if self.sent.is_full() {
             self.sent.remove(0);
         }
@@ -193,7 +193,7 @@ impl Can {
     }
 
     /// Consumes received frames without waiting: none of them can answer the next request.
-    fn take_waiting(&mut self) -> Result<(), BusError> {
+    fn drain_received(&mut self) -> Result<(), BusError> {
         while let Some(received) = self.port.receive().now_or_never() {
             received?;
             self.drop_foreign();

@@ -97,12 +97,12 @@ impl CanPort {
         // Ends an incomplete line of a previous program.
         self.put(b"\r").await?;
         // An adapter that is closed already reports a failure; either is fine.
-        self.tell(&SlcanCommand::Close).await?;
+        self.send_command(&SlcanCommand::Close).await?;
         self.drain().await?;
-        if self.tell(&SlcanCommand::Bitrate(code)).await? {
+        if self.send_command(&SlcanCommand::Bitrate(code)).await? {
             return Err(refused);
         }
-        if self.tell(&SlcanCommand::Open).await? {
+        if self.send_command(&SlcanCommand::Open).await? {
             return Err(BusError::Lost(TransportError::Io {
                 place: self.place.clone(),
                 failure: WireFailure::OffBus,
@@ -123,7 +123,7 @@ impl CanPort {
     }
 
     /// Sends a command to the adapter; true if it reported a failure.
-    async fn tell(&mut self, command: &SlcanCommand) -> Result<bool, BusError> {
+    async fn send_command(&mut self, command: &SlcanCommand) -> Result<bool, BusError> {
         let Some(line) = encode_command(command) else {
             return Ok(false);
         };
@@ -184,12 +184,12 @@ impl CanPort {
             }));
         }
         for byte in chunk.iter().take(got) {
-            self.take(*byte)?;
+            self.push_byte(*byte)?;
         }
         Ok(())
     }
 
-    fn take(&mut self, byte: u8) -> Result<(), BusError> {
+    fn push_byte(&mut self, byte: u8) -> Result<(), BusError> {
         match &mut self.form {
             CanEncoding::Text { decoder, .. } => match decoder.push(byte) {
                 Some(SlcanAnswer::Done | SlcanAnswer::Sent) => self.done = true,
@@ -206,14 +206,14 @@ impl CanPort {
                 record.push(byte);
                 if let Ok(whole) = record.clone().into_inner() {
                     record.clear();
-                    return self.take_record(&whole);
+                    return self.push_record(&whole);
                 }
             }
         }
         Ok(())
     }
 
-    fn take_record(&mut self, record: &[u8; RECORD_LEN]) -> Result<(), BusError> {
+    fn push_record(&mut self, record: &[u8; RECORD_LEN]) -> Result<(), BusError> {
         match from_record(record) {
             CanRecord::Frame(frame) => self.inbox.push_back(frame),
             CanRecord::ErrorPassive => self.passive = true,

@@ -56,9 +56,9 @@ impl BusCounts {
 /// Error for a wire that hung up or failed.
 pub(crate) fn lost(place: &str, error: &io::Error) -> BusError {
     let place = place.to_owned();
-    let told = error.get_ref().and_then(|inner| inner.downcast_ref());
-    if let Some(told) = told {
-        return BusError::Lost(TransportError::clone(told));
+    let cause = error.get_ref().and_then(|inner| inner.downcast_ref());
+    if let Some(cause) = cause {
+        return BusError::Lost(TransportError::clone(cause));
     }
     // If the other side closes, a pseudo-terminal returns EIO and a USB adapter ENXIO or EPIPE.
     let hung_up = matches!(

@@ -93,7 +93,7 @@ impl ReplyFilter {
                 if self.open.is_some_and(|(open, _)| open == key) {
                     self.open = None;
                     self.passed.extend(adu.bytes);
-                } else if let Some(sent) = self.given_up(key) {
+                } else if let Some(sent) = self.take_abandoned(key) {
                     self.counts.came_late(LateReply {
                         took: sent.elapsed(),
                         exception: exception(&adu.bytes),
@@ -107,7 +107,7 @@ impl ReplyFilter {
     }
 
     /// Send time of the request with this number, if it timed out and was not answered since.
-    fn given_up(&mut self, key: ReadKey) -> Option<Instant> {
+    fn take_abandoned(&mut self, key: ReadKey) -> Option<Instant> {
         let at = self.abandoned.iter().position(|(asked, _)| *asked == key)?;
         Some(self.abandoned.remove(at).1)
     }

@@ -68,7 +68,7 @@ pub(crate) fn words_response(count: u16, response: Response) -> Result<Vec<u16>,
 }
 
 /// Appends the requested bytes of a group of six that is stored with one byte per word.
-pub(crate) fn take_group(
+pub(crate) fn append_group(
     bytes: &mut Bytes,
     words: &[u16],
     skip: usize,

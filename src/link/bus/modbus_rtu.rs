@@ -84,11 +84,11 @@ impl ModbusRtu {
         let shape = clear.ok_or(BusError::Ambiguous)?;
         let count = shape.len / 2;
         let request = modbus::words_request(address, count);
-        modbus::words_response(count, self.ask(request, shape, limit).await?)
+        modbus::words_response(count, self.send_read(request, shape, limit).await?)
     }
 
     /// Sends one read, and records its unanswered state.
-    async fn ask(
+    async fn send_read(
         &mut self,
         request: Request<'_>,
         span: Span,
@@ -107,7 +107,7 @@ impl ModbusRtu {
 
     async fn call(&mut self, request: Request<'_>, limit: Duration) -> Result<Response, BusError> {
         self.line.abandon();
-        self.take_waiting()?;
+        self.drain_received()?;
         self.line.flush_pending();
         self.note_strays();
         let called = {
@@ -129,9 +129,9 @@ impl ModbusRtu {
     }
 
     /// Consumes received data without waiting: none of it can answer the next request.
-    fn take_waiting(&mut self) -> Result<(), BusError> {
-        while let Some(heard) = self.line.hear().now_or_never() {
-            heard.map_err(|error| self.lost(&error))?;
+    fn drain_received(&mut self) -> Result<(), BusError> {
+        while let Some(received) = self.line.receive().now_or_never() {
+            received.map_err(|error| self.lost(&error))?;
         }
         Ok(())
     }
@@ -176,13 +176,15 @@ impl Bus for ModbusRtu {
             }
             match piece {
                 ReadPiece::Memory(part) => {
-                    let response = self.ask(modbus::read_request(part)?, part, limit).await?;
+                    let response = self
+                        .send_read(modbus::read_request(part)?, part, limit)
+                        .await?;
                     let packing = self.word_use.reading();
                     bytes.extend(modbus::read_response(part, &response, packing)?);
                 }
                 ReadPiece::Group { group, skip, take } => {
                     let words = self.group_words(group.address, limit).await?;
-                    modbus::take_group(&mut bytes, &words, skip, take)?;
+                    modbus::append_group(&mut bytes, &words, skip, take)?;
                 }
             }
         }
@@ -201,9 +203,12 @@ impl Bus for ModbusRtu {
     async fn turn(&mut self) -> Result<(), BusError> {
         let end = Instant::now() + SETTLE_MAX;
         loop {
-            self.take_waiting()?;
+            self.drain_received()?;
             let now = Instant::now();
-            let quiet_at = self.line.heard().map_or(now, |at| at + rtu_gap(self.baud));
+            let quiet_at = self
+                .line
+                .last_byte_at()
+                .map_or(now, |at| at + rtu_gap(self.baud));
             if quiet_at <= now || now >= end {
                 break;
             }
@@ -218,8 +223,8 @@ impl Bus for ModbusRtu {
         let quiet = QUIET.max(rtu_gap(self.baud));
         let end = Instant::now() + SETTLE_MAX;
         while Instant::now() < end {
-            match timeout(quiet, self.line.hear()).await {
-                Ok(heard) => heard.map_err(|error| self.lost(&error))?,
+            match timeout(quiet, self.line.receive()).await {
+                Ok(received) => received.map_err(|error| self.lost(&error))?,
                 Err(_) => break,
             }
         }
@@ -328,7 +333,7 @@ mod tests {
         reply
     }
 
-    async fn heard(far: &mut DuplexStream) -> Vec<u8> {
+    async fn received(far: &mut DuplexStream) -> Vec<u8> {
         let mut request = [0; 64];
         let len = far.read(&mut request).await.unwrap();
         request[..len].to_vec()
@@ -339,7 +344,7 @@ mod tests {
         let (mut bus, mut far) = line();
         // Manual 2.4.1, whose print swaps the bytes of the address that its text names, 0x006B.
         let answer = async {
-            assert_eq!(heard(&mut far).await, bytes("01 03 00 6B 00 02 B5 D7"));
+            assert_eq!(received(&mut far).await, bytes("01 03 00 6B 00 02 B5 D7"));
             far.write_all(&bytes("01 03 04 00 01 00 02 2A 32"))
                 .await
                 .unwrap();
@@ -373,7 +378,7 @@ mod tests {
                 body
             };
             let answer = async {
-                assert_eq!(heard(&mut far).await, checked(asked));
+                assert_eq!(received(&mut far).await, checked(asked));
                 far.write_all(&checked(answered)).await.unwrap();
             };
             let permitted = DeviceSeries::Ours
@@ -389,7 +394,7 @@ mod tests {
         let (mut bus, mut far) = line();
         far.write_all(&reply(76, 9)).await.unwrap();
         let answer = async {
-            heard(&mut far).await;
+            received(&mut far).await;
             far.write_all(&reply(76, 9)).await.unwrap();
         };
         let (read, ()) = tokio::join!(bus.read(STATE, LIMIT), answer);
@@ -409,7 +414,7 @@ mod tests {
         let next = bus.choose(&shapes).unwrap();
         assert_eq!(next.len, 72);
         let answer = async {
-            heard(&mut far).await;
+            received(&mut far).await;
             far.write_all(&reply(78, 1)).await.unwrap();
             far.write_all(&reply(72, 2)).await.unwrap();
         };
@@ -424,7 +429,7 @@ mod tests {
         let mut bad = reply(78, 1);
         bad[20] ^= 4;
         let answer = async {
-            heard(&mut far).await;
+            received(&mut far).await;
             far.write_all(&bad).await.unwrap();
             far.write_all(&reply(78, 1)[..30]).await.unwrap();
         };
@@ -433,7 +438,7 @@ mod tests {
         bus.quiet().await.unwrap();
         assert_eq!(bus.counts().checksum_errors, 1);
         let answer = async {
-            heard(&mut far).await;
+            received(&mut far).await;
             far.write_all(&reply(72, 3)).await.unwrap();
         };
         let (read, ()) = tokio::join!(bus.read(Span::new(1546, 72), LIMIT), answer);
@@ -444,7 +449,7 @@ mod tests {
     async fn a_reply_behind_the_head_of_a_longer_one_is_found_at_the_end() {
         let (mut bus, mut far) = line();
         let answer = async {
-            heard(&mut far).await;
+            received(&mut far).await;
             far.write_all(&[1, 3, 250]).await.unwrap();
             far.write_all(&reply(78, 5)).await.unwrap();
         };
@@ -456,7 +461,7 @@ mod tests {
     async fn a_refusal_and_a_hang_up_have_their_own_errors() {
         let (mut bus, mut far) = line();
         let answer = async {
-            heard(&mut far).await;
+            received(&mut far).await;
             far.write_all(&bytes("01 83 02 C0 F1")).await.unwrap();
         };
         let (read, ()) = tokio::join!(bus.read(STATE, LIMIT), answer);

@@ -103,7 +103,7 @@ impl ModbusTcp {
                 ReadPiece::Group { group, skip, take } => {
                     let count = words_per_group(BytePacking::OnePerWord);
                     let words = self.group_words(group.address, count, limit).await?;
-                    modbus::take_group(&mut bytes, &words, skip, take)?;
+                    modbus::append_group(&mut bytes, &words, skip, take)?;
                 }
             }
         }

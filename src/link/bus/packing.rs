@@ -153,8 +153,8 @@ mod tests {
                     .writes()
                     .remove(0),
             ] {
-                let said = word_use.allows(&write);
-                assert_eq!(said.is_ok(), allowed, "{endpoint} {found:?} {write:?}");
+                let result = word_use.allows(&write);
+                assert_eq!(result.is_ok(), allowed, "{endpoint} {found:?} {write:?}");
             }
             let speeds = HandCommand::Speeds(crate::hand::PerDof::splat(None));
             for write in speeds.writes() {

@@ -111,7 +111,7 @@ impl Rs485 {
         expected: &ExpectedReply,
         limit: Duration,
     ) -> Result<ReplyMatch, BusError> {
-        self.take_waiting()?;
+        self.drain_received()?;
         self.sent.clone_from(frame);
         self.echo.sent();
         let deadline = Instant::now() + limit;
@@ -135,7 +135,7 @@ impl Rs485 {
     }
 
     /// Consumes received data without waiting: none of it can answer the next request.
-    fn take_waiting(&mut self) -> Result<(), BusError> {
+    fn drain_received(&mut self) -> Result<(), BusError> {
         while let Some(received) = self.receive().now_or_never() {
             received?;
             self.drop_foreign();

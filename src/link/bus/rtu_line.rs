@@ -72,7 +72,7 @@ struct RtuRelay {
     echo: Echo,
     echoes: u64,
     closed: bool,
-    heard: Option<Instant>,
+    last_byte_at: Option<Instant>,
 }
 
 impl RtuLine {
@@ -88,13 +88,13 @@ impl RtuLine {
             echo: Echo::default(),
             echoes: 0,
             closed: false,
-            heard: None,
+            last_byte_at: None,
         })))
     }
 
     /// Waits for bytes and sorts them. Safe to cancel. The end of the wire is an error.
-    pub(crate) async fn hear(&self) -> io::Result<()> {
-        std::future::poll_fn(|cx| self.line().poll_hear(cx)).await
+    pub(crate) async fn receive(&self) -> io::Result<()> {
+        std::future::poll_fn(|cx| self.line().poll_receive(cx)).await
     }
 
     /// Drops the open request, and its unsent rest: a reply to it is foreign from now on.
@@ -139,8 +139,8 @@ impl RtuLine {
     }
 
     /// Time of the last byte.
-    pub(crate) fn heard(&self) -> Option<Instant> {
-        self.line().heard
+    pub(crate) fn last_byte_at(&self) -> Option<Instant> {
+        self.line().last_byte_at
     }
 
     /// True once the other side closed the wire.
@@ -154,7 +154,7 @@ impl RtuLine {
 }
 
 impl RtuRelay {
-    fn poll_hear(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
+    fn poll_receive(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
         let mut chunk = [0; CHUNK];
         let mut buffer = ReadBuf::new(&mut chunk);
         ready!(Pin::new(&mut self.wire).poll_read(cx, &mut buffer))?;
@@ -162,7 +162,7 @@ impl RtuRelay {
             self.closed = true;
             return Poll::Ready(Err(io::ErrorKind::UnexpectedEof.into()));
         }
-        self.heard = Some(Instant::now());
+        self.last_byte_at = Some(Instant::now());
         let mut bytes = buffer.filled();
         while !bytes.is_empty() {
             let taken = self.splitter.push(bytes);
@@ -229,7 +229,7 @@ impl AsyncRead for RtuLine {
     ) -> Poll<io::Result<()>> {
         let mut line = self.line();
         while line.passed.is_empty() {
-            ready!(line.poll_hear(cx))?;
+            ready!(line.poll_receive(cx))?;
         }
         let len = line.passed.len().min(into.remaining());
         into.put_slice(line.passed.get(..len).unwrap_or_default());

@@ -131,12 +131,12 @@ impl HolderTie {
 
     /// Reports that the hand at this endpoint may move; false if this holder is for another, or has ended.
     pub(crate) fn moves(&self, endpoint: &Endpoint) -> bool {
-        self.endpoint == *endpoint && self.tell(MOVES)
+        self.endpoint == *endpoint && self.send(MOVES)
     }
 
     /// Reports that the hand rests.
     pub(crate) fn rests(&self) {
-        self.tell(RESTS);
+        self.send(RESTS);
     }
 
     /// Receiver of the process's state.
@@ -144,7 +144,7 @@ impl HolderTie {
         self.state.clone()
     }
 
-    fn tell(&self, word: u8) -> bool {
+    fn send(&self, word: u8) -> bool {
         let mut pipe = lock(&self.pipe);
         pipe.word = word;
         // A pipe buffers thousands of messages before a write could block. If it is broken, its process has ended, and
@@ -324,8 +324,8 @@ mod tests {
 
     #[test]
     fn a_holder_that_cannot_run_is_told_after_some_tries() {
-        static TOLD: Mutex<Vec<String>> = Mutex::new(Vec::new());
-        let complain = |words: &str| TOLD.lock().unwrap().push(words.to_owned());
+        static REPORTED: Mutex<Vec<String>> = Mutex::new(Vec::new());
+        let complain = |words: &str| REPORTED.lock().unwrap().push(words.to_owned());
         for program in ["/nothing/there", "/bin/false"] {
             let mut command = Command::new(program);
             command.stdin(Stdio::piped());
@@ -334,9 +334,12 @@ mod tests {
                 HolderState::Missing(why) => Some(why),
                 HolderState::Starting | HolderState::Ready => None,
             });
-            let told = TOLD.lock().unwrap().pop().unwrap();
-            assert!(told.contains(&why) && told.contains("24 V"), "{told}");
-            assert!(TOLD.lock().unwrap().is_empty(), "told once");
+            let reported = REPORTED.lock().unwrap().pop().unwrap();
+            assert!(
+                reported.contains(&why) && reported.contains("24 V"),
+                "{reported}"
+            );
+            assert!(REPORTED.lock().unwrap().is_empty(), "told once");
             assert!(!tie.moves(&endpoint()));
         }
     }

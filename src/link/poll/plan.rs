@@ -132,7 +132,7 @@ pub(crate) struct PollPlan {
     /// Setpoints are read before each write until this time.
     doubtful_until: Moment,
     /// Setpoints are read before anything but the pose from this time.
-    look_at: Option<Moment>,
+    settings_due: Option<Moment>,
     parts: [Due; ReadPart::ALL.len()],
     cost: WireCost,
     turnaround: Turnaround,
@@ -151,7 +151,7 @@ impl PollPlan {
             wrote: None,
             round: None,
             doubtful_until: now,
-            look_at: None,
+            settings_due: None,
             parts: ReadPart::ALL.map(|part| Due {
                 part,
                 period: period(rates.of(part)),
@@ -215,7 +215,7 @@ impl PollPlan {
     }
 
     /// Sets whether this hand permits reads through the gap between angles and forces.
-    pub(crate) fn know_gap(&mut self, gap: GapRead) {
+    pub(crate) fn set_gap_read(&mut self, gap: GapRead) {
         self.gaps = Gaps::known(gap);
     }
 
@@ -272,7 +272,7 @@ impl PollPlan {
     /// The read that is due now, if any.
     pub(crate) fn next(&self, now: Moment, tempo: Tempo) -> Option<NextRead> {
         let is_due = |due: &&Due| due.at() <= now && !self.waits_for_write(due.part, now);
-        let due = || self.wanted(tempo).filter(is_due);
+        let due = || self.polled_parts(tempo).filter(is_due);
         let motion = || {
             due()
                 .filter(|due| due.part.is_motion())
@@ -280,13 +280,13 @@ impl PollPlan {
         };
         let any = || due().reduce(|a, b| a.later(b, now));
         let others = || {
-            let looked_at = || due().find(|due| self.is_looked_at(due, now));
+            let settings = || due().find(|due| self.is_settings_read_due(due, now));
             let longest = || {
                 due()
                     .filter(|due| !self.goes_with_motion(due.part, tempo))
                     .reduce(|a, b| a.later(b, now))
             };
-            looked_at().or_else(longest)
+            settings().or_else(longest)
         };
         let between = match self.priority {
             PollPriority::Force => 1,
@@ -331,8 +331,8 @@ impl PollPlan {
     }
 
     /// True for setpoints that were just written, are doubtful, or are watched and were not read for long.
-    fn is_looked_at(&self, due: &Due, now: Moment) -> bool {
-        let is_wanted = self.look_at.is_some_and(|at| at <= now);
+    fn is_settings_read_due(&self, due: &Due, now: Moment) -> bool {
+        let is_wanted = self.settings_due.is_some_and(|at| at <= now);
         let is_old = self.watched && now.since(due.asked) >= WATCH_INTERVAL;
         due.part == ReadPart::Targets && (is_wanted || is_old)
     }
@@ -340,7 +340,7 @@ impl PollPlan {
     /// Time of the next due read.
     pub(crate) fn next_due(&self, now: Moment, tempo: Tempo) -> Moment {
         let waits = |due: &&Due| !self.waits_for_write(due.part, now);
-        let next = self.wanted(tempo).filter(waits).map(Due::at).min();
+        let next = self.polled_parts(tempo).filter(waits).map(Due::at).min();
         next.unwrap_or(Moment::ZERO)
     }
 
@@ -349,13 +349,13 @@ impl PollPlan {
     pub(crate) fn answered(&mut self, window: Span, asked: Moment, took: Duration) {
         self.turnaround.learn(&self.cost, window.len, took);
         self.gaps.answered(window);
-        self.asked(window, asked);
+        self.note_request(window, asked);
     }
 
     /// Records a window without a valid reply.
     pub(crate) fn failed(&mut self, window: Span, now: Moment) {
         self.gaps.failed(window);
-        self.asked(window, now);
+        self.note_request(window, now);
     }
 
     /// Records the start of a round of setpoints.
@@ -368,7 +368,7 @@ impl PollPlan {
     pub(crate) fn wrote_setpoint(&mut self, now: Moment) {
         self.wrote = Some(now);
         if self.watched && !self.watched_in_stream(now) {
-            self.look_at_settings(now);
+            self.schedule_settings_read(now);
         }
     }
 
@@ -402,9 +402,9 @@ impl PollPlan {
     }
 
     /// Schedules a read of the setpoints at this time at the latest: they were just written, or are doubtful.
-    pub(crate) fn look_at_settings(&mut self, at: Moment) {
+    pub(crate) fn schedule_settings_read(&mut self, at: Moment) {
         if self.watched {
-            self.look_at = Some(self.look_at.map_or(at, |before| before.min(at)));
+            self.settings_due = Some(self.settings_due.map_or(at, |before| before.min(at)));
         }
         for due in &mut self.parts {
             if matches!(due.part, ReadPart::Targets | ReadPart::Speeds) {
@@ -423,7 +423,7 @@ impl PollPlan {
         }
     }
 
-    fn asked(&mut self, window: Span, at: Moment) {
+    fn note_request(&mut self, window: Span, at: Moment) {
         if self.recent.is_full() {
             self.recent.remove(0);
         }
@@ -435,7 +435,7 @@ impl PollPlan {
                 due.next = due.next.plus(due.period).clamp(at, at.plus(due.period));
                 due.asked = at;
                 if due.part == ReadPart::Targets {
-                    self.look_at = self.look_at.filter(|look| at < *look);
+                    self.settings_due = self.settings_due.filter(|look| at < *look);
                 }
                 if due.part.is_motion() {
                     self.since_motion = 0;
@@ -444,7 +444,7 @@ impl PollPlan {
         }
     }
 
-    fn wanted(&self, tempo: Tempo) -> impl Iterator<Item = &Due> + Clone {
+    fn polled_parts(&self, tempo: Tempo) -> impl Iterator<Item = &Due> + Clone {
         self.parts.iter().filter(move |due| {
             tempo != Tempo::Stopping || due.part.is_motion() || due.part == ReadPart::Drives
         })
@@ -455,7 +455,7 @@ impl PollPlan {
         let joining = self.joining(tempo);
         let with_motion = |due: &Due| self.goes_with_motion(due.part, tempo);
         let joins = self
-            .wanted(tempo)
+            .polled_parts(tempo)
             .filter(|due| tempo == Tempo::Rest || with_motion(due) == with_motion(first))
             .filter(|due| due.joins(first, now, joining.longest));
         // Parts of the same period join first, so that chance neighbours do not take their place.

@@ -275,7 +275,7 @@ fn what_the_wire_could_give_is_the_cost_model_turned_round() {
 fn a_hand_known_to_refuse_the_gap_is_never_asked_through_it() {
     let cost = rs485(115_200);
     let mut plan = PollPlan::new(PollRates::FULL, cost, Moment::ZERO);
-    plan.know_gap(GapRead::Split);
+    plan.set_gap_read(GapRead::Split);
     let mut now = Moment::ZERO;
     let mut seen = [0_u32; 2];
     for _ in 0..300 {

@@ -3,13 +3,13 @@
 use crate::hand::HandId;
 use crate::link::clock::Clock;
 use crate::link::config::Wake;
-use crate::link::scan::board::{ScanProgress, ScanTracker};
 use crate::link::scan::event::ScanEvent;
 use crate::link::scan::hosts::Hosts;
-use crate::link::scan::look::{ScanContext, look};
+use crate::link::scan::lane_scan::{ScanContext, scan_lane};
 use crate::link::scan::plan::{
     HOSTS_AT_ONCE, LaneKind, PORTS_AT_ONCE, ScanPlan, ScanPort, ScanTargets, Speaks,
 };
+use crate::link::scan::tracker::{ScanProgress, ScanTracker};
 use crate::transport::{Dial, Endpoint, PortFound};
 use futures::{StreamExt as _, stream};
 use std::sync::atomic::AtomicBool;
@@ -58,26 +58,26 @@ pub struct ScanConfig {
 #[derive(Debug)]
 pub struct ScanHandle {
     events: mpsc::Receiver<ScanEvent>,
-    board: Arc<Mutex<ScanTracker>>,
+    tracker: Arc<Mutex<ScanTracker>>,
     _task: AbortOnDropHandle<()>,
 }
 
 /// Starts a scan. It reads HAND_ID and the registers that identify the series, and writes nothing.
 pub fn start(config: ScanConfig, runtime: &Handle) -> ScanHandle {
     let (tell, events) = mpsc::channel(EVENTS_MAX);
-    let board = Arc::new(Mutex::new(ScanTracker::default()));
+    let tracker = Arc::new(Mutex::new(ScanTracker::default()));
     let room = ScanContext {
         dial: Arc::clone(&config.dial),
         clock: config.clock,
         events: tell,
         wake: Arc::clone(&config.wake),
-        board: Arc::clone(&board),
+        tracker: Arc::clone(&tracker),
         range_told: AtomicBool::new(false),
     };
     let task = AbortOnDropHandle::new(runtime.spawn(scan(config, Arc::new(room))));
     ScanHandle {
         events,
-        board,
+        tracker,
         _task: task,
     }
 }
@@ -95,8 +95,8 @@ impl ScanHandle {
 
     /// Present progress.
     pub fn progress(&self) -> ScanProgress {
-        let board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
-        board.progress()
+        let tracker = self.tracker.lock().unwrap_or_else(PoisonError::into_inner);
+        tracker.progress()
     }
 }
 
@@ -116,8 +116,8 @@ async fn scan(config: ScanConfig, room: Arc<ScanContext>) {
         },
     };
     let plan = ScanPlan::new(&places, &config.ids, &config.held);
-    *room.board() = ScanTracker::new(&plan);
-    room.tell(ScanEvent::Begun {
+    *room.tracker() = ScanTracker::new(&plan);
+    room.publish(ScanEvent::Begun {
         places: plan.places(),
         tries: plan.tries(),
         estimate: plan.estimate(),
@@ -125,22 +125,22 @@ async fn scan(config: ScanConfig, room: Arc<ScanContext>) {
     .await;
     for place in &plan.held {
         let place = place.clone();
-        room.tell(ScanEvent::Held { place }).await;
+        room.publish(ScanEvent::Held { place }).await;
     }
-    look_at_all(&room, plan).await;
-    let mut summary = room.board().summary;
+    scan_lanes(&room, plan).await;
+    let mut summary = room.tracker().summary;
     summary.took = config.clock.now().since(begun);
-    room.tell(ScanEvent::Done(summary)).await;
+    room.publish(ScanEvent::Done(summary)).await;
 }
 
-async fn look_at_all(room: &Arc<ScanContext>, plan: ScanPlan) {
+async fn scan_lanes(room: &Arc<ScanContext>, plan: ScanPlan) {
     let lanes = plan.lanes.into_iter().enumerate();
     let (hosts, ports): (Vec<_>, Vec<_>) = lanes.partition(|(_, lane)| lane.kind == LaneKind::Host);
     let ports = stream::iter(ports).for_each_concurrent(PORTS_AT_ONCE, |(nth, lane)| {
-        look(Arc::clone(room), nth, lane)
+        scan_lane(Arc::clone(room), nth, lane)
     });
     let hosts = stream::iter(hosts).for_each_concurrent(HOSTS_AT_ONCE, |(nth, lane)| {
-        look(Arc::clone(room), nth, lane)
+        scan_lane(Arc::clone(room), nth, lane)
     });
     tokio::join!(ports, hosts);
 }

@@ -191,7 +191,7 @@ impl Session {
         let wire = Box::new(TappedWire::new(wire, tap, clock));
         let mut bus = bus::on_wire(&self.dialled, wire, late, clock);
         self.has_numbers = bus.has_numbers();
-        self.heard();
+        self.note_answer();
         self.sleep = SleepWatch::start(self.config.clock);
         self.go(LinkState::Identifying);
         let (end, answered) = match self.identify(bus.as_mut()).await {
@@ -222,8 +222,8 @@ impl Session {
             return end;
         };
         let place = self.dialled.place();
-        let heard = bus.counts();
-        let is_noisy = heard.checksum_errors + heard.resyncs + heard.foreign_replies > 0;
+        let counts = bus.counts();
+        let is_noisy = counts.checksum_errors + counts.resyncs + counts.foreign_replies > 0;
         WireEnd::Lost(match self.dialled {
             Endpoint::Tcp { .. } => LinkTrouble::Mute { place, unit: id },
             // The simulated hand has no port or speed that could be wrong.
@@ -254,7 +254,7 @@ impl Session {
         self.others.begin();
         self.plan = PollPlan::new(self.config.rates, bus.cost(), self.now());
         if let Some(gap) = self.status.quirks.gap {
-            self.plan.know_gap(gap);
+            self.plan.set_gap_read(gap);
         }
         self.moving = RestWatch::default();
         let before = std::mem::take(&mut self.feedback);
@@ -360,10 +360,10 @@ impl Session {
 
     /// Records that a request was answered after `took`.
     pub(crate) fn answered(&mut self, took: Duration) {
-        self.heard();
+        self.note_answer();
         self.counters.round_trip(took);
         if self.has_numbers {
-            self.slowness.took(took);
+            self.slowness.record(took);
             self.show_slowness();
         }
     }
@@ -412,9 +412,9 @@ impl Session {
             // Nothing was sent.
             BusError::Ambiguous => return Ok(()),
         }
-        if self.unheard(error) {
-            let said = self.absence.last();
-            return Err(WireEnd::Lost(said.map_or_else(
+        if self.note_silence(error) {
+            let last = self.absence.last();
+            return Err(WireEnd::Lost(last.map_or_else(
                 || self.silence(),
                 |exception| self.gateway_alone(exception),
             )));
@@ -440,7 +440,7 @@ impl Session {
     async fn refused(&mut self, reason: Refusal) -> Result<(), WireEnd> {
         self.counters.stats.refusals += 1;
         match self.absence.refused(reason, self.now()) {
-            Refused::ByHand => self.heard(),
+            Refused::ByHand => self.note_answer(),
             Refused::Unsent => {}
             Refused::Unsure if self.motion.hold.is_some() => {}
             Refused::Unsure => self.pause_unless_stopped(REFUSED_PAUSE).await,
@@ -464,14 +464,14 @@ impl Session {
     }
 
     /// Resets the silence: the hand answered.
-    pub(crate) fn heard(&mut self) {
+    pub(crate) fn note_answer(&mut self) {
         self.silent = 0;
         self.silent_since = None;
         self.absence.answered();
     }
 
     /// Counts a request without a usable reply; true if the hand now counts as lost.
-    fn unheard(&mut self, error: &BusError) -> bool {
+    fn note_silence(&mut self, error: &BusError) -> bool {
         let now = self.now();
         let waited = match error {
             BusError::Timeout { after } => *after,
@@ -532,7 +532,7 @@ impl Session {
             self.status.state = state;
             self.status.since = now;
             self.publish();
-            self.tell(Record::State { at: now, state });
+            self.broadcast(Record::State { at: now, state });
         }
         self.publish();
     }
@@ -551,7 +551,7 @@ impl Session {
     }
 
     /// Broadcasts a record.
-    pub(crate) fn tell(&self, record: Record) {
+    pub(crate) fn broadcast(&self, record: Record) {
         // An error means that there are no readers.
         let _readers = self.ends.records.send(record);
         (self.config.wake)();

@@ -41,7 +41,7 @@ pub(crate) struct HoldWatch {
     /// Rest is not accepted before this has passed since the first frame.
     rest_after: Duration,
     /// The pose was read since the last frame, or the attempt failed.
-    looked: bool,
+    pose_read: bool,
     /// The first and the newest acknowledged frame for doubted joints.
     doubted_acknowledged: Option<(Moment, Moment)>,
     /// Frames have ceased: doubted joints were sent their hold targets, and the others rest.
@@ -76,7 +76,7 @@ impl HoldWatch {
             last_sent: None,
             still_since: None,
             rest_after,
-            looked: true,
+            pose_read: true,
             doubted_acknowledged: None,
             has_ceased: false,
         }
@@ -86,7 +86,7 @@ impl HoldWatch {
     pub(crate) fn resumed(at: Moment, now: Moment) -> Self {
         Self {
             follows_from: now,
-            looked: false,
+            pose_read: false,
             ..Self::new(at, true, Duration::ZERO)
         }
     }
@@ -115,8 +115,9 @@ impl HoldWatch {
 
     /// Records that the trusted joints rest: frames cease once the doubted ones were commanded for long enough.
     pub(crate) fn trusted_rest(&mut self) {
-        let told = self.doubted_acknowledged;
-        self.has_ceased |= told.is_some_and(|(first, newest)| newest.since(first) >= DOUBTED_HOLD);
+        let doubted = self.doubted_acknowledged;
+        self.has_ceased |=
+            doubted.is_some_and(|(first, newest)| newest.since(first) >= DOUBTED_HOLD);
     }
 
     /// True once frames have ceased, though rest was not confirmed.
@@ -129,7 +130,7 @@ impl HoldWatch {
     pub(crate) fn needs_pose(&mut self, newest: &PerDof<Target>) -> bool {
         let nothing = PerDof::splat(Target::Leave);
         let is_blind = self.pose == nothing && *newest == nothing;
-        is_blind && !std::mem::replace(&mut self.looked, true)
+        is_blind && !std::mem::replace(&mut self.pose_read, true)
     }
 
     /// The targets of the hold frame that is sent at `now`. `newest` is the pose, and `read` the time it was requested;

@@ -89,7 +89,7 @@ impl Session {
         self.forget_wishes();
         let known = self.status.quirks;
         let until = self.now().plus(self.identifies_within());
-        let packing = self.ask_packing(bus, id.as_ref(), until).await?;
+        let packing = self.detect_packing(bus, id.as_ref(), until).await?;
         bus.set_packing(packing);
         self.evidence = SeriesEvidence::default();
         // A device of another series keeps that verdict until it shows otherwise: a stop that cuts the reads short must
@@ -97,11 +97,11 @@ impl Session {
         if self.status.series == DeviceSeries::Ours {
             self.status.series = DeviceSeries::Unknown;
         }
-        self.ask_series(bus, until).await?;
+        self.detect_series(bus, until).await?;
         self.status.quirks = Quirks {
             packing,
             hand_id: id.as_ref().and_then(|id| first_byte(id, packing)),
-            ..self.ask_rest(bus, until).await?
+            ..self.detect_quirks(bus, until).await?
         };
         self.evidence.fingertips(self.status.quirks.touch);
         // A stop cut the reads short: the known quirks of this hand still apply.
@@ -113,10 +113,10 @@ impl Session {
     }
 
     /// Reads groups until it is clear whether this is a hand of the series.
-    async fn ask_series(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<(), WireEnd> {
+    async fn detect_series(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<(), WireEnd> {
         for question in SeriesQuestion::ALL {
             if self.evidence.needs(question) {
-                let reply = self.ask(bus, question.shapes(), until).await?;
+                let reply = self.read_shapes(bus, question.shapes(), until).await?;
                 self.note_evidence(question, &reply);
             }
         }
@@ -152,7 +152,7 @@ impl Session {
         };
         self.asked_evidence = true;
         let reply = self
-            .ask_once(bus, question.shapes(), now.plus(WITHIN))
+            .read_shapes_once(bus, question.shapes(), now.plus(WITHIN))
             .await?;
         self.note_evidence(question, &reply);
         self.judge_series()?;
@@ -237,7 +237,7 @@ impl Session {
     }
 
     /// Detects how single bytes are packed into words; `None` on wires without words.
-    async fn ask_packing(
+    async fn detect_packing(
         &mut self,
         bus: &mut dyn Bus,
         id: Option<&Bytes>,
@@ -249,7 +249,7 @@ impl Session {
             let limit = self.reply_limit(bus, 2 * words_per_group(BytePacking::OnePerWord));
             match bus.words(TEMP.address, limit).await {
                 Ok(Some(words)) => {
-                    self.heard();
+                    self.note_answer();
                     return Ok(judged_packing(id, &words));
                 }
                 Ok(None) => break,
@@ -263,17 +263,17 @@ impl Session {
         Ok(None)
     }
 
-    async fn ask_rest(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<Quirks, WireEnd> {
-        let baud_code = match self.ask(bus, &BAUD_SHAPES, until).await? {
+    async fn detect_quirks(&mut self, bus: &mut dyn Bus, until: Moment) -> Result<Quirks, WireEnd> {
+        let baud_code = match self.read_shapes(bus, &BAUD_SHAPES, until).await? {
             IdentityReply::Bytes(bytes) => bytes.first().copied(),
             _ => None,
         };
         // If a range is read in several requests, reading through the gap saves nothing.
         let gap = match bus.cost().turns(GAP_SHAPES[0].len) {
-            0 | 1 => self.ask(bus, &GAP_SHAPES, until).await?,
+            0 | 1 => self.read_shapes(bus, &GAP_SHAPES, until).await?,
             _ => IdentityReply::Unasked,
         };
-        let touch = self.ask_touch(bus, until).await?;
+        let touch = self.detect_touch(bus, until).await?;
         let gap = match gap {
             IdentityReply::Bytes(_) => Some(GapRead::Through),
             IdentityReply::Refused => Some(GapRead::Split),
@@ -290,13 +290,13 @@ impl Session {
     }
 
     /// Detects the layout of the fingertips. If the first is inconclusive, another is read.
-    async fn ask_touch(
+    async fn detect_touch(
         &mut self,
         bus: &mut dyn Bus,
         until: Moment,
     ) -> Result<Option<TouchVariant>, WireEnd> {
         const EMPTY: Option<TouchVariant> = Some(TouchVariant::Unknown(TouchDoubt::Empty));
-        let mut first = judged(&self.ask(bus, &TOUCH_SHAPES, until).await?);
+        let mut first = judged(&self.read_shapes(bus, &TOUCH_SHAPES, until).await?);
         // Pieces from several requests may belong to several measurements, so their checksum proves nothing.
         let pieces = bus.cost().turns(TOUCH_SHAPES[0].len);
         if pieces > 1 && first == Some(TouchVariant::Unknown(TouchDoubt::Check)) {
@@ -305,30 +305,30 @@ impl Session {
         if first != EMPTY {
             return Ok(first);
         }
-        let other = judged(&self.ask(bus, &OTHER_TOUCH_SHAPES, until).await?);
+        let other = judged(&self.read_shapes(bus, &OTHER_TOUCH_SHAPES, until).await?);
         Ok(other.or(first))
     }
 
     /// Reads one of the shapes, again if nothing came, and returns the result.
-    async fn ask(
+    async fn read_shapes(
         &mut self,
         bus: &mut dyn Bus,
         shapes: &[Span],
         until: Moment,
     ) -> Result<IdentityReply, WireEnd> {
-        let mut heard = self.ask_once(bus, shapes, until).await?;
+        let mut reply = self.read_shapes_once(bus, shapes, until).await?;
         for _ in 1..ASKED {
-            if matches!(heard, IdentityReply::Silent) {
-                heard = self.ask_once(bus, shapes, until).await?;
+            if matches!(reply, IdentityReply::Silent) {
+                reply = self.read_shapes_once(bus, shapes, until).await?;
             }
         }
-        while matches!(heard, IdentityReply::Busy) {
-            heard = self.ask_once(bus, shapes, until).await?;
+        while matches!(reply, IdentityReply::Busy) {
+            reply = self.read_shapes_once(bus, shapes, until).await?;
         }
-        Ok(heard)
+        Ok(reply)
     }
 
-    async fn ask_once(
+    async fn read_shapes_once(
         &mut self,
         bus: &mut dyn Bus,
         shapes: &[Span],
@@ -402,8 +402,8 @@ fn judged_packing(id: Option<&Bytes>, words: &[u16]) -> Option<BytePacking> {
     detect_packing(at_id, words.first_chunk()?)
 }
 
-fn judged(heard: &IdentityReply) -> Option<TouchVariant> {
-    match heard {
+fn judged(reply: &IdentityReply) -> Option<TouchVariant> {
+    match reply {
         IdentityReply::Bytes(bytes) => Some(TouchVariant::judge(bytes)),
         IdentityReply::Refused => Some(TouchVariant::Unknown(TouchDoubt::Refused)),
         IdentityReply::Silent | IdentityReply::Busy | IdentityReply::Unasked => None,

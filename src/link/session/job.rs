@@ -36,7 +36,7 @@ impl SessionJob {
 
     /// Reports that the request was not completed. The requester may have dropped its receiver.
     pub(crate) fn fail(self, error: RequestError) {
-        let _told = match self {
+        let _sent = match self {
             Self::Write(job) => job.answer.send(Err(error)).is_ok(),
             Self::Read(job) => job.answer.send(Err(error)).is_ok(),
             Self::Alone(request) => return request.fail(error),

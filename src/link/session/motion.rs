@@ -41,7 +41,7 @@ pub(crate) struct Motion {
     pub(crate) arming: Option<PendingArm>,
     pub(crate) hold: Option<HoldWatch>,
     /// A hold frame was sent, and the pose was not requested since.
-    pub(crate) waits_for_look: bool,
+    pub(crate) waits_for_read: bool,
     /// The newest setpoints that are in no round yet.
     setpoints: Option<Setpoints>,
     /// The remaining writes of the current round, in order.
@@ -78,7 +78,7 @@ impl Motion {
     }
 
     /// Merges newer setpoints if they belong to the current arming.
-    pub(crate) fn want(&mut self, newer: &Setpoints, armed: Option<ArmEpoch>) {
+    pub(crate) fn merge_setpoints(&mut self, newer: &Setpoints, armed: Option<ArmEpoch>) {
         if armed != Some(newer.epoch) {
             return;
         }
@@ -132,17 +132,17 @@ impl Motion {
     }
 
     /// Adds the time that a write of the round took.
-    pub(crate) const fn took(&mut self, took: Duration) {
+    pub(crate) const fn add_write_time(&mut self, took: Duration) {
         self.round_took = self.round_took.saturating_add(took);
     }
 
     /// True if the next round waits only for the pose to be read.
-    pub(crate) fn wants_pose(&self, now: Moment) -> bool {
+    pub(crate) fn waits_for_pose(&self, now: Moment) -> bool {
         self.pose_due && self.waits(now)
     }
 
     /// True if the next round waits only for another read.
-    pub(crate) fn wants_others(&self, now: Moment) -> bool {
+    pub(crate) fn waits_for_others(&self, now: Moment) -> bool {
         !self.pose_due && self.rounds >= ROUNDS_MAX && self.waits(now)
     }
 
@@ -151,7 +151,7 @@ impl Motion {
     pub(crate) fn lets_jobs(&self, now: Moment) -> bool {
         match &self.hold {
             Some(hold) => hold.alarmed,
-            None => !self.wants_pose(now) && !self.wants_others(now),
+            None => !self.waits_for_pose(now) && !self.waits_for_others(now),
         }
     }
 
@@ -160,10 +160,10 @@ impl Motion {
     }
 
     /// Records that something was requested, answered or not.
-    pub(crate) const fn asked(&mut self, is_pose: bool) {
+    pub(crate) const fn note_request(&mut self, is_pose: bool) {
         if is_pose {
             self.pose_due = false;
-            self.waits_for_look = false;
+            self.waits_for_read = false;
         } else {
             self.rounds = 0;
         }
@@ -293,14 +293,14 @@ mod tests {
         wish.angle[Dof::Index] = Some(Target::Go(Angle::MIN));
         wish.force[Dof::Index] = Some(Force::GENTLE);
         wish.speed[Dof::Index] = Some(Speed::GENTLE);
-        motion.want(&wish, Some(epoch));
+        motion.merge_setpoints(&wish, Some(epoch));
         let now = Moment::from_micros(10);
         let sent: Vec<_> = std::iter::from_fn(|| motion.next_write(now))
             .map(|write| write.address())
             .collect();
         assert_eq!(sent, [1528, 1504, 1492]);
-        motion.asked(true);
-        motion.want(&wish, Some(epoch));
+        motion.note_request(true);
+        motion.merge_setpoints(&wish, Some(epoch));
         assert_eq!(motion.next_write(now.plus(Duration::from_millis(4))), None);
         assert!(
             motion
@@ -316,10 +316,10 @@ mod tests {
             let mut motion = Motion::default();
             let mut wish = Setpoints::none(epoch);
             wish.angle[Dof::Index] = Some(Target::Go(Angle::MIN));
-            motion.want(&wish, Some(epoch));
+            motion.merge_setpoints(&wish, Some(epoch));
             assert!(motion.next_write(Moment::ZERO).is_some());
-            motion.took(Duration::from_millis(took));
-            motion.want(&wish, Some(epoch));
+            motion.add_write_time(Duration::from_millis(took));
+            motion.merge_setpoints(&wish, Some(epoch));
             let due = motion.next_send(Moment::ZERO);
             assert_eq!(due, Some(Moment::from_micros(next * 1000)), "{took}");
         }
@@ -331,13 +331,13 @@ mod tests {
         let mut motion = Motion::default();
         let mut wish = Setpoints::none(epoch);
         wish.angle[Dof::Index] = Some(Target::Go(Angle::MIN));
-        motion.want(&wish, Some(epoch));
+        motion.merge_setpoints(&wish, Some(epoch));
         assert!(motion.next_write(Moment::ZERO).is_some());
-        motion.want(&wish, Some(epoch));
+        motion.merge_setpoints(&wish, Some(epoch));
         let later = Moment::from_micros(100_000);
-        assert!(motion.wants_pose(later) && motion.next_write(later).is_none());
-        motion.asked(true);
-        assert!(!motion.wants_pose(later) && motion.next_write(later).is_some());
+        assert!(motion.waits_for_pose(later) && motion.next_write(later).is_none());
+        motion.note_request(true);
+        assert!(!motion.waits_for_pose(later) && motion.next_write(later).is_some());
     }
 
     #[test]
@@ -345,8 +345,8 @@ mod tests {
         let mut motion = Motion::default();
         let mut wish = Setpoints::none(ArmEpoch(1));
         wish.angle[Dof::Index] = Some(Target::Go(Angle::MIN));
-        motion.want(&wish, Some(ArmEpoch(2)));
-        motion.want(&wish, None);
+        motion.merge_setpoints(&wish, Some(ArmEpoch(2)));
+        motion.merge_setpoints(&wish, None);
         assert_eq!(motion.next_send(Moment::ZERO), None);
     }
 }

@@ -28,10 +28,10 @@ impl Session {
         let watched = is_tcp && self.status.armed.is_some();
         self.plan.watch_setpoints(watched, now);
         if self.motion.hold.is_none() {
-            if self.motion.wants_pose(now) {
+            if self.motion.waits_for_pose(now) {
                 return Some(self.plan.motion(now, tempo));
             }
-            if self.motion.wants_others(now) {
+            if self.motion.waits_for_others(now) {
                 match self.plan.others(now) {
                     Some(question) => return Some(question),
                     None => self.motion.nothing_else(),
@@ -87,7 +87,7 @@ impl Session {
         question: &NextRead,
         urgent: Urgent<'_>,
     ) -> Result<(), WireEnd> {
-        self.motion.asked(question.is_motion);
+        self.motion.note_request(question.is_motion);
         let Some(span) = bus.choose(&question.shapes) else {
             return self.ambiguous(question);
         };
@@ -105,7 +105,7 @@ impl Session {
                 self.watch_ticks(span.len, took);
                 self.counters.line.read(self.plan.cost(), span, took);
                 let bytes = &bytes;
-                self.take(&Reply {
+                self.apply_reply(&Reply {
                     span,
                     bytes,
                     asked,
@@ -121,21 +121,21 @@ impl Session {
         }
     }
 
-    fn take(&mut self, reply: &Reply<'_>) {
+    fn apply_reply(&mut self, reply: &Reply<'_>) {
         let now = reply.received;
         self.plan
             .answered(reply.span, reply.asked, now.since(reply.asked));
-        self.ends.image.send_modify(|image| image.take(reply));
-        let fresh = self.sample.take(reply);
+        self.ends.image.send_modify(|image| image.apply(reply));
+        let fresh = self.sample.apply(reply);
         if self.others.read(&self.sample, fresh) {
-            self.plan.look_at_settings(now.plus(LOOK_AGAIN));
+            self.plan.schedule_settings_read(now.plus(LOOK_AGAIN));
             self.plan.doubt_setpoints(now);
         }
-        self.moving.take(&self.sample, fresh, now);
+        self.moving.apply(&self.sample, fresh, now);
         let doubted = self.feedback.doubted();
-        self.feedback.take(&self.sample, fresh);
+        self.feedback.apply(&self.sample, fresh);
         self.watch_feedback(&doubted);
-        self.heat.take(&self.sample, fresh, now);
+        self.heat.apply(&self.sample, fresh, now);
         let heat = DriveHeat::warmest(&self.sample, now);
         if self.status.heat != heat {
             self.status.heat = heat;
@@ -144,7 +144,7 @@ impl Session {
         self.counters.fresh(fresh, now);
         self.counters.judge(&self.sample, fresh);
         let sample = Arc::new(self.sample);
-        self.tell(Record::Reading { sample, fresh });
+        self.broadcast(Record::Reading { sample, fresh });
         if fresh.contains(Group::Faults) {
             self.watch_faults();
         }

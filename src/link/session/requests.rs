@@ -18,13 +18,13 @@ impl Session {
         while self.job.is_none()
             && let Ok(request) = self.ends.requests.try_recv()
         {
-            self.take_job(request);
+            self.accept_job(request);
         }
         self.job.is_some()
     }
 
     /// Accepts a request, unless its requester no longer waits for the reply; then nothing is sent.
-    pub(crate) fn take_job(&mut self, request: Request) {
+    pub(crate) fn accept_job(&mut self, request: Request) {
         if request.is_abandoned() {
             return;
         }
@@ -36,15 +36,15 @@ impl Session {
                     answer,
                 }));
             }
-            Request::Command(command, lease, answer) => self.take_command(command, lease, answer),
+            Request::Command(command, lease, answer) => self.accept_command(command, lease, answer),
             request => self.job = Some(SessionJob::Alone(request)),
         }
     }
 
-    fn take_command(&mut self, command: HandCommand, lease: Option<Lease>, answer: Answer<()>) {
+    fn accept_command(&mut self, command: HandCommand, lease: Option<Lease>, answer: Answer<()>) {
         let is_motion = command.is_motion();
         if let Err(refused) = self.may_write(is_motion, lease) {
-            let _told = answer.send(Err(refused));
+            let _sent = answer.send(Err(refused));
             return;
         }
         self.job = Some(SessionJob::Write(WriteJob {
@@ -85,7 +85,7 @@ impl Session {
             return self.hold_for(bus, job).await;
         }
         let Some(write) = job.writes.pop_at(0) else {
-            let _told = job.answer.send(Ok(()));
+            let _sent = job.answer.send(Ok(()));
             return Ok(());
         };
         if job.is_motion {
@@ -93,11 +93,11 @@ impl Session {
         }
         match self.write(bus, &write, WriteCause::Request).await {
             Ok(()) if job.writes.is_empty() => {
-                let _told = job.answer.send(Ok(()));
+                let _sent = job.answer.send(Ok(()));
             }
             Ok(()) => self.job = Some(SessionJob::Write(job)),
             Err(error) => {
-                let _told = job.answer.send(Err(request_error(&error, write.span())));
+                let _sent = job.answer.send(Err(request_error(&error, write.span())));
                 self.failed(bus, &error).await?;
             }
         }
@@ -109,7 +109,7 @@ impl Session {
         let hold = HandCommand::Angles(self.hold_targets(self.now()).map(Some));
         for write in hold.writes() {
             if let Err(error) = self.write(bus, &write, WriteCause::Request).await {
-                let _told = job.answer.send(Err(request_error(&error, write.span())));
+                let _sent = job.answer.send(Err(request_error(&error, write.span())));
                 return self.failed(bus, &error).await;
             }
         }
@@ -127,7 +127,7 @@ impl Session {
         }
         if bus.choose(&[span]).is_none() || self.looks_like_save(span) {
             let (address, wait_s) = (span.address, LATE_HORIZON.as_secs());
-            let _told = job
+            let _sent = job
                 .answer
                 .send(Err(RequestError::Ambiguous { address, wait_s }));
             return Ok(());
@@ -149,7 +149,7 @@ impl Session {
                 self.watch_ticks(span.len, took);
                 let mut sample = HandSample::default();
                 let bytes = bytes.as_slice();
-                let fresh = sample.take(&Reply {
+                let fresh = sample.apply(&Reply {
                     span,
                     bytes,
                     asked,
@@ -157,12 +157,12 @@ impl Session {
                 });
                 self.counters.judge(&sample, fresh);
                 self.store_read(span, asked, Ok(bytes.to_vec()));
-                let _told = job.answer.send(Ok(bytes.to_vec()));
+                let _sent = job.answer.send(Ok(bytes.to_vec()));
             }
             Err(error) => {
-                let told = request_error(&error, span);
-                self.store_read(span, asked, Err(told.clone()));
-                let _told = job.answer.send(Err(told));
+                let failure = request_error(&error, span);
+                self.store_read(span, asked, Err(failure.clone()));
+                let _sent = job.answer.send(Err(failure));
                 self.failed(bus, &error).await?;
             }
         }
@@ -171,7 +171,7 @@ impl Session {
 
     fn store_read(&self, span: Span, asked: Moment, read: Result<Vec<u8>, RequestError>) {
         let image = &self.ends.image;
-        image.send_modify(|image| image.take_area(span, asked, read));
+        image.send_modify(|image| image.store_area(span, asked, read));
     }
 }
 

@@ -28,7 +28,7 @@ impl RestWatch {
     }
 
     /// Applies a reading.
-    pub(crate) fn take(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
+    pub(crate) fn apply(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         if fresh.contains(Group::Angle)
             && let Some(angle) = sample.angle
         {
@@ -135,7 +135,7 @@ mod tests {
         );
         let mut watch = RestWatch::default();
         let seen = sample(2, 500, ms(0));
-        watch.take(&seen, all(), ms(0));
+        watch.apply(&seen, all(), ms(0));
         assert_eq!(watch.rest(&seen, ms(500), Duration::ZERO), Rest::Resting);
         assert_eq!(watch.rest(&seen, ms(501), Duration::ZERO), Rest::Unknown);
         let without_status = HandSample {
@@ -151,14 +151,14 @@ mod tests {
     #[test]
     fn status_angles_and_commands_each_show_motion_for_a_second() {
         let (mut said, mut seen, mut told) = <(RestWatch, RestWatch, RestWatch)>::default();
-        said.take(&sample(1, 500, ms(0)), all(), ms(0));
-        seen.take(&sample(2, 500, ms(0)), all(), ms(0));
-        seen.take(&sample(2, 503, ms(0)), all(), ms(0));
+        said.apply(&sample(1, 500, ms(0)), all(), ms(0));
+        seen.apply(&sample(2, 500, ms(0)), all(), ms(0));
+        seen.apply(&sample(2, 503, ms(0)), all(), ms(0));
         told.commanded(ms(0));
         let now = sample(2, 503, ms(999));
         for mut watch in [said, seen, told] {
             assert_eq!(watch.rest(&now, ms(999), Duration::ZERO), Rest::Moving);
-            watch.take(&sample(2, 503, ms(1000)), all(), ms(1000));
+            watch.apply(&sample(2, 503, ms(1000)), all(), ms(1000));
         }
         assert_eq!(seen.rest(&now, ms(1001), Duration::ZERO), Rest::Resting);
     }
@@ -166,7 +166,7 @@ mod tests {
     #[test]
     fn an_unlisted_status_is_rest_only_with_angles_that_stood_still_for_a_second() {
         let mut watch = RestWatch::default();
-        watch.take(&sample(255, 500, ms(0)), all(), ms(0));
+        watch.apply(&sample(255, 500, ms(0)), all(), ms(0));
         assert_eq!(
             watch.rest(&sample(255, 500, ms(990)), ms(999), Duration::ZERO),
             Rest::Unknown

@@ -40,7 +40,7 @@ impl Session {
             match self.round(bus).await {
                 Ok(true) => self.after_step(bus),
                 Ok(false) => {
-                    self.tell_rest();
+                    self.publish_rest();
                     self.idle().await;
                 }
                 Err(end) => return end,
@@ -71,7 +71,7 @@ impl Session {
     /// Publishes state and statistics after a step.
     pub(crate) fn after_step(&mut self, bus: &mut dyn Bus) {
         self.learn_late(bus);
-        self.tell_rest();
+        self.publish_rest();
         self.count(bus);
         self.watch_others(bus);
     }
@@ -96,7 +96,7 @@ impl Session {
 
     /// Handles what precedes all requests: control requests, a stop, setpoints. Returns true if it sent something.
     pub(crate) async fn urgent_step(&mut self, bus: &mut dyn Bus) -> Result<bool, WireEnd> {
-        if let Some(asked) = self.take_wishes()? {
+        if let Some(asked) = self.apply_control_requests()? {
             let until = self.now().plus(ARM_READS_TIMEOUT);
             self.motion.arming = Some(PendingArm { asked, until });
         }
@@ -119,14 +119,14 @@ impl Session {
             // A frame without a target holds nothing, and the effect of -1 on a moving joint is unknown (manual 2.6.12).
             let newest = self.hold_targets(now);
             let is_blind = |hold: &mut HoldWatch| hold.needs_pose(&newest);
-            if looks && self.motion.waits_for_look
+            if looks && self.motion.waits_for_read
                 || self.motion.hold.as_mut().is_some_and(is_blind)
             {
                 return self.read_pose(bus).await.map(|()| true);
             }
             let is_acknowledged = self.send_hold(bus).await?;
             // An unacknowledged frame is repeated at once, unless its acknowledgement is only late.
-            self.motion.waits_for_look = is_acknowledged || self.slowness.slowest().is_some();
+            self.motion.waits_for_read = is_acknowledged || self.slowness.slowest().is_some();
         } else if self.pose_is_due(now) {
             self.poll_motion(bus).await?;
         } else if begins_round && let Some(question) = self.plan.before_write(now) {
@@ -136,7 +136,7 @@ impl Session {
                 self.plan.begin_round(now);
             }
             self.send_setpoint(bus, write).await?;
-            self.motion.took(self.now().since(now));
+            self.motion.add_write_time(self.now().since(now));
         } else {
             return Ok(false);
         }
@@ -144,7 +144,7 @@ impl Session {
     }
 
     /// Publishes whether the hand rests, and whether the line is left to it.
-    pub(crate) fn tell_rest(&mut self) {
+    pub(crate) fn publish_rest(&mut self) {
         self.watch_holder();
         let rest = if self.feedback.is_doubted() || self.feedback.is_frozen() {
             Rest::Unknown
@@ -196,14 +196,14 @@ impl Session {
         tokio::select! {
             biased;
             _ = wanted.wait_for(is_news) => {}
-            Some(request) = self.ends.requests.recv(), if self.job.is_none() => self.take_job(request),
+            Some(request) = self.ends.requests.recv(), if self.job.is_none() => self.accept_job(request),
             () = sleep_until(due) => {}
         }
         self.stalled(self.now().since(due_at));
     }
 
     /// Applies the pending control requests; returns a request to arm, which takes exchanges of its own.
-    fn take_wishes(&mut self) -> Result<Option<ArmCommand>, WireEnd> {
+    fn apply_control_requests(&mut self) -> Result<Option<ArmCommand>, WireEnd> {
         let mut wishes = PendingControl::default();
         self.ends.wanted.send_if_modified(|wanted| {
             wishes = wanted.take();
@@ -235,7 +235,7 @@ impl Session {
                 .send_modify(|image| image.change_periods(periods));
         }
         if let Some(setpoints) = wishes.setpoints {
-            self.motion.want(&setpoints, self.status.armed);
+            self.motion.merge_setpoints(&setpoints, self.status.armed);
         }
         Ok(wishes.arm)
     }
@@ -326,7 +326,7 @@ impl Session {
         self.others.not_taken = None;
         self.status.hold = Hold::None;
         let now = self.now();
-        self.plan.look_at_settings(now);
+        self.plan.schedule_settings_read(now);
         let owner = self.status.holder.map(|holder| holder.owner);
         self.heat.arm(&self.sample, owner, now);
         self.go(LinkState::Armed);
@@ -358,7 +358,7 @@ impl Session {
         reason: ArmRefusal,
     ) {
         let at = self.now();
-        self.tell(Record::ArmRefused { at, reason });
+        self.broadcast(Record::ArmRefused { at, reason });
         let _gone = answer.send(Err(reason));
     }
 
@@ -431,8 +431,8 @@ impl Session {
         let is_news = is_there && !self.status.other_controller;
         let seen = (self.others.foreign, self.others.not_taken);
         let status = &mut self.status;
-        let told = (status.foreign_setpoint, status.setpoint_not_taken);
-        if (status.other_controller, status.echoes, told) != (is_there, bus.echoes(), seen) {
+        let published = (status.foreign_setpoint, status.setpoint_not_taken);
+        if (status.other_controller, status.echoes, published) != (is_there, bus.echoes(), seen) {
             status.other_controller = is_there;
             status.echoes = bus.echoes();
             (status.foreign_setpoint, status.setpoint_not_taken) = seen;
@@ -445,9 +445,9 @@ impl Session {
 
     /// Records a round trip. If the system does not report an adapter's latency timer, its ticks reveal it.
     pub(crate) fn watch_ticks(&mut self, bytes: u16, took: Duration) {
-        self.ticks.took(bytes, took);
-        let untold = self.status.latency_timer_ms.is_none() && self.dialled.port().is_some();
-        let seen = untold && self.ticks.are_seen();
+        self.ticks.record(bytes, took);
+        let is_unknown = self.status.latency_timer_ms.is_none() && self.dialled.port().is_some();
+        let seen = is_unknown && self.ticks.are_seen();
         if self.status.latency_ticks != seen {
             self.status.latency_ticks = seen;
             self.publish();
@@ -470,7 +470,7 @@ impl Session {
                 self.moving.moves(now),
                 self.feedback.way_back(now),
             ));
-            self.motion.waits_for_look = false;
+            self.motion.waits_for_read = false;
             self.status.hold = Hold::Asked { at: now, sent: 0 };
         }
         if self.feedback.is_suspect() {
@@ -627,7 +627,7 @@ impl Session {
         self.others.wrote(write, asked);
         self.feedback.wrote(write, asked);
         self.plan.wrote_setpoint(asked);
-        self.tell(Record::Sent {
+        self.broadcast(Record::Sent {
             at: asked,
             number,
             cause,
@@ -637,7 +637,7 @@ impl Session {
         self.stalled(late);
         let answered = self.now();
         let took = answered.since(asked);
-        self.tell(Record::Answered {
+        self.broadcast(Record::Answered {
             at: answered,
             number,
             fate: fate(&written),

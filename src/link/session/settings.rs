@@ -103,12 +103,12 @@ impl Session {
         self.leaves_line = false;
         match end {
             Ok(end) => {
-                let _told = answer.send(end);
+                let _sent = answer.send(end);
                 Ok(())
             }
             Err(end) => {
                 self.broken_off = Some(Box::new(move || {
-                    let _told = answer.send(lost);
+                    let _sent = answer.send(lost);
                 }));
                 Err(end)
             }
@@ -340,7 +340,7 @@ impl Session {
     /// Reserves the line for a hand that saves or calibrates.
     fn leave_line(&mut self) {
         self.leaves_line = true;
-        self.tell_rest();
+        self.publish_rest();
     }
 
     async fn trigger(&mut self, bus: &mut dyn Bus, what: Trigger) -> Result<(), BusError> {
@@ -361,7 +361,7 @@ impl Session {
         tokio::select! {
             biased;
             _ = wanted.wait_for(PendingControl::is_any) => Ok(()),
-            heard = bus.listen() => unless_lost(heard),
+            result = bus.listen() => unless_lost(result),
             () = over => Ok(()),
         }
     }

@@ -18,11 +18,11 @@ pub(crate) struct Slowness {
 impl Slowness {
     /// Records a reply that came after its request had timed out.
     pub(crate) fn late(&mut self, reply: LateReply) {
-        self.took(reply.took);
+        self.record(reply.took);
     }
 
     /// Records the round trip time of a reply.
-    pub(crate) fn took(&mut self, took: Duration) {
+    pub(crate) fn record(&mut self, took: Duration) {
         let Some(slowest) = self.slowest else {
             self.slowest = Some(took).filter(|took| is_slow(*took));
             return;
@@ -66,7 +66,7 @@ mod tests {
     #[test]
     fn a_late_reply_lengthens_the_wait_and_quick_ones_shorten_it_again() {
         let mut slowness = Slowness::default();
-        slowness.took(ms(20));
+        slowness.record(ms(20));
         assert_eq!(slowness.least_wait(), ms(50));
         let late = |took| LateReply {
             took,
@@ -75,11 +75,11 @@ mod tests {
         slowness.late(late(ms(300)));
         assert_eq!(slowness.least_wait(), ms(425));
         for _ in 0..100 {
-            slowness.took(ms(290));
+            slowness.record(ms(290));
         }
         assert_eq!(slowness.slowest(), Some(ms(300)));
         for _ in 0..QUICK_LEAST {
-            slowness.took(ms(4));
+            slowness.record(ms(4));
         }
         assert_eq!((slowness.slowest(), slowness.least_wait()), (None, ms(50)));
     }
@@ -87,10 +87,10 @@ mod tests {
     #[test]
     fn a_hiccup_teaches_nothing() {
         let mut slowness = Slowness::default();
-        slowness.took(ms(900));
+        slowness.record(ms(900));
         assert_eq!(slowness.slowest(), None);
-        slowness.took(ms(100));
-        slowness.took(ms(5000));
+        slowness.record(ms(100));
+        slowness.record(ms(5000));
         assert_eq!(slowness.slowest(), Some(ms(100)));
     }
 }

@@ -4,16 +4,16 @@ use crate::codec::can::{CanFrame, CanFunction, CanId, CanRecord, RECORD_LEN, fro
 use crate::codec::slcan::{AnswerDecoder, CommandDecoder, LINE_MAX, SlcanAnswer, SlcanCommand};
 use crate::codec::usbcan::{PacketContent, PacketStart, inspect};
 use crate::hand::Span;
+use crate::link::traffic::content::FrameContent;
 use crate::link::traffic::cut::FrameCut;
 use crate::link::traffic::frame::{Kind, Wrong};
-use crate::link::traffic::said::FrameContent;
 use crate::record::Direction;
 
 const CR: u8 = b'\r';
 const BEL: u8 = 0x07;
 
 /// Finds a frame of a CAN interface at the first byte.
-pub const fn look_record(bytes: &[u8]) -> FrameCut {
+pub const fn find_record(bytes: &[u8]) -> FrameCut {
     if bytes.len() >= RECORD_LEN {
         FrameCut::Whole(RECORD_LEN)
     } else {
@@ -22,7 +22,7 @@ pub const fn look_record(bytes: &[u8]) -> FrameCut {
 }
 
 /// Finds a line of a serial adapter at the first byte.
-pub fn look_line(bytes: &[u8]) -> FrameCut {
+pub fn find_line(bytes: &[u8]) -> FrameCut {
     match bytes.iter().position(|byte| matches!(*byte, CR | BEL)) {
         Some(end) if end <= LINE_MAX => FrameCut::Whole(end + 1),
         None if bytes.len() <= LINE_MAX => FrameCut::Open(None),
@@ -31,7 +31,7 @@ pub fn look_line(bytes: &[u8]) -> FrameCut {
 }
 
 /// Finds a packet of the maker's adapter at the first byte.
-pub fn look_packet(bytes: &[u8]) -> FrameCut {
+pub fn find_packet(bytes: &[u8]) -> FrameCut {
     match inspect(bytes) {
         PacketStart::Packet(len, _) => FrameCut::Whole(len),
         PacketStart::BadSum { len, got, want } => {
@@ -43,9 +43,11 @@ pub fn look_packet(bytes: &[u8]) -> FrameCut {
 }
 
 /// Content of a packet; a damaged one has none.
-pub fn said_packet(direction: Direction, packet: &[u8]) -> FrameContent {
+pub fn packet_content(direction: Direction, packet: &[u8]) -> FrameContent {
     match (inspect(packet), direction) {
-        (PacketStart::Packet(_, PacketContent::Frame(frame)), _) => said_frame(direction, &frame),
+        (PacketStart::Packet(_, PacketContent::Frame(frame)), _) => {
+            frame_content(direction, &frame)
+        }
         (PacketStart::Packet(..), Direction::ToHand) => FrameContent::new(Kind::Adapter),
         (PacketStart::Packet(..), Direction::FromHand) => FrameContent::new(Kind::AdapterReply),
         _ => FrameContent::new(Kind::Noise),
@@ -53,12 +55,12 @@ pub fn said_packet(direction: Direction, packet: &[u8]) -> FrameContent {
 }
 
 /// Content of a frame of a CAN interface.
-pub fn said_record(direction: Direction, record: &[u8]) -> FrameContent {
+pub fn record_content(direction: Direction, record: &[u8]) -> FrameContent {
     let Ok(record) = <&[u8; RECORD_LEN]>::try_from(record) else {
         return FrameContent::new(Kind::Noise);
     };
     match from_record(record) {
-        CanRecord::Frame(frame) => said_frame(direction, &frame),
+        CanRecord::Frame(frame) => frame_content(direction, &frame),
         CanRecord::BusOff => FrameContent::new(Kind::AdapterReply).wrong(Wrong::BusOff),
         CanRecord::ErrorPassive => FrameContent::new(Kind::AdapterReply).wrong(Wrong::ErrorPassive),
         CanRecord::ErrorActive | CanRecord::Other => FrameContent::new(Kind::AdapterReply),
@@ -66,22 +68,22 @@ pub fn said_record(direction: Direction, record: &[u8]) -> FrameContent {
 }
 
 /// Content of a line from or to an adapter.
-pub fn said_line(direction: Direction, line: &[u8]) -> FrameContent {
+pub fn line_content(direction: Direction, line: &[u8]) -> FrameContent {
     match direction {
         Direction::ToHand => {
             let mut decoder = CommandDecoder::default();
             match line.iter().find_map(|byte| decoder.push(*byte)) {
-                Some(Ok(SlcanCommand::Send(frame))) => said_frame(direction, &frame),
+                Some(Ok(SlcanCommand::Send(frame))) => frame_content(direction, &frame),
                 Some(Ok(_)) | None => FrameContent::new(Kind::Adapter),
                 Some(Err(_)) => FrameContent::new(Kind::Adapter).wrong(Wrong::Line),
             }
         }
         Direction::FromHand => {
             let mut decoder = AnswerDecoder::default();
-            let said = line.iter().find_map(|byte| decoder.push(*byte));
+            let content = line.iter().find_map(|byte| decoder.push(*byte));
             let noisy = (decoder.counts().resyncs > 0).then_some(Wrong::Line);
-            match said {
-                Some(SlcanAnswer::Frame(frame)) => said_frame(direction, &frame).wrong(noisy),
+            match content {
+                Some(SlcanAnswer::Frame(frame)) => frame_content(direction, &frame).wrong(noisy),
                 Some(SlcanAnswer::Failed) => FrameContent::new(Kind::AdapterReply)
                     .wrong(noisy.or(Some(Wrong::AdapterFailed))),
                 Some(SlcanAnswer::Done | SlcanAnswer::Sent | SlcanAnswer::Other(_)) => {
@@ -93,14 +95,14 @@ pub fn said_line(direction: Direction, line: &[u8]) -> FrameContent {
     }
 }
 
-fn said_frame(direction: Direction, frame: &CanFrame) -> FrameContent {
+fn frame_content(direction: Direction, frame: &CanFrame) -> FrameContent {
     let Some(id) = CanId::from_raw(frame.id) else {
         return FrameContent::noise(Wrong::ForeignCanId { id: frame.id });
     };
     let data = frame.data.as_slice();
     let len = u16::try_from(data.len()).unwrap_or_default();
     let carried = Span::new(id.address, len);
-    let said = match (direction, id.way, data) {
+    let content = match (direction, id.way, data) {
         (Direction::ToHand, CanFunction::Read, [len]) => {
             FrameContent::new(Kind::Read).about(Span::new(id.address, u16::from(*len)))
         }
@@ -111,14 +113,14 @@ fn said_frame(direction: Direction, frame: &CanFrame) -> FrameContent {
             FrameContent::new(Kind::ReadReply).about(carried).with(data)
         }
         (Direction::FromHand, CanFunction::Write, _) => {
-            let mut said = FrameContent::new(Kind::WriteReply);
-            said.span = Some(Span::new(id.address, 0));
+            let mut content = FrameContent::new(Kind::WriteReply);
+            content.span = Some(Span::new(id.address, 0));
             // An acknowledgement has one byte (manual 2.3.2); an adapter that echoes returns all.
-            said.wrong((len > 1).then_some(Wrong::Echo))
+            content.wrong((len > 1).then_some(Wrong::Echo))
         }
         (Direction::ToHand, CanFunction::Read, _) => {
             FrameContent::noise(Wrong::Amount { got: len, want: 1 })
         }
     };
-    said.hand(id.hand)
+    content.hand(id.hand)
 }

@@ -84,7 +84,7 @@ impl Cutter {
                     (got, Some(Wrong::CutOff { got, want }))
                 }
                 FrameCut::Nothing(wrong) => {
-                    run.take(rest, wrong, out);
+                    run.push(rest, wrong, out);
                     at += 1;
                     continue;
                 }
@@ -117,7 +117,7 @@ struct NoiseRun {
 }
 
 impl NoiseRun {
-    fn take(&mut self, rest: &[u8], wrong: Wrong, out: &mut impl FnMut(StreamPiece)) {
+    fn push(&mut self, rest: &[u8], wrong: Wrong, out: &mut impl FnMut(StreamPiece)) {
         if self.bytes.len() >= RUN_MAX {
             self.end(out);
         }

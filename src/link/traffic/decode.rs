@@ -2,10 +2,10 @@
 
 use crate::hand::Moment;
 use crate::link::bus::error::id_of;
+use crate::link::traffic::content::FrameContent;
 use crate::link::traffic::cut::{Cutter, FrameCut, StreamPiece};
 use crate::link::traffic::frame::{Frame, FrameFormat, Kind, Wrong};
 use crate::link::traffic::matching::Matching;
-use crate::link::traffic::said::FrameContent;
 use crate::link::traffic::{can, modbus, rs485};
 use crate::record::{Direction, Piece, PieceKind};
 use crate::transport::Endpoint;
@@ -107,7 +107,7 @@ impl Decoder {
         bytes: &[u8],
         out: &mut Vec<TrafficEvent>,
     ) {
-        let look = looker(self.form, self.unit, direction);
+        let look = frame_finder(self.form, self.unit, direction);
         let half = self.half(direction);
         half.last = at;
         let mut cuts = Vec::new();
@@ -118,7 +118,7 @@ impl Decoder {
     }
 
     fn flush(&mut self, direction: Direction, out: &mut Vec<TrafficEvent>) {
-        let look = looker(self.form, self.unit, direction);
+        let look = frame_finder(self.form, self.unit, direction);
         let half = self.half(direction);
         let at = half.last;
         let mut cuts = Vec::new();
@@ -135,20 +135,20 @@ impl Decoder {
         cut: StreamPiece,
         out: &mut Vec<TrafficEvent>,
     ) {
-        let said = match cut.wrong {
-            None => said(self.form, direction, &cut.bytes),
+        let content = match cut.wrong {
+            None => content(self.form, direction, &cut.bytes),
             Some(wrong @ (Wrong::Checksum { .. } | Wrong::Crc { .. })) => {
-                said(self.form, direction, &cut.bytes).wrong(wrong)
+                content(self.form, direction, &cut.bytes).wrong(wrong)
             }
             Some(wrong) => FrameContent::noise(wrong),
         };
-        let mut frame = self.empty(at, direction, said.kind);
+        let mut frame = self.empty(at, direction, content.kind);
         frame.bytes = cut.bytes.into_boxed_slice();
         // Damage takes precedence over the content of damaged bytes.
         frame.wrong = cut.wrong;
         out.extend(
             self.matching
-                .place(&mut frame, said)
+                .place(&mut frame, content)
                 .map(TrafficEvent::NoReply),
         );
         out.push(TrafficEvent::Frame(frame));
@@ -184,24 +184,24 @@ impl Decoder {
     }
 }
 
-fn looker(form: FrameFormat, unit: u8, direction: Direction) -> impl Fn(&[u8]) -> FrameCut {
+fn frame_finder(form: FrameFormat, unit: u8, direction: Direction) -> impl Fn(&[u8]) -> FrameCut {
     move |bytes| match form {
-        FrameFormat::Rs485 => rs485::look(bytes),
-        FrameFormat::Rtu => modbus::look_rtu(direction, unit, bytes),
-        FrameFormat::Tcp => modbus::look_tcp(bytes),
-        FrameFormat::Can => can::look_record(bytes),
-        FrameFormat::Slcan => can::look_line(bytes),
-        FrameFormat::UsbCan => can::look_packet(bytes),
+        FrameFormat::Rs485 => rs485::find_frame(bytes),
+        FrameFormat::Rtu => modbus::find_rtu(direction, unit, bytes),
+        FrameFormat::Tcp => modbus::find_tcp(bytes),
+        FrameFormat::Can => can::find_record(bytes),
+        FrameFormat::Slcan => can::find_line(bytes),
+        FrameFormat::UsbCan => can::find_packet(bytes),
     }
 }
 
-fn said(form: FrameFormat, direction: Direction, bytes: &[u8]) -> FrameContent {
+fn content(form: FrameFormat, direction: Direction, bytes: &[u8]) -> FrameContent {
     match form {
-        FrameFormat::Rs485 => rs485::said(direction, bytes),
-        FrameFormat::Rtu => modbus::said_rtu(direction, bytes),
-        FrameFormat::Tcp => modbus::said_tcp(direction, bytes),
-        FrameFormat::Can => can::said_record(direction, bytes),
-        FrameFormat::Slcan => can::said_line(direction, bytes),
-        FrameFormat::UsbCan => can::said_packet(direction, bytes),
+        FrameFormat::Rs485 => rs485::content(direction, bytes),
+        FrameFormat::Rtu => modbus::rtu_content(direction, bytes),
+        FrameFormat::Tcp => modbus::tcp_content(direction, bytes),
+        FrameFormat::Can => can::record_content(direction, bytes),
+        FrameFormat::Slcan => can::line_content(direction, bytes),
+        FrameFormat::UsbCan => can::packet_content(direction, bytes),
     }
 }

@@ -5,9 +5,9 @@ use crate::codec::rs485::SaveResult;
 use crate::hand::register::BytePacking;
 use crate::hand::register::{ERROR, SAVE, STATUS, TEMP};
 use crate::hand::{Moment, Span};
+use crate::link::traffic::content::FrameContent;
 use crate::link::traffic::frame::{Frame, FrameFormat, Kind, Wrong};
 use crate::link::traffic::rs485;
-use crate::link::traffic::said::FrameContent;
 use crate::record::Direction;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -28,17 +28,17 @@ struct OpenRequest {
 }
 
 impl OpenRequest {
-    fn is_answered_by(&self, said: &FrameContent) -> bool {
-        self.is_of_kind(said)
-            && said.transaction == self.transaction
-            && said
+    fn is_answered_by(&self, content: &FrameContent) -> bool {
+        self.is_of_kind(content)
+            && content.transaction == self.transaction
+            && content
                 .span
                 .is_none_or(|span| span.address == self.span.address)
-            && (self.writes || said.kind == Kind::Refusal || said.len == Some(self.span.len))
+            && (self.writes || content.kind == Kind::Refusal || content.len == Some(self.span.len))
     }
 
-    const fn is_of_kind(&self, said: &FrameContent) -> bool {
-        match said.kind {
+    const fn is_of_kind(&self, content: &FrameContent) -> bool {
+        match content.kind {
             Kind::Refusal => true,
             Kind::WriteReply => self.writes,
             _ => !self.writes,
@@ -84,40 +84,42 @@ impl Matching {
     }
 
     /// Adds the content to a frame. If it is a request, returns the number of the previous one if that got no reply.
-    pub fn place(&mut self, frame: &mut Frame, said: FrameContent) -> Option<u64> {
-        frame.kind = said.kind;
-        frame.hand = said.hand;
-        frame.span = said.span;
-        frame.wrong = frame.wrong.or(said.wrong);
-        let foreign = said.hand.filter(|id| *id != self.hand);
+    pub fn place(&mut self, frame: &mut Frame, content: FrameContent) -> Option<u64> {
+        frame.kind = content.kind;
+        frame.hand = content.hand;
+        frame.span = content.span;
+        frame.wrong = frame.wrong.or(content.wrong);
+        let foreign = content.hand.filter(|id| *id != self.hand);
         let mut before = None;
         if let Some(got) = foreign {
             let want = self.hand;
             frame.wrong = frame.wrong.or(Some(Wrong::ForeignId { got, want }));
         } else if frame.wrong.is_none_or(|wrong| !is_final(wrong)) {
-            match (frame.direction, said.kind) {
-                (Direction::ToHand, Kind::Read | Kind::Write) => before = self.ask(frame, &said),
+            match (frame.direction, content.kind) {
+                (Direction::ToHand, Kind::Read | Kind::Write) => {
+                    before = self.note_request(frame, &content)
+                }
                 (Direction::FromHand, Kind::ReadReply | Kind::WriteReply | Kind::Refusal) => {
-                    self.answer(frame, &said);
+                    self.answer(frame, &content);
                 }
                 _ => {}
             }
         }
-        frame.memory = said.memory.into_boxed_slice();
+        frame.memory = content.memory.into_boxed_slice();
         self.unpack(frame);
         before
     }
 
-    fn ask(&mut self, frame: &Frame, said: &FrameContent) -> Option<u64> {
+    fn note_request(&mut self, frame: &Frame, content: &FrameContent) -> Option<u64> {
         let before = self.open.take().map(|open| self.give_up(open));
-        let span = said.span?;
-        self.saving |= said.kind == Kind::Write && span.address == SAVE.address;
+        let span = content.span?;
+        self.saving |= content.kind == Kind::Write && span.address == SAVE.address;
         self.open = Some(OpenRequest {
             number: frame.number,
             at: frame.at,
-            writes: said.kind == Kind::Write,
+            writes: content.kind == Kind::Write,
             span,
-            transaction: said.transaction,
+            transaction: content.transaction,
         });
         before
     }
@@ -130,19 +132,19 @@ impl Matching {
         open.number
     }
 
-    fn answer(&mut self, frame: &mut Frame, said: &FrameContent) {
-        if let Some(open) = self.open.take_if(|open| open.is_answered_by(said)) {
+    fn answer(&mut self, frame: &mut Frame, content: &FrameContent) {
+        if let Some(open) = self.open.take_if(|open| open.is_answered_by(content)) {
             frame.took = Some(frame.at.since(open.at));
             frame.span = Some(open.span);
             return;
         }
-        if self.is_save_result(frame, said) {
+        if self.is_save_result(frame, content) {
             return;
         }
         let late = self
             .given_up
             .iter()
-            .position(|asked| asked.is_answered_by(said));
+            .position(|asked| asked.is_answered_by(content));
         if let Some(asked) = late.and_then(|at| self.given_up.remove(at)) {
             let after = frame.at.since(asked.at).as_millis();
             let after_ms = u64::try_from(after).unwrap_or(u64::MAX);
@@ -150,7 +152,7 @@ impl Matching {
             frame.wrong = Some(Wrong::Late { after_ms });
             return;
         }
-        let wrong = self.misfit(said);
+        let wrong = self.misfit(content);
         frame.wrong = Some(wrong);
         // It was the reply, only a wrong one: no other will come.
         if matches!(wrong, Wrong::Amount { .. }) {
@@ -158,20 +160,20 @@ impl Matching {
         }
     }
 
-    fn misfit(&self, said: &FrameContent) -> Wrong {
+    fn misfit(&self, content: &FrameContent) -> Wrong {
         let Some(open) = self.open else {
             return Wrong::NotAsked;
         };
-        if let (Some(got), Some(want)) = (said.transaction, open.transaction)
+        if let (Some(got), Some(want)) = (content.transaction, open.transaction)
             && got != want
         {
             return Wrong::Transaction { got, want };
         }
-        if !open.is_of_kind(said) {
+        if !open.is_of_kind(content) {
             return Wrong::NotAsked;
         }
         let want = open.span.address;
-        if let Some(got) = said
+        if let Some(got) = content
             .span
             .map(|span| span.address)
             .filter(|got| *got != want)
@@ -184,20 +186,20 @@ impl Matching {
             FrameFormat::Can | FrameFormat::Slcan | FrameFormat::UsbCan
         );
         let asked_for = u8::try_from(open.span.len).unwrap_or(u8::MAX);
-        if is_can && said.memory == [asked_for] {
+        if is_can && content.memory == [asked_for] {
             return Wrong::Echo;
         }
         Wrong::Amount {
-            got: said.len.unwrap_or_default(),
+            got: content.len.unwrap_or_default(),
             want: open.span.len,
         }
     }
 
-    fn is_save_result(&mut self, frame: &mut Frame, said: &FrameContent) -> bool {
+    fn is_save_result(&mut self, frame: &mut Frame, content: &FrameContent) -> bool {
         if self.form != FrameFormat::Rs485 || !self.saving {
             return false;
         }
-        let Some(result) = rs485::save_result(said) else {
+        let Some(result) = rs485::save_result(content) else {
             return false;
         };
         self.saving = false;

@@ -2,6 +2,7 @@
 //! this module.
 pub mod can;
 pub mod compose;
+pub mod content;
 pub mod cut;
 pub mod decode;
 pub mod fields;
@@ -10,7 +11,6 @@ pub mod matching;
 pub mod modbus;
 pub mod reader;
 pub mod rs485;
-pub mod said;
 pub mod values;
 pub mod words;
 

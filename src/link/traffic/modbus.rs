@@ -5,9 +5,9 @@ use crate::codec::modbus_rtu::crc16;
 use crate::codec::pdu::{self, Len, ModbusRole, Pdu};
 use crate::hand::Span;
 use crate::hand::register::{Element, by_address};
+use crate::link::traffic::content::FrameContent;
 use crate::link::traffic::cut::FrameCut;
 use crate::link::traffic::frame::{Kind, Wrong};
-use crate::link::traffic::said::FrameContent;
 use crate::record::Direction;
 
 /// Bytes before the function code of a TCP message.
@@ -22,13 +22,13 @@ const fn side(direction: Direction) -> ModbusRole {
 
 /// Finds a frame of an RTU line at the first byte. `unit` is ours: a frame with a wrong CRC is accepted as damaged only
 /// from it.
-pub fn look_rtu(direction: Direction, unit: u8, bytes: &[u8]) -> FrameCut {
-    let seen = look_side(side(direction), bytes);
+pub fn find_rtu(direction: Direction, unit: u8, bytes: &[u8]) -> FrameCut {
+    let seen = find_pdu(side(direction), bytes);
     if direction == Direction::ToHand || matches!(seen, FrameCut::Whole(_)) {
         return seen;
     }
     // An adapter that echoes, or another program on the line: only a correct CRC is proof.
-    match look_side(ModbusRole::Client, bytes) {
+    match find_pdu(ModbusRole::Client, bytes) {
         echo @ FrameCut::Whole(_) => echo,
         _ => match (seen, bytes.first()) {
             (FrameCut::Damaged(..), Some(first)) if *first != unit => {
@@ -39,7 +39,7 @@ pub fn look_rtu(direction: Direction, unit: u8, bytes: &[u8]) -> FrameCut {
     }
 }
 
-fn look_side(side: ModbusRole, bytes: &[u8]) -> FrameCut {
+fn find_pdu(side: ModbusRole, bytes: &[u8]) -> FrameCut {
     let len = match pdu::len(side, bytes.get(1..).unwrap_or_default()) {
         Len::Open => return FrameCut::Open(None),
         Len::None => return FrameCut::Nothing(Wrong::NoFrame { len: 1 }),
@@ -59,23 +59,23 @@ fn look_side(side: ModbusRole, bytes: &[u8]) -> FrameCut {
 }
 
 /// Content of an RTU frame.
-pub fn said_rtu(direction: Direction, frame: &[u8]) -> FrameContent {
+pub fn rtu_content(direction: Direction, frame: &[u8]) -> FrameContent {
     let [unit, pdu @ .., _, _] = frame else {
         return FrameContent::new(Kind::Noise);
     };
     let own = pdu::parse(side(direction), pdu);
-    let said = match (direction, own) {
+    let content = match (direction, own) {
         (Direction::FromHand, Pdu::Other { .. }) => match pdu::parse(ModbusRole::Client, pdu) {
-            Pdu::Other { .. } => said(own),
-            asked => said(asked).wrong(Wrong::Echo),
+            Pdu::Other { .. } => pdu_content(own),
+            asked => pdu_content(asked).wrong(Wrong::Echo),
         },
-        _ => said_by(direction, own),
+        _ => directed_content(direction, own),
     };
-    said.hand(u16::from(*unit))
+    content.hand(u16::from(*unit))
 }
 
 /// Finds a message of a Modbus TCP connection at the first byte.
-pub fn look_tcp(bytes: &[u8]) -> FrameCut {
+pub fn find_tcp(bytes: &[u8]) -> FrameCut {
     let mut splitter = MbapSplitter::default();
     splitter.push(bytes);
     match splitter.next() {
@@ -90,36 +90,36 @@ pub fn look_tcp(bytes: &[u8]) -> FrameCut {
 }
 
 /// Content of a Modbus TCP message.
-pub fn said_tcp(direction: Direction, frame: &[u8]) -> FrameContent {
+pub fn tcp_content(direction: Direction, frame: &[u8]) -> FrameContent {
     let (Some([t0, t1, _, _, _, _, unit]), Some(pdu)) =
         (frame.first_chunk::<MBAP_LEN>(), frame.get(MBAP_LEN..))
     else {
         return FrameContent::new(Kind::Noise);
     };
-    let mut said = said_by(direction, pdu::parse(side(direction), pdu));
-    said.transaction = Some(u16::from_be_bytes([*t0, *t1]));
-    said.hand(u16::from(*unit))
+    let mut content = directed_content(direction, pdu::parse(side(direction), pdu));
+    content.transaction = Some(u16::from_be_bytes([*t0, *t1]));
+    content.hand(u16::from(*unit))
 }
 
 /// One-register writes look the same both ways; the direction distinguishes them.
-fn said_by(direction: Direction, pdu: Pdu<'_>) -> FrameContent {
-    let mut said = said(pdu);
-    if direction == Direction::FromHand && said.kind == Kind::Write {
-        said.kind = Kind::WriteReply;
-        said.memory.clear();
+fn directed_content(direction: Direction, pdu: Pdu<'_>) -> FrameContent {
+    let mut content = pdu_content(pdu);
+    if direction == Direction::FromHand && content.kind == Kind::Write {
+        content.kind = Kind::WriteReply;
+        content.memory.clear();
     }
-    said
+    content
 }
 
-fn said(pdu: Pdu<'_>) -> FrameContent {
+fn pdu_content(pdu: Pdu<'_>) -> FrameContent {
     match pdu {
         Pdu::Read { address, count } => {
             FrameContent::new(Kind::Read).about(Span::new(address, count.saturating_mul(2)))
         }
         Pdu::Words(words) => {
-            let mut said = FrameContent::new(Kind::ReadReply).with(&swapped(words));
-            said.len = u16::try_from(words.len()).ok();
-            said
+            let mut content = FrameContent::new(Kind::ReadReply).with(&swapped(words));
+            content.len = u16::try_from(words.len()).ok();
+            content
         }
         Pdu::WriteOne { address, value } => {
             let bytes = value.to_le_bytes();

@@ -54,26 +54,26 @@ impl Traffic {
         let got = source.tap.after(source.next);
         let is_first = source.next == 0;
         source.next = got.next;
-        let mut heard = Vec::new();
+        let mut events = Vec::new();
         if got.lost > 0 && !is_first {
             let at = got.pieces.first().map_or(now, |piece| piece.at);
-            source.decoder.gap(at, got.lost, &mut heard);
+            source.decoder.gap(at, got.lost, &mut events);
         }
         for piece in &got.pieces {
-            source.decoder.push(piece, &mut heard);
+            source.decoder.push(piece, &mut events);
         }
         if !got.more {
-            source.decoder.tick(now, &mut heard);
+            source.decoder.tick(now, &mut events);
         }
-        for one in heard {
-            self.take(one);
+        for event in events {
+            self.push(event);
         }
         got.more
     }
 
-    fn take(&mut self, heard: TrafficEvent) {
+    fn push(&mut self, event: TrafficEvent) {
         self.changes += 1;
-        match heard {
+        match event {
             TrafficEvent::Frame(frame) => {
                 if self.frames.len() >= FRAMES_MAX {
                     self.frames.pop_front();

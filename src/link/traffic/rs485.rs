@@ -4,13 +4,13 @@ use crate::codec::rs485::client::SaveResult;
 use crate::codec::rs485::framing::{FrameDirection, FrameStart, WRITE, parts, scan};
 use crate::hand::Span;
 use crate::hand::register::SAVE;
+use crate::link::traffic::content::FrameContent;
 use crate::link::traffic::cut::FrameCut;
 use crate::link::traffic::frame::{Kind, Wrong};
-use crate::link::traffic::said::FrameContent;
 use crate::record::Direction;
 
 /// Finds a frame at the first byte, or the reason why there is none.
-pub fn look(bytes: &[u8]) -> FrameCut {
+pub fn find_frame(bytes: &[u8]) -> FrameCut {
     match scan(bytes) {
         FrameStart::Frame(_, len) => FrameCut::Whole(len),
         FrameStart::BadSum { len, got, want } => {
@@ -23,7 +23,7 @@ pub fn look(bytes: &[u8]) -> FrameCut {
 }
 
 /// Content of a frame; its checksum may be wrong.
-pub fn said(direction: Direction, frame: &[u8]) -> FrameContent {
+pub fn content(direction: Direction, frame: &[u8]) -> FrameContent {
     let sent = match frame {
         [0xEB, ..] => FrameDirection::Request,
         _ => FrameDirection::Reply,
@@ -35,7 +35,7 @@ pub fn said(direction: Direction, frame: &[u8]) -> FrameContent {
     let id = u16::from(parts.id);
     let carried = Span::new(parts.address, u16::try_from(data.len()).unwrap_or(u16::MAX));
     let first = data.first().copied().unwrap_or_default();
-    let said = match (sent, parts.command == WRITE) {
+    let content = match (sent, parts.command == WRITE) {
         (FrameDirection::Request, false) => {
             FrameContent::new(Kind::Read).about(Span::new(parts.address, u16::from(first)))
         }
@@ -45,12 +45,12 @@ pub fn said(direction: Direction, frame: &[u8]) -> FrameContent {
         }
         (FrameDirection::Reply, true) => {
             let wrong = (first != 1).then_some(Wrong::NotTaken { value: first });
-            let mut said = FrameContent::new(Kind::WriteReply).wrong(wrong);
-            said.span = Some(Span::new(parts.address, 0));
-            said
+            let mut content = FrameContent::new(Kind::WriteReply).wrong(wrong);
+            content.span = Some(Span::new(parts.address, 0));
+            content
         }
     };
-    said.hand(id).wrong(misplaced(direction, sent))
+    content.hand(id).wrong(misplaced(direction, sent))
 }
 
 fn misplaced(direction: Direction, sent: FrameDirection) -> Option<Wrong> {
@@ -62,9 +62,9 @@ fn misplaced(direction: Direction, sent: FrameDirection) -> Option<Wrong> {
 }
 
 /// The late result of a SAVE, if the content can only be that. The caller checks that one was requested.
-pub fn save_result(said: &FrameContent) -> Option<SaveResult> {
-    let address = said.span?.address;
-    let value = match (said.kind, said.wrong, said.memory.as_slice()) {
+pub fn save_result(content: &FrameContent) -> Option<SaveResult> {
+    let address = content.span?.address;
+    let value = match (content.kind, content.wrong, content.memory.as_slice()) {
         (Kind::WriteReply, Some(Wrong::NotTaken { value }), _) => value,
         (Kind::ReadReply, None, [value]) => *value,
         _ => return None,

@@ -125,13 +125,13 @@ mod tests {
         let mut memory = vec![0; 30];
         memory.splice(0..4, [0xF4, 0x01, 0xFF, 0xFF]);
         memory.splice(28..30, [0x9C, 0xFF]);
-        let told: Vec<_> = held(span, &memory)
+        let got: Vec<_> = held(span, &memory)
             .into_iter()
             .map(|held| (held.name(), held.numbers))
             .collect();
         let wanted = [("ANGLE_ACT(4..5)", "500 -1"), ("FORCE_ACT(0)", "-100")];
         let wanted = wanted.map(|(name, numbers)| (name.to_owned(), numbers.to_owned()));
-        assert_eq!(told, wanted);
+        assert_eq!(got, wanted);
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, Exp
     let grip = source.grip_before();
     let mut follower = grip.map_err(|error| error.of(&output))?;
     let damage = source.without_wire().entries(|entry| {
-        let grip = follower.take(&entry);
+        let grip = follower.apply(&entry);
         if let Entry::Heard(Record::Reading { sample, fresh }) = &entry {
             lines.reading(entry.at(), sample, *fresh)?;
             lines.grip(&grip.unwrap_or_default());

@@ -33,10 +33,10 @@ pub fn recover(source: ExportSource<'_>, to: &Destination) -> Result<Exported, E
 fn put(
     source: ExportSource<'_>,
     to: &Destination,
-    said: impl FnOnce(&Damage) -> Option<Event>,
+    event_of: impl FnOnce(&Damage) -> Option<Event>,
 ) -> Result<Exported, ExportError> {
     let output = Unfinished::new(to)?;
-    let copied = copy(source, output.file()?, said).map_err(|error| error.of(&output))?;
+    let copied = copy(source, output.file()?, event_of).map_err(|error| error.of(&output))?;
     output.sync(copied.to)?;
     output.finish(copied.exported.rows)?;
     Ok(copied.exported)
@@ -64,7 +64,7 @@ pub(crate) struct Copied<W> {
 pub(crate) fn copy<W: Write>(
     source: ExportSource<'_>,
     to: W,
-    said: impl FnOnce(&Damage) -> Option<Event>,
+    event_of: impl FnOnce(&Damage) -> Option<Event>,
 ) -> Result<Copied<W>, Broken> {
     let opening = Opening {
         began: source.stretch.from.max(source.file.first()),
@@ -73,7 +73,7 @@ pub(crate) fn copy<W: Write>(
     };
     let mut copy = RecordingCopy::after(&opening, to, source.grip_before()?)?;
     let damage = source.entries(|entry| copy.push(&entry))?;
-    if let Some(event) = said(&damage) {
+    if let Some(event) = event_of(&damage) {
         copy.push(&Entry::Event(event))?;
     }
     let mut copied = copy.end()?;

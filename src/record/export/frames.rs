@@ -124,7 +124,7 @@ impl DatasetFrames {
     }
 
     /// Passes on the frames before this entry, and then applies the entry.
-    pub(crate) fn take(&mut self, entry: &Entry, mut give: impl FnMut(&DatasetFrame)) {
+    pub(crate) fn apply(&mut self, entry: &Entry, mut give: impl FnMut(&DatasetFrame)) {
         let now = entry.at();
         while let Some((at, note)) = self.next_note(now) {
             self.advance(at, &mut give);
@@ -132,7 +132,7 @@ impl DatasetFrames {
             self.begin(at);
         }
         self.advance(now, &mut give);
-        if let Some(grip) = self.follower.take(entry) {
+        if let Some(grip) = self.follower.apply(entry) {
             self.grip = grip;
         }
         match entry {
@@ -274,7 +274,7 @@ mod tests {
     /// A reading of everything about the joints, all angles and targets of which are `angle`.
     fn reading(sample: &mut HandSample, at: Moment, angle: i16) -> Entry {
         let all: Vec<u8> = (0..69).flat_map(|_| angle.to_le_bytes()).collect();
-        let fresh = sample.take(&Reply {
+        let fresh = sample.apply(&Reply {
             span: Span::new(ANGLE_SET.address, 138),
             bytes: &all,
             asked: at,
@@ -293,9 +293,9 @@ mod tests {
         let readings = (0..10).map(|n| 40 * n).chain((0..5).map(|n| 2000 + 40 * n));
         for (angle, at) in (1..).zip(readings) {
             let entry = reading(&mut sample, millis(at), angle);
-            frames.take(&entry, |frame| all.push(frame.clone()));
+            frames.apply(&entry, |frame| all.push(frame.clone()));
         }
-        let told: Vec<(u64, i32)> = all
+        let got: Vec<(u64, i32)> = all
             .iter()
             .map(|frame| (frame.number, (frame.state[0] * FULL_SCALE).round() as i32))
             .collect();
@@ -312,7 +312,7 @@ mod tests {
             (8, 10),
         ];
         let second = [(0, 11), (1, 13)];
-        assert_eq!(told, [&first[..], &second].concat());
+        assert_eq!(got, [&first[..], &second].concat());
         assert!((all[3].time_s - 0.3).abs() < 1e-6);
     }
 
@@ -331,7 +331,7 @@ mod tests {
         let first = reading(&mut sample, millis(0), 300);
         let last = reading(&mut sample, millis(320), 400);
         for entry in [first, sent, last] {
-            frames.take(&entry, |frame| all.push(frame.clone()));
+            frames.apply(&entry, |frame| all.push(frame.clone()));
         }
         let actions: Vec<i32> = all
             .iter()
@@ -367,10 +367,10 @@ mod tests {
                 }));
             }
             for entry in entries {
-                frames.take(&entry, |frame| all.push(frame.clone()));
+                frames.apply(&entry, |frame| all.push(frame.clone()));
             }
         }
-        let told: Vec<(u64, &str, u64)> = all
+        let got: Vec<(u64, &str, u64)> = all
             .iter()
             .map(|frame| {
                 assert!((frame.action[2] - 0.9).abs() < 1e-6, "{frame:?}");
@@ -380,6 +380,6 @@ mod tests {
             .collect();
         let first = (0..7).map(|n| (n, "pick", 1500 + 100 * n));
         let second = (0..8).map(|n| (n, "place", 2200 + 100 * n));
-        assert_eq!(told, first.chain(second).collect::<Vec<_>>());
+        assert_eq!(got, first.chain(second).collect::<Vec<_>>());
     }
 }

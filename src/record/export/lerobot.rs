@@ -149,7 +149,7 @@ fn add(
     let before = set.index;
     let damage = whole.entries(|entry| {
         let mut done = Ok(());
-        frames.take(&entry, |frame| {
+        frames.apply(&entry, |frame| {
             if done.is_ok() {
                 done = set.frame(frame, source.file.first(), plan);
             }
@@ -282,7 +282,7 @@ impl DataSet {
         for (column, cell) in rest.iter_mut().zip(scalars) {
             column.push(cell);
         }
-        self.statistics.take(&parts);
+        self.statistics.push(&parts);
         self.index += 1;
         self.waiting += 1;
         Ok(())

@@ -104,7 +104,7 @@ impl<'a> ExportSource<'a> {
         before.stretch.from = Moment::ZERO;
         before.stretch.to = Moment::from_micros(from.micros() - 1);
         before.entries(|entry| {
-            grip.take(&entry);
+            grip.apply(&entry);
             Ok(())
         })?;
         Ok(grip)
@@ -115,12 +115,12 @@ impl<'a> ExportSource<'a> {
         &self,
         mut take: impl FnMut(Entry) -> Result<(), Broken>,
     ) -> Result<Damage, Broken> {
-        let mut done = self.look(self.stretch.from);
+        let mut done = self.report_progress(self.stretch.from);
         let mut count = 0_u64;
         let damage = self.file.entries(self.stretch, |entry| {
             count += 1;
             if count.is_multiple_of(POLL_ENTRIES) && done.is_ok() {
-                done = self.look(entry.at());
+                done = self.report_progress(entry.at());
             }
             if done.is_ok() {
                 done = take(entry);
@@ -135,7 +135,7 @@ impl<'a> ExportSource<'a> {
     }
 
     /// Reports the progress.
-    fn look(&self, at: Moment) -> Result<(), Broken> {
+    fn report_progress(&self, at: Moment) -> Result<(), Broken> {
         let from = self.stretch.from.max(self.file.first());
         let whole = self.stretch.to.min(self.file.last()).since(from);
         let share = at.since(from).as_secs_f64() / whole.as_secs_f64().max(1e-6);

@@ -30,10 +30,10 @@ impl Statistics {
     }
 
     /// Adds one row.
-    pub(crate) fn take(&mut self, row: &[&[f32]]) {
+    pub(crate) fn push(&mut self, row: &[&[f32]]) {
         for ((_, summaries), values) in self.parts.iter_mut().zip(row) {
             for (summary, value) in summaries.iter_mut().zip(*values) {
-                summary.take(*value);
+                summary.push(*value);
             }
         }
     }
@@ -90,7 +90,7 @@ impl Default for ColumnSummary {
 }
 
 impl ColumnSummary {
-    fn take(&mut self, value: f32) {
+    fn push(&mut self, value: f32) {
         if self.count.is_multiple_of(self.each) {
             if self.kept.len() >= KEPT_MAX {
                 let mut odd = false;
@@ -146,7 +146,7 @@ mod tests {
         let mut all = Statistics::new([("x", 1)].into_iter());
         for number in 0..1_000_000_u32 {
             let value = f32::from(u16::try_from(number % 1001).unwrap());
-            all.take(&[&[value]]);
+            all.push(&[&[value]]);
         }
         let json = all.json();
         let x = &json["x"];

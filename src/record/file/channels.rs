@@ -98,7 +98,7 @@ pub(crate) struct Definitions {
 
 impl Definitions {
     /// Adds the record of a schema or a channel.
-    pub(crate) fn take(&mut self, code: u8, record: &[u8]) {
+    pub(crate) fn push(&mut self, code: u8, record: &[u8]) {
         match mcap::parse_record(code, record) {
             Ok(Record::Schema { header, data }) => {
                 let schema = FileSchema {

@@ -23,7 +23,7 @@ pub(crate) struct LogClock {
 
 impl LogClock {
     /// Adds a message of this channel, with its log time.
-    pub(crate) fn take(&mut self, channel: u16, log: u64, data: &[u8]) {
+    pub(crate) fn push(&mut self, channel: u16, log: u64, data: &[u8]) {
         if log == 0 {
             *self.unlogged.entry(channel).or_default() += 1;
             return;
@@ -102,7 +102,7 @@ mod tests {
         let mut take = |channel, log, stamps: [Time; 2]| {
             let stamps = stamps.map(|time| [time.sec.to_le_bytes(), time.nanosec.to_le_bytes()]);
             let data = [&[0, 1, 0, 0], stamps.concat().concat().as_slice()].concat();
-            clock.take(channel, log, &data);
+            clock.push(channel, log, &data);
         };
         let at = |sec| Time { sec, nanosec: 5 };
         let second = 1_000_000_000;

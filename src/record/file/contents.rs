@@ -33,14 +33,14 @@ impl Contents {
     /// The system's error.
     pub fn of(file: &RecordingFile) -> io::Result<Self> {
         let mut overview = Overview::default();
-        let (mut newest, mut told) = (file.first(), Vec::new());
+        let (mut newest, mut gaps) = (file.first(), Vec::new());
         let (mut last_read, mut unread) = (file.first(), Vec::new());
         let is_live = !file.opening().is_imported();
         let mut damage = file.entries(TimeRange::WHOLE, |entry| {
             let at = entry.at();
-            let missing = said_missing(&entry);
+            let missing = reported_missing(&entry);
             if missing > 0 || is_live && at.since(newest) > SILENT {
-                told.push(MessageGap {
+                gaps.push(MessageGap {
                     from: newest,
                     to: at.max(newest),
                     messages: missing,
@@ -51,10 +51,10 @@ impl Contents {
                 last_read = last_read.max(at);
             }
             newest = newest.max(at);
-            overview.take(&entry);
+            overview.apply(&entry);
             ControlFlow::Continue(())
         })?;
-        for gap in told {
+        for gap in gaps {
             let is_same = |other: &MessageGap| other.from < gap.to && gap.from < other.to;
             if gap.messages > 0 || !damage.gaps.iter().any(is_same) {
                 damage.gap(MessageGap { messages: 0, ..gap });
@@ -82,7 +82,7 @@ fn silence(from: Moment, to: Moment) -> Option<MessageGap> {
 }
 
 /// Number of entries before this one that the recorder reported as lost.
-fn said_missing(entry: &Entry) -> u64 {
+fn reported_missing(entry: &Entry) -> u64 {
     match entry {
         Entry::Event(event) if event.kind == EventKind::Recording => {
             let number = event.words.split_once(" entries are missing");

@@ -34,7 +34,7 @@ impl OverviewRow {
         }
     }
 
-    fn take(&mut self, line: usize, value: f32) {
+    fn push(&mut self, line: usize, value: f32) {
         if let Some(least) = self.least.get_mut(line) {
             *least = least.min(value);
         }
@@ -132,7 +132,7 @@ struct OverviewBlock {
 
 impl Overview {
     /// Adds an entry, and returns the events that it implies.
-    pub fn take(&mut self, entry: &Entry) -> Vec<FileMark> {
+    pub fn apply(&mut self, entry: &Entry) -> Vec<FileMark> {
         let mut derived = Vec::new();
         match entry {
             Entry::Heard(Record::Reading { sample, fresh }) => {
@@ -277,7 +277,7 @@ impl Overview {
     fn value(&mut self, at: Moment, line: usize, value: f32) {
         let second = u32::try_from(at.micros() / 1_000_000).unwrap_or(u32::MAX);
         if let Some(row) = self.row(second) {
-            row.take(line, value);
+            row.push(line, value);
         }
     }
 
@@ -329,7 +329,7 @@ impl Overview {
     }
 
     /// Adds a block of a file; returns the offset of the first chunk that it covers. `None` for bytes that are not a block.
-    pub(crate) fn take_block(&mut self, bytes: &[u8]) -> Option<u64> {
+    pub(crate) fn apply_block(&mut self, bytes: &[u8]) -> Option<u64> {
         let block: OverviewBlock = cdr::decode(bytes)?;
         let (least, _) = block.least.as_chunks::<LINES>();
         let (greatest, _) = block.greatest.as_chunks::<LINES>();

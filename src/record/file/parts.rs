@@ -17,7 +17,10 @@ const HEAD_BYTES: u64 = 4096;
 /// The files of this file's recording, ordered by time; only itself if it belongs to none.
 pub fn of(path: &Path) -> Vec<PathBuf> {
     let alone = || vec![path.to_owned()];
-    if said(path).and_then(|opening| opening.part).is_none() {
+    if read_opening(path)
+        .and_then(|opening| opening.part)
+        .is_none()
+    {
         return alone();
     }
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -79,7 +82,7 @@ pub fn recordings(mut paths: Vec<PathBuf>) -> Vec<Vec<PathBuf>> {
             base_nanos,
             hand,
             ..
-        }) = said(&path)
+        }) = read_opening(&path)
         else {
             alone.push(vec![path]);
             continue;
@@ -105,7 +108,7 @@ pub fn recordings(mut paths: Vec<PathBuf>) -> Vec<Vec<PathBuf>> {
 
 /// Endpoint of the hand in a file's opening.
 pub fn hand(path: &Path) -> Option<String> {
-    said(path).map(|opening| opening.hand)
+    read_opening(path).map(|opening| opening.hand)
 }
 
 /// The MCAP files in a folder and its direct subfolders.
@@ -131,7 +134,7 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// Opening of a file, as far as it can be read without opening it as a recording.
-fn said(path: &Path) -> Option<Opening> {
+fn read_opening(path: &Path) -> Option<Opening> {
     // Opening a pipe would wait for its writer.
     if !fs::metadata(path).ok()?.is_file() {
         return None;

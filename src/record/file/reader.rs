@@ -285,7 +285,7 @@ impl RecordingFile {
                 megabytes: survey.left_out.div_ceil(MEGABYTE),
             }),
         ];
-        let told = found.messages.unwrap_or_default();
+        let announced = found.messages.unwrap_or_default();
         Ok(Self {
             path: path.to_owned(),
             file: Mutex::new(file),
@@ -296,7 +296,7 @@ impl RecordingFile {
             damage: Damage {
                 chunks: survey.damaged,
                 bytes: found.skipped,
-                messages: told.saturating_sub(counted),
+                messages: announced.saturating_sub(counted),
                 gaps: Vec::new(),
             },
             remarks: remarks
@@ -608,14 +608,17 @@ impl RecordingFile {
     fn find_opening(&mut self) -> Result<(), OpenError> {
         let span = self.span()?;
         let file = self.file.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let told = openings(file, &self.found.metadata)?;
-        let hands: BTreeSet<&str> = told.iter().map(|opening| opening.hand.as_str()).collect();
+        let openings = openings(file, &self.found.metadata)?;
+        let hands: BTreeSet<&str> = openings
+            .iter()
+            .map(|opening| opening.hand.as_str())
+            .collect();
         if hands.len() > 1 {
             let hands = Vec::from_iter(hands).join(", ");
             return Err(OpenError::SeveralHands { hands });
         }
         // Picks the first of merged recordings of one hand.
-        let opening = told.into_iter().min_by_key(Opening::began_since_1970);
+        let opening = openings.into_iter().min_by_key(Opening::began_since_1970);
         match opening {
             Some(opening) if is_moved(self.difference) => {
                 self.opening = opening.moved(self.difference);
@@ -675,7 +678,7 @@ impl RecordingFile {
                     ..TimeRange::WHOLE
                 };
                 self.entries(stretch, |entry| {
-                    overview.take(&entry);
+                    overview.apply(&entry);
                     ControlFlow::Continue(())
                 })?;
                 overview.sort();
@@ -757,7 +760,7 @@ fn own(file: &mut File) -> io::Result<Option<Found>> {
         // A chunk that extends beyond the end of the file is truncated.
         if let Ok(mut chunk) = walk::whole(file, place) {
             is_whole = records(&mut chunk, ChunkKind::Chunk, |record| match record {
-                ChunkRecord::Definition(code, content) => definitions.take(code, content),
+                ChunkRecord::Definition(code, content) => definitions.push(code, content),
                 ChunkRecord::Message(_) => has_messages = true,
             });
         }
@@ -805,7 +808,7 @@ fn overview(file: &mut File, found: &Found, opening: &Opening) -> Result<Overvie
             mcap::parse_record(op::ATTACHMENT, &content)
             && header.name == OVERVIEW
             && is_whole(&content, crc)
-            && let Some(from) = overview.take_block(&data)
+            && let Some(from) = overview.apply_block(&data)
         {
             covered.push(from..place.offset);
         }
@@ -827,7 +830,7 @@ fn overview(file: &mut File, found: &Found, opening: &Opening) -> Result<Overvie
                 && topic != Topic::Wire
                 && let Some(entry) = decoder.decode(topic, message.times, message.data)
             {
-                overview.take(&entry);
+                overview.apply(&entry);
             }
         });
     }

@@ -3,7 +3,7 @@
 
 use crate::record::Entry;
 use crate::record::file::recording::{
-    END_TIMEOUT, FLUSH_INTERVAL, Given, Now, RecorderStatus, RecordingPlan, RecordingTask,
+    END_TIMEOUT, FLUSH_INTERVAL, Now, QueuedEntry, RecorderStatus, RecordingPlan, RecordingTask,
 };
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -21,42 +21,42 @@ const END_RETRY: Duration = Duration::from_millis(50);
 /// Input of a recording. Clones feed the same recording.
 #[derive(Debug, Clone)]
 pub struct RecorderInput {
-    given: SyncSender<Given>,
+    sender: SyncSender<QueuedEntry>,
     /// Entries lost since the last accepted one.
     lost: Arc<AtomicU64>,
 }
 
 impl RecorderInput {
-    pub fn new(room: usize) -> (Self, Receiver<Given>) {
-        let (given, taken) = sync_channel(room);
+    pub fn new(room: usize) -> (Self, Receiver<QueuedEntry>) {
+        let (sender, queue) = sync_channel(room);
         let lost = Arc::new(AtomicU64::new(0));
-        (Self { given, lost }, taken)
+        (Self { sender, lost }, queue)
     }
 
     /// Queues an entry. If the queue is full, the entry is counted as lost.
     pub fn push(&self, entry: Entry) {
         let lost_before = self.take_lost();
-        let given = Given {
+        let queued = QueuedEntry {
             entry,
             lost_before,
             _taken: None,
         };
-        if let Err(TrySendError::Full(_)) = self.given.try_send(given) {
+        if let Err(TrySendError::Full(_)) = self.sender.try_send(queued) {
             self.missed(lost_before + 1);
         }
     }
 
     /// Queues an entry and waits until the recorder has processed it and all before it, however busy the computer is.
     pub fn push_in_step(&self, entry: Entry) {
-        let (open, taken) = sync_channel(0);
-        let given = Given {
+        let (open, processed) = sync_channel(0);
+        let queued = QueuedEntry {
             entry,
             lost_before: self.take_lost(),
             _taken: Some(open),
         };
-        if self.given.send(given).is_ok() {
+        if self.sender.send(queued).is_ok() {
             // Nothing is sent: this ends when the other end is dropped, with the entry or with the recorder.
-            let _closed = taken.recv();
+            let _closed = processed.recv();
         }
     }
 
@@ -95,7 +95,7 @@ impl Recorder {
     /// The system's error if it cannot start a thread. A failing disk is not an error here: it is retried and shown in the
     /// status.
     pub fn start(plan: RecordingPlan) -> io::Result<Self> {
-        let (input, taken) = RecorderInput::new(QUEUE_MAX);
+        let (input, queue) = RecorderInput::new(QUEUE_MAX);
         let began = Instant::now();
         let recording = RecordingTask::new(plan, now(began));
         let recorder = Self {
@@ -103,16 +103,16 @@ impl Recorder {
             status: Arc::new(Mutex::new(RecorderStatus::default())),
             ends: Arc::new(AtomicBool::new(false)),
         };
-        let work = RecorderThread {
+        let worker = RecorderThread {
             recording: recording.map_err(io::Error::other)?,
-            taken,
+            queue,
             lost: input.lost,
             status: Arc::clone(&recorder.status),
             ends: Arc::clone(&recorder.ends),
             began,
         };
         let thread = std::thread::Builder::new().name("recorder".into());
-        let _detached = thread.spawn(move || work.run())?;
+        let _detached = thread.spawn(move || worker.run())?;
         Ok(recorder)
     }
 
@@ -157,7 +157,7 @@ fn now(began: Instant) -> Now {
 /// Work of the thread: it dequeues entries, and runs the recording's due steps.
 struct RecorderThread {
     recording: RecordingTask,
-    taken: Receiver<Given>,
+    queue: Receiver<QueuedEntry>,
     lost: Arc<AtomicU64>,
     status: Arc<Mutex<RecorderStatus>>,
     ends: Arc<AtomicBool>,
@@ -168,9 +168,9 @@ impl RecorderThread {
     fn run(mut self) {
         let mut ends = false;
         while !ends {
-            match self.taken.recv_timeout(FLUSH_INTERVAL / 2) {
-                Ok(given) => {
-                    self.recording.take(&given);
+            match self.queue.recv_timeout(FLUSH_INTERVAL / 2) {
+                Ok(queued) => {
+                    self.recording.accept(&queued);
                     // Waking up for each entry would cost as much as the work itself.
                     std::thread::sleep(BATCH);
                 }
@@ -180,25 +180,25 @@ impl RecorderThread {
             // Entries queued before the request to end belong to the recording.
             ends |= self.ends.load(Ordering::Acquire);
             for _ in 0..QUEUE_MAX {
-                let Ok(given) = self.taken.try_recv() else {
+                let Ok(queued) = self.queue.try_recv() else {
                     break;
                 };
-                self.recording.take(&given);
+                self.recording.accept(&queued);
             }
             self.recording.step(now(self.began));
-            self.tell();
+            self.publish_status();
         }
         self.recording.lose(self.lost.swap(0, Ordering::Relaxed));
         self.recording.end(now(self.began));
         while !self.recording.end_step(self.began.elapsed()) {
-            self.tell();
+            self.publish_status();
             std::thread::sleep(END_RETRY);
         }
-        self.tell();
+        self.publish_status();
     }
 
-    fn tell(&self) {
-        let told = self.recording.status(self.began.elapsed());
-        *self.status.lock().unwrap_or_else(PoisonError::into_inner) = told;
+    fn publish_status(&self) {
+        let status = self.recording.status(self.began.elapsed());
+        *self.status.lock().unwrap_or_else(PoisonError::into_inner) = status;
     }
 }

@@ -139,7 +139,7 @@ pub(crate) struct Now {
 
 /// An entry, and the number of entries lost before it.
 #[derive(Debug)]
-pub struct Given {
+pub struct QueuedEntry {
     pub entry: Entry,
     pub lost_before: u64,
     /// Dropped with the entry, which wakes a caller that waits for it.
@@ -159,7 +159,7 @@ pub(crate) struct RecordingTask {
     /// The previous file, until it is completely written.
     ending: Option<FileTail>,
     /// Lost entries not yet recorded in a file.
-    untold: u64,
+    unreported: u64,
     entries: u64,
     missing: u64,
     notices: Vec<RecorderNotice>,
@@ -197,7 +197,7 @@ impl RecordingTask {
             open: Content::default(),
             tail: FileTail::new(plan.disk, plan.path),
             ending: None,
-            untold: 0,
+            unreported: 0,
             entries: 0,
             missing: 0,
             notices: Vec::new(),
@@ -227,25 +227,25 @@ impl RecordingTask {
     }
 
     /// Accepts an entry, or counts it as lost if too much data waits for the disk.
-    pub(crate) fn take(&mut self, given: &Given) {
-        self.lose(given.lost_before);
+    pub(crate) fn accept(&mut self, queued: &QueuedEntry) {
+        self.lose(queued.lost_before);
         let ending = self.ending.as_ref().map_or(0, FileTail::held);
         if self.tail.held() + ending >= self.pending_max {
             self.lose(1);
             return;
         }
-        let at = given.entry.at();
+        let at = queued.entry.at();
         self.newest = self.newest.max(at);
-        self.tell_missing(at);
-        self.remember(&given.entry);
+        self.report_missing(at);
+        self.remember(&queued.entry);
         self.entries += 1;
         self.open.entries += 1;
-        self.write(&given.entry);
+        self.write(&queued.entry);
     }
 
     /// Counts entries as lost.
     pub(crate) const fn lose(&mut self, entries: u64) {
-        self.untold += entries;
+        self.unreported += entries;
         self.missing += entries;
     }
 
@@ -258,7 +258,7 @@ impl RecordingTask {
         }
         if now.since.saturating_sub(self.looked_at) >= POLL_INTERVAL {
             self.looked_at = now.since;
-            self.look(now);
+            self.check_files(now);
             let is_long = now.since.saturating_sub(self.part_since) >= self.part_length;
             if is_long && self.ending.is_none() {
                 self.begin_part(now);
@@ -269,8 +269,8 @@ impl RecordingTask {
     /// Begins to end the file.
     pub(crate) fn end(&mut self, now: Now) {
         self.flush();
-        self.look(now);
-        self.tell_missing(self.newest);
+        self.check_files(now);
+        self.report_missing(self.newest);
         self.finish();
         self.end_by = Some(now.since + END_TIMEOUT);
         self.end_step(now.since);
@@ -285,7 +285,7 @@ impl RecordingTask {
             if let Some(ending) = &self.ending {
                 lost.add(ending.waiting());
             }
-            self.take_back(lost);
+            self.count_lost(lost);
         }
         self.ended = is_late || self.ending.is_none() && self.tail.is_done();
         self.ended
@@ -324,19 +324,19 @@ impl RecordingTask {
         }));
     }
 
-    fn tell_missing(&mut self, at: Moment) {
-        let lost = std::mem::take(&mut self.untold);
+    fn report_missing(&mut self, at: Moment) {
+        let lost = std::mem::take(&mut self.unreported);
         if lost > 0 {
-            self.open.told += lost;
+            self.open.reported += lost;
             self.note(at, format!("{lost} entries are missing before this"));
         }
     }
 
     /// Counts a file's content as lost.
-    const fn take_back(&mut self, lost: Content) {
+    const fn count_lost(&mut self, lost: Content) {
         self.entries -= lost.entries;
         self.missing += lost.entries;
-        self.untold += lost.entries + lost.told;
+        self.unreported += lost.entries + lost.reported;
     }
 
     fn remember(&mut self, entry: &Entry) {
@@ -407,32 +407,32 @@ impl RecordingTask {
     }
 
     /// Checks that the files still exist and are writable, and that the clock runs normally.
-    fn look(&mut self, now: Now) {
+    fn check_files(&mut self, now: Now) {
         if let Some(mut ending) = self.ending.take() {
-            match (ending.look(), ending.is_dead(now.since)) {
-                (FilePlace::Removed, _) => self.take_back(ending.everything()),
-                (_, true) => self.take_back(ending.waiting()),
+            match (ending.check_place(), ending.is_dead(now.since)) {
+                (FilePlace::Removed, _) => self.count_lost(ending.everything()),
+                (_, true) => self.count_lost(ending.waiting()),
                 _ => self.ending = Some(ending),
             }
         }
         let drift = self.drift(now);
         let from = self.tail.path().map(ToOwned::to_owned).unwrap_or_default();
-        let place = self.tail.look();
+        let place = self.tail.check_place();
         if place == FilePlace::Removed {
             self.flush();
             let gone = self.tail.everything();
-            self.tell(RecorderNotice::Removed {
+            self.notify(RecorderNotice::Removed {
                 path: from,
                 entries: gone.entries,
             });
-            self.take_back(gone);
+            self.count_lost(gone);
             self.begin_next(now, self.tail.again(), first_part(self.newest));
             let words = "this file goes on where another was removed while it was written";
             self.note(self.newest, words.into());
             return;
         }
         if let FilePlace::Moved(to) = place {
-            self.tell(RecorderNotice::Moved { from, to });
+            self.notify(RecorderNotice::Moved { from, to });
         }
         if drift.unsigned_abs() > CLOCK_SET.as_nanos() && self.ending.is_none() {
             self.follow_clock(now, drift);
@@ -441,7 +441,7 @@ impl RecordingTask {
         }
     }
 
-    fn tell(&mut self, notice: RecorderNotice) {
+    fn notify(&mut self, notice: RecorderNotice) {
         if self.notices.len() < NOTICES_MAX {
             self.notices.push(notice);
         }
@@ -465,13 +465,13 @@ impl RecordingTask {
         };
         let next = self.tail.next();
         let (name, own) = (next.name(), self.tail.name());
-        self.tell_missing(self.newest);
+        self.report_missing(self.newest);
         self.note(self.newest, format!("{GOES_ON_IN}{name}: {what}"));
         self.finish();
         let old = self.begin_next(now, next, first_part(self.newest));
         self.ending = Some(old);
         self.note(self.newest, format!("{GOES_ON_FROM}{own}: {what}"));
-        self.tell(RecorderNotice::ClockSet { next: name });
+        self.notify(RecorderNotice::ClockSet { next: name });
     }
 
     /// Tries another file in place of one that cannot be written; if that works, the data waiting for the old one is lost.
@@ -491,7 +491,7 @@ impl RecordingTask {
         trial.discard();
         if works {
             self.flush();
-            self.take_back(self.tail.waiting());
+            self.count_lost(self.tail.waiting());
             let next = self.tail.next();
             let old = self.begin_next(now, next, first_part(self.newest));
             self.earlier_bytes += old.written();
@@ -503,7 +503,7 @@ impl RecordingTask {
 
     /// Continues in the next file of the same recording.
     fn begin_part(&mut self, now: Now) {
-        self.tell_missing(self.newest);
+        self.report_missing(self.newest);
         self.finish();
         let before = self.opening.part.unwrap_or(first_part(self.newest));
         let part = Part {
@@ -536,7 +536,7 @@ impl RecordingTask {
         if let Some(parameters) = self.parameters.clone() {
             self.write(&Entry::Event(Event { at, ..parameters }));
         }
-        self.tell_missing(at);
+        self.report_missing(at);
         old
     }
 }

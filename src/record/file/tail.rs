@@ -21,18 +21,18 @@ const NAMES_MAX: u32 = 100;
 pub(crate) struct Content {
     pub(crate) entries: u64,
     /// Number of entries that they report as missing.
-    pub(crate) told: u64,
+    pub(crate) reported: u64,
 }
 
 impl Content {
     pub(crate) const fn add(&mut self, other: Self) {
         self.entries += other.entries;
-        self.told += other.told;
+        self.reported += other.reported;
     }
 
     const fn subtract(&mut self, other: Self) {
         self.entries -= other.entries;
-        self.told -= other.told;
+        self.reported -= other.reported;
     }
 }
 
@@ -143,7 +143,7 @@ impl FileTail {
     }
 
     /// Checks the place of the file; a move is returned only once.
-    pub(crate) fn look(&mut self) -> FilePlace {
+    pub(crate) fn check_place(&mut self) -> FilePlace {
         let (Some(path), Some(file)) = (&self.path, &self.file) else {
             return FilePlace::There;
         };

@@ -156,7 +156,7 @@ impl RecordingWriter {
             self.block()?;
             self.block_began = Some(at);
         }
-        let derived = self.overview.take(entry);
+        let derived = self.overview.apply(entry);
         for message in self.encoder.encode(entry) {
             self.write(&message)?;
         }

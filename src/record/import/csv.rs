@@ -300,12 +300,16 @@ impl CsvColumns {
             match column {
                 // pandas writes its index without a name.
                 CsvColumn::Unknown if name.is_empty() => unknown.push("(no name)".into()),
-                CsvColumn::Unknown if unknown.len() < UNKNOWN_MAX => unknown.push(told(name)),
+                CsvColumn::Unknown if unknown.len() < UNKNOWN_MAX => unknown.push(shortened(name)),
                 CsvColumn::Unknown => {}
-                _ if all.iter().any(is_there) => return Err(CsvFault::Twice { name: told(name) }),
+                _ if all.iter().any(is_there) => {
+                    return Err(CsvFault::Twice {
+                        name: shortened(name),
+                    });
+                }
                 _ => {}
             }
-            all.push((told(name), column));
+            all.push((shortened(name), column));
         }
         let has = |wanted: fn(CsvColumn) -> bool| all.iter().any(|(_, column)| wanted(*column));
         if !has(|column| column == CsvColumn::Time) {
@@ -352,10 +356,10 @@ impl CsvColumns {
             if (cell.is_empty() || is_no_number(cell) && !is_text) && !is_needed {
                 continue;
             }
-            if row.take(*column, cell).is_none() {
+            if row.parse_cell(*column, cell).is_none() {
                 return Err(CsvFault::BadValue {
                     column: name.clone(),
-                    text: told(cell),
+                    text: shortened(cell),
                 });
             }
         }
@@ -389,7 +393,7 @@ fn known() -> BTreeMap<String, CsvColumn> {
 }
 
 /// A text shortened for an error.
-fn told(text: &str) -> String {
+fn shortened(text: &str) -> String {
     let plain = text.chars().filter(|letter| !letter.is_control());
     plain.take(TOLD_MAX).collect()
 }
@@ -446,7 +450,7 @@ struct CsvRow {
 
 impl CsvRow {
     /// Parses one cell; `None` if its text is not valid in the column.
-    fn take(&mut self, column: CsvColumn, cell: &str) -> Option<()> {
+    fn parse_cell(&mut self, column: CsvColumn, cell: &str) -> Option<()> {
         match column {
             CsvColumn::Unknown | CsvColumn::Grip(_) => {}
             CsvColumn::Time => {
@@ -515,13 +519,13 @@ impl CsvRow {
             let six = &self.as_sent(quantity, six);
             if six.iter().any(|(_, value)| value.is_some()) {
                 let bytes = memory(quantity, six);
-                fresh = fresh.and(sample.take(&reply(quantity.group(), &bytes, self.at)));
+                fresh = fresh.and(sample.apply(&reply(quantity.group(), &bytes, self.at)));
             }
         }
         for (finger, tip) in self.tips.iter() {
             if let Some(block) = tip.block() {
                 let reply = reply(Group::Tactile(finger), &block, self.at);
-                fresh = fresh.and(sample.take(&reply));
+                fresh = fresh.and(sample.apply(&reply));
             }
         }
         let reading = (!fresh.is_empty()).then(|| {
@@ -562,7 +566,7 @@ fn memory(quantity: Quantity, six: &PerDof<Option<i16>>) -> Vec<u8> {
 /// The six values as a reader of the recording will see them.
 fn documented(quantity: Quantity, six: &PerDof<Option<i16>>) -> PerDof<Option<i16>> {
     let mut sample = HandSample::default();
-    sample.take(&reply(
+    sample.apply(&reply(
         quantity.group(),
         &memory(quantity, six),
         Moment::ZERO,

@@ -17,7 +17,7 @@ pub struct FleetBook {
 
 impl FleetBook {
     /// Applies an announcement; returns true if it changes the list.
-    pub fn take(&mut self, from: DdsWriterId, hand: FleetHand, now: Moment) -> bool {
+    pub fn apply(&mut self, from: DdsWriterId, hand: FleetHand, now: Moment) -> bool {
         if self.hands.len() >= HANDS_MAX && !self.hands.contains_key(&from) {
             return false;
         }
@@ -31,7 +31,7 @@ impl FleetBook {
     pub fn sweep(&mut self, now: Moment) -> bool {
         let before = self.hands.len();
         self.hands
-            .retain(|_, (_, heard)| now.since(*heard) < GONE_TIMEOUT);
+            .retain(|_, (_, seen)| now.since(*seen) < GONE_TIMEOUT);
         self.hands.len() != before
     }
 

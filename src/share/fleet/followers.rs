@@ -27,16 +27,16 @@ impl OtherFollowers {
     /// Listens from now on. Must be called within a tokio runtime.
     pub fn open(node: &DdsNode, side: Side, clock: Clock) -> Self {
         let messages = node.reader(&topic(), KEPT);
-        let (told, seen) = watch::channel(None);
-        let listening = FleetListener {
+        let (sender, seen) = watch::channel(None);
+        let listener = FleetListener {
             node: node.clone(),
             side,
             clock,
-            told,
+            sender,
         };
         Self {
             seen,
-            _task: AbortOnDropHandle::new(tokio::spawn(listening.run(messages))),
+            _task: AbortOnDropHandle::new(tokio::spawn(listener.run(messages))),
         }
     }
 
@@ -65,7 +65,7 @@ struct FleetListener {
     node: DdsNode,
     side: Side,
     clock: Clock,
-    told: watch::Sender<Option<FleetCard>>,
+    sender: watch::Sender<Option<FleetCard>>,
 }
 
 impl FleetListener {
@@ -78,14 +78,14 @@ impl FleetListener {
                     let Some(message) = message else { return };
                     let hand = FleetHand::parse(&message.bytes, self.node.address());
                     let hand = hand.filter(|_| !self.node.wrote(&message));
-                    hand.is_some_and(|hand| book.take(message.from, hand, self.clock.now()))
+                    hand.is_some_and(|hand| book.apply(message.from, hand, self.clock.now()))
                 }
                 _ = tick.tick() => book.sweep(self.clock.now()),
             };
             if is_new {
                 let follows = |hand: &FleetHand| hand.card.follows && hand.card.side == self.side;
                 let other = book.list().into_iter().find(follows);
-                self.told.send_replace(other.map(|hand| hand.card));
+                self.sender.send_replace(other.map(|hand| hand.card));
             }
         }
     }

@@ -27,16 +27,16 @@ impl FleetList {
     /// Listens from now on; `wake` is called when the list changed. Must be called within a tokio runtime.
     pub fn open(node: &DdsNode, clock: Clock, wake: Wake) -> Self {
         let messages = node.reader(&topic(), KEPT);
-        let (told, shown) = watch::channel(Vec::new());
+        let (sender, shown) = watch::channel(Vec::new());
         let interface = node.address();
-        let listening = listen(messages, interface, clock, move |list| {
-            told.send_replace(list);
+        let listener = listen(messages, interface, clock, move |list| {
+            sender.send_replace(list);
             wake();
         });
         Self {
             interface,
             shown,
-            _task: AbortOnDropHandle::new(tokio::spawn(listening)),
+            _task: AbortOnDropHandle::new(tokio::spawn(listener)),
         }
     }
 
@@ -72,7 +72,7 @@ async fn listen(
             message = messages.recv() => {
                 let Some(message) = message else { return };
                 if let Some(hand) = FleetHand::parse(&message.bytes, interface) {
-                    is_new |= book.take(message.from, hand, clock.now());
+                    is_new |= book.apply(message.from, hand, clock.now());
                 }
             }
             _ = tick.tick() => {

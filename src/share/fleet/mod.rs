@@ -1,19 +1,19 @@
 //! The fleet: hands that Handscopes share, announced over DDS by the sharing programs and listed by the others. Discovery is
 //! left to DDS; a hand's link has no part in it.
 
+mod announcer;
 mod book;
 mod followers;
 mod list;
 mod notice;
-mod teller;
 #[cfg(test)]
 mod tests;
 
+pub use announcer::{FleetAnnouncer, host};
 pub use book::{FleetBook, HANDS_MAX};
 pub use followers::OtherFollowers;
 pub use list::FleetList;
 pub use notice::{FleetCard, FleetHand, NOTICE_BYTES_MAX, reachable, topic};
-pub use teller::{FleetAnnouncer, host};
 
 use std::time::Duration;
 

@@ -53,8 +53,8 @@ fn a_gateway_is_told_only_to_those_who_reach_it() {
         let wanted: Option<SocketAddr> = told.parse().ok();
         assert_eq!(at, wanted, "{gateway} at {interface}");
         // Nor is it believed of another.
-        let heard = FleetHand::parse(&hand("egg", gateway).message(), interface);
-        assert_eq!(heard.unwrap().card.at, wanted, "{gateway} at {interface}");
+        let parsed = FleetHand::parse(&hand("egg", gateway).message(), interface);
+        assert_eq!(parsed.unwrap().card.at, wanted, "{gateway} at {interface}");
     }
 }
 
@@ -63,17 +63,17 @@ fn a_notice_is_read_as_it_was_written_and_names_stay_on_their_line() {
     let told = hand("egg", "127.0.0.1:6001");
     assert_eq!(FleetHand::parse(&told.message(), LOOPBACK), Some(told));
     let long = "手".repeat(100);
-    let heard = FleetHand::parse(&hand(&long, "").message(), LOOPBACK);
-    assert_eq!(heard.unwrap().card.name.chars().count(), 60);
+    let parsed = FleetHand::parse(&hand(&long, "").message(), LOOPBACK);
+    assert_eq!(parsed.unwrap().card.name.chars().count(), 60);
     let text = |name: &str| {
         let text = format!(
             r#"{{"v":1,"host":"a\nb","name":"{name}","side":"left","at":null,"first_may_move":false,"state":"armed","owner":null,"new":1}}"#
         );
         FleetHand::parse(&cdr::encode(&text), LOOPBACK)
     };
-    let heard = text("x\\u0007\u{202e}y").unwrap();
+    let parsed = text("x\\u0007\u{202e}y").unwrap();
     assert_eq!(
-        (heard.card.host.as_str(), heard.card.name.as_str()),
+        (parsed.card.host.as_str(), parsed.card.name.as_str()),
         ("ab", "xy")
     );
     assert_eq!(text(&"x".repeat(NOTICE_BYTES_MAX)), None);
@@ -96,15 +96,15 @@ fn a_notice_is_read_as_it_was_written_and_names_stay_on_their_line() {
 #[test]
 fn a_hand_is_there_for_as_long_as_it_is_told_of() {
     let mut book = FleetBook::default();
-    assert!(book.take(id(1), hand("b", ""), ms(0)));
-    assert!(!book.take(id(1), hand("b", ""), ms(400)), "nothing new");
-    assert!(book.take(id(2), hand("a", ""), ms(500)));
+    assert!(book.apply(id(1), hand("b", ""), ms(0)));
+    assert!(!book.apply(id(1), hand("b", ""), ms(400)), "nothing new");
+    assert!(book.apply(id(2), hand("a", ""), ms(500)));
     let names = |book: &FleetBook| -> Vec<String> {
         let hands = book.list().into_iter();
         hands.map(|hand| hand.card.name).collect()
     };
     assert_eq!(names(&book), ["a", "b"]);
-    assert!(book.take(id(1), hand("c", ""), ms(800)));
+    assert!(book.apply(id(1), hand("c", ""), ms(800)));
     assert_eq!(names(&book), ["a", "c"]);
     assert!(!book.sweep(ms(1999)));
     assert!(book.sweep(ms(2000)), "1.5 s after it was heard");
@@ -117,10 +117,10 @@ fn a_hand_is_there_for_as_long_as_it_is_told_of() {
 fn no_more_hands_are_kept_than_a_list_has_room_for() {
     let mut book = FleetBook::default();
     for n in 0..1000 {
-        book.take(id(n), hand("x", ""), ms(0));
+        book.apply(id(n), hand("x", ""), ms(0));
     }
     assert_eq!(book.list().len(), HANDS_MAX);
     // Those that are there still change.
-    assert!(book.take(id(3), hand("y", ""), ms(1)));
-    assert!(!book.take(id(999), hand("y", ""), ms(1)));
+    assert!(book.apply(id(3), hand("y", ""), ms(1)));
+    assert!(!book.apply(id(999), hand("y", ""), ms(1)));
 }

@@ -16,7 +16,7 @@ const OVER: Duration = Duration::from_secs(1);
 pub(crate) struct Allowance<S> {
     stream: S,
     since: Instant,
-    said: usize,
+    received: usize,
 }
 
 impl<S> Allowance<S> {
@@ -24,7 +24,7 @@ impl<S> Allowance<S> {
         Self {
             stream,
             since: Instant::now(),
-            said: 0,
+            received: 0,
         }
     }
 }
@@ -39,10 +39,10 @@ impl<S: AsyncRead + Unpin> AsyncRead for Allowance<S> {
         ready!(Pin::new(&mut self.stream).poll_read(context, into))?;
         if self.since.elapsed() >= OVER {
             self.since = Instant::now();
-            self.said = 0;
+            self.received = 0;
         }
-        self.said += into.filled().len() - before;
-        if self.said > SAYS_MAX {
+        self.received += into.filled().len() - before;
+        if self.received > SAYS_MAX {
             return Poll::Ready(Err(io::Error::other("says more than a viewer may")));
         }
         Poll::Ready(Ok(()))

@@ -22,7 +22,7 @@ pub(crate) async fn feed(mut entries: LinkEntries, opening: Opening, outlet: Out
         });
         for entry in lost.into_iter().chain([entry]) {
             // Derived entries depend on all previous ones, so they are computed even without viewers.
-            let derived = overview.take(&entry);
+            let derived = overview.apply(&entry);
             overview.rows.clear();
             overview.marks.clear();
             if !outlet.is_viewed() {

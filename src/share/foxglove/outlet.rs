@@ -27,7 +27,7 @@ pub struct Viewer {
 #[derive(Debug, Clone)]
 pub struct Outlet {
     messages: broadcast::Sender<Arc<EncodedMessage>>,
-    board: Arc<Mutex<ViewerTable>>,
+    table: Arc<Mutex<ViewerTable>>,
 }
 
 /// Identifies a connection of one server; never reused.
@@ -45,7 +45,7 @@ impl Outlet {
     pub(crate) fn new() -> Self {
         Self {
             messages: broadcast::Sender::new(BACKLOG_MAX),
-            board: Arc::default(),
+            table: Arc::default(),
         }
     }
 
@@ -62,16 +62,16 @@ impl Outlet {
 
     /// Connected viewers, the oldest first.
     pub(crate) fn viewers(&self) -> Vec<Viewer> {
-        self.with(|board| board.viewers.iter().map(|(_, viewer)| *viewer).collect())
+        self.with(|table| table.viewers.iter().map(|(_, viewer)| *viewer).collect())
     }
 
     pub(crate) fn turned_away(&self) -> u64 {
-        self.with(|board| board.turned_away)
+        self.with(|table| table.turned_away)
     }
 
     /// Adds a new viewer, unless there are too many.
     pub(crate) fn connect(&self, address: SocketAddr) -> Option<Seat> {
-        let id = self.with(|board| board.connect(address))?;
+        let id = self.with(|table| table.connect(address))?;
         Some(Seat {
             outlet: self.clone(),
             id,
@@ -79,8 +79,8 @@ impl Outlet {
     }
 
     fn with<T>(&self, act: impl FnOnce(&mut ViewerTable) -> T) -> T {
-        // Each call leaves the board consistent, even one that panicked.
-        act(&mut self.board.lock().unwrap_or_else(PoisonError::into_inner))
+        // Each call leaves the table consistent, even one that panicked.
+        act(&mut self.table.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
@@ -118,8 +118,8 @@ impl Seat {
 
     /// Updates the viewer's entry.
     pub(crate) fn note(&self, what: impl FnOnce(&mut Viewer)) {
-        self.outlet.with(|board| {
-            let ours = board.viewers.iter_mut().find(|(id, _)| *id == self.id);
+        self.outlet.with(|table| {
+            let ours = table.viewers.iter_mut().find(|(id, _)| *id == self.id);
             if let Some((_, viewer)) = ours {
                 what(viewer);
             }
@@ -130,6 +130,6 @@ impl Seat {
 impl Drop for Seat {
     fn drop(&mut self) {
         self.outlet
-            .with(|board| board.viewers.retain(|(id, _)| *id != self.id));
+            .with(|table| table.viewers.retain(|(id, _)| *id != self.id));
     }
 }

@@ -117,7 +117,7 @@ fn texts(opening: &Opening) -> [String; 2] {
     });
     let channels: Vec<_> = Topic::all().map(channel).chain([model]).collect();
     let topics = json!({ "op": "advertise", "channels": channels });
-    [info, topics].map(|told| told.to_string())
+    [info, topics].map(|message| message.to_string())
 }
 
 /// Encodes a message for this subscription.

@@ -64,31 +64,31 @@ impl ViewerConnection {
     async fn show(&mut self, stream: TcpStream) -> io::Result<()> {
         let mut socket = timeout(HANDSHAKE_TIMEOUT, shake_hands(stream)).await??;
         for text in &self.greeting.texts {
-            tell(&mut socket, Frame::text(text.as_str())).await?;
+            send(&mut socket, Frame::text(text.as_str())).await?;
         }
         let mut messages = self.seat.messages();
         let mut ping = interval(PING_INTERVAL);
         ping.set_missed_tick_behavior(MissedTickBehavior::Delay);
-        let mut heard = Instant::now();
+        let mut last_received = Instant::now();
         loop {
             tokio::select! {
                 biased;
-                said = socket.next() => {
-                    let Some(said) = said else { return Ok(()) };
-                    let answers = self.answers(&said.map_err(io::Error::other)?);
-                    heard = Instant::now();
+                received = socket.next() => {
+                    let Some(received) = received else { return Ok(()) };
+                    let answers = self.answers(&received.map_err(io::Error::other)?);
+                    last_received = Instant::now();
                     for answer in answers {
-                        tell(&mut socket, answer).await?;
+                        send(&mut socket, answer).await?;
                     }
                 }
                 message = messages.recv() => {
                     timeout(WRITE_TIMEOUT, self.pass_on(&mut socket, message, &mut messages)).await??;
                 }
                 _ = ping.tick() => {
-                    if heard.elapsed() > SILENT_MAX {
+                    if last_received.elapsed() > SILENT_MAX {
                         return Err(io::ErrorKind::TimedOut.into());
                     }
-                    tell(&mut socket, Frame::Ping(Vec::new().into())).await?;
+                    send(&mut socket, Frame::Ping(Vec::new().into())).await?;
                 }
             }
         }
@@ -136,14 +136,14 @@ impl ViewerConnection {
     }
 
     /// Carries out a viewer's request and returns the replies.
-    fn answers(&mut self, said: &Frame) -> Vec<Frame> {
-        let answers = match said {
+    fn answers(&mut self, received: &Frame) -> Vec<Frame> {
+        let answers = match received {
             Frame::Text(text) => match serde_json::from_str(text) {
                 Ok(ViewerRequest::Subscribe { subscriptions }) => {
-                    let told = subscriptions
+                    let replies = subscriptions
                         .into_iter()
                         .map(|wanted| self.subscribe(wanted));
-                    told.flatten().collect()
+                    replies.flatten().collect()
                 }
                 Ok(ViewerRequest::Unsubscribe { subscription_ids }) => {
                     self.subscriptions
@@ -189,9 +189,9 @@ fn error(words: &str) -> Frame {
     Frame::text(protocol::error(words))
 }
 
-async fn tell(socket: &mut Socket, frame: Frame) -> io::Result<()> {
-    let told = timeout(WRITE_TIMEOUT, socket.send(frame)).await?;
-    told.map_err(io::Error::other)
+async fn send(socket: &mut Socket, frame: Frame) -> io::Result<()> {
+    let sent = timeout(WRITE_TIMEOUT, socket.send(frame)).await?;
+    sent.map_err(io::Error::other)
 }
 
 async fn shake_hands(stream: TcpStream) -> io::Result<Socket> {

@@ -5,7 +5,7 @@
 use crate::codec::mbap::{ADU_LEN_MAX, Adu, MbapSplitter};
 use crate::codec::pdu::{self, ModbusRole, Pdu};
 use crate::hand::ModbusException;
-use crate::share::gateway::board::{ClientId, ClientTable};
+use crate::share::gateway::clients::{ClientId, ClientTable};
 use crate::share::gateway::service::Service;
 use futures::future::{BoxFuture, FutureExt as _, OptionFuture};
 use futures::stream::{FuturesUnordered, StreamExt as _};
@@ -39,9 +39,9 @@ pub(crate) struct ClientConnection {
 
 impl ClientConnection {
     pub(crate) fn new(service: Service, id: ClientId) -> Self {
-        let row = |board: &mut ClientTable| board.row(id).map(|row| Arc::clone(&row.granted));
+        let row = |table: &mut ClientTable| table.row(id).map(|row| Arc::clone(&row.granted));
         Self {
-            granted: service.leases.board.with(row).unwrap_or_default(),
+            granted: service.leases.table.with(row).unwrap_or_default(),
             service,
             id,
         }
@@ -69,21 +69,21 @@ impl ClientConnection {
     ) -> io::Result<()> {
         let mut splitter = MbapSplitter::default();
         let mut chunk = [0; ADU_LEN_MAX];
-        let mut heard = Instant::now();
+        let mut last_received = Instant::now();
         let mut begun = None;
         let mut reads = FuturesUnordered::new();
         // Writes run in order, one at a time, independently of the reads.
         let mut writes = VecDeque::new();
         loop {
             while let Some(asked) = splitter.next().map_err(io::Error::other)? {
-                (heard, begun) = (Instant::now(), None);
+                (last_received, begun) = (Instant::now(), None);
                 if !is_read(&asked) {
                     writes.push_back(asked);
                 } else if reads.len() < WAITING_MAX {
                     reads.push(self.answer(asked));
                 } else {
                     let busy = pdu::exception_reply(ModbusException::Busy, asked.function());
-                    tell(&mut stream, &asked.reply(asked.unit, &busy)).await?;
+                    send(&mut stream, &asked.reply(asked.unit, &busy)).await?;
                 }
             }
             if writing.is_none() {
@@ -96,7 +96,7 @@ impl ClientConnection {
             if splitter.buffered() > 0 {
                 begun.get_or_insert_with(Instant::now);
             }
-            let deadline = begun.map_or(heard + IDLE_MAX, |begun| begun + REQUEST_TIMEOUT);
+            let deadline = begun.map_or(last_received + IDLE_MAX, |begun| begun + REQUEST_TIMEOUT);
             tokio::select! {
                 biased;
                 // A grant is handled in place of a write, as a write may acquire control as well.
@@ -106,14 +106,14 @@ impl ClientConnection {
                 }
                 Some(answer) = OptionFuture::from(writing.as_mut()) => {
                     *writing = None;
-                    heard = Instant::now();
+                    last_received = Instant::now();
                     if let Some(answer) = answer {
-                        tell(&mut stream, &answer).await?;
+                        send(&mut stream, &answer).await?;
                     }
                 }
                 Some(answer) = reads.next() => {
-                    heard = Instant::now();
-                    tell(&mut stream, &answer).await?;
+                    last_received = Instant::now();
+                    send(&mut stream, &answer).await?;
                 }
                 read = timeout_at(deadline, stream.read(&mut chunk)) => match read {
                     // There is room: the buffered rest is less than one message.
@@ -128,10 +128,10 @@ impl ClientConnection {
         // The client has finished sending, but may still read. Its motion is stopped first.
         self.service.leases.disconnect(self.id);
         if let Some(Some(answer)) = OptionFuture::from(writing.take()).await {
-            tell(&mut stream, &answer).await?;
+            send(&mut stream, &answer).await?;
         }
         while let Some(answer) = reads.next().await {
-            tell(&mut stream, &answer).await?;
+            send(&mut stream, &answer).await?;
         }
         Ok(())
     }
@@ -141,7 +141,7 @@ impl ClientConnection {
     }
 }
 
-async fn tell(stream: &mut TcpStream, answer: &[u8]) -> io::Result<()> {
+async fn send(stream: &mut TcpStream, answer: &[u8]) -> io::Result<()> {
     timeout(WRITE_TIMEOUT, stream.write_all(answer)).await?
 }
 

@@ -8,7 +8,7 @@ use crate::link::{
 };
 use crate::record::{ArmRefusal, Disarmed, LinkState, Record, WriteCause, WriteFate};
 use crate::share::gateway::allowed;
-use crate::share::gateway::board::{
+use crate::share::gateway::clients::{
     ClientId, ClientLease, ClientTable, Holder, MoverChange, SharedClientTable,
 };
 use crate::share::gateway::refusal::WriteRefusal;
@@ -47,7 +47,7 @@ enum LeaseClaim {
 pub(crate) struct ClientLeases {
     pub(crate) link: LinkHandle,
     pub(crate) reads: RecentReads,
-    pub(crate) board: SharedClientTable,
+    pub(crate) table: SharedClientTable,
     writers: Writers,
     silence: Duration,
 }
@@ -57,7 +57,7 @@ impl ClientLeases {
         Self {
             reads: RecentReads::of(&link),
             link,
-            board: SharedClientTable::default(),
+            table: SharedClientTable::default(),
             writers,
             silence,
         }
@@ -77,40 +77,42 @@ impl ClientLeases {
                 return Ok(self.link.write(command).await?);
             }
             // A client without control may stop the hand while another controller moves it.
-            lease => match self.obey_stop(client, request).await {
+            lease => match self.handle_stop(client, request).await {
                 Some(done) => return done,
-                None if lease == ClientLease::Never => self.take(client, LeaseClaim::Wrote).await?,
+                None if lease == ClientLease::Never => {
+                    self.acquire(client, LeaseClaim::Wrote).await?
+                }
                 None => return Err(WriteRefusal::Over),
             },
         };
         let turn = self
-            .board
-            .with(|board| board.turn(&command, Instant::now()));
+            .table
+            .with(|table| table.turn(&command, Instant::now()));
         sleep_until(turn).await;
         let written = self.link.write_as(lease, command).await;
         let is_taken =
             |error: &RequestError| matches!(error, RequestError::NotOwner(LeaseRefusal::Taken(_)));
         if written.as_ref().is_err_and(|error| !is_taken(error)) {
             // A stop that did not reach the hand stays pending.
-            let _told = self.obey_stop(client, request).await;
+            let _sent = self.handle_stop(client, request).await;
         }
         Ok(written?)
     }
 
     /// Acquires control for this client, to which the user granted it.
     pub(crate) async fn granted(&self, client: ClientId) {
-        if let Err(refusal) = self.take(client, LeaseClaim::Chosen).await {
-            self.board
-                .with(|board| board.row(client).map(|row| row.not_granted(refusal)));
+        if let Err(refusal) = self.acquire(client, LeaseClaim::Chosen).await {
+            self.table
+                .with(|table| table.row(client).map(|row| row.not_granted(refusal)));
         }
     }
 
     /// Ends the lease of a silent client, or one that the link has already ended.
-    pub(crate) fn look_after(&self) {
-        let Some(holder) = self.board.with(|board| board.holder()) else {
+    pub(crate) fn end_stale_lease(&self) {
+        let Some(holder) = self.table.with(|table| table.holder()) else {
             return;
         };
-        let is_silent = self.link.clock().now().since(holder.heard) > self.silence;
+        let is_silent = self.link.clock().now().since(holder.last_request) > self.silence;
         if is_silent || self.link.check(holder.lease).is_err() {
             self.end(holder, Disarmed::Silent);
         }
@@ -119,8 +121,8 @@ impl ClientLeases {
     /// Ends a lease for this reason, which stops the hand, unless it ended earlier for another.
     fn end(&self, holder: Holder, why: Disarmed) {
         let end = self.end_lease(holder, why);
-        self.board
-            .with(|board| board.mover(holder.client, MoverChange::Ended(end)));
+        self.table
+            .with(|table| table.mover(holder.client, MoverChange::Ended(end)));
     }
 
     fn end_lease(&self, holder: Holder, why: Disarmed) -> LeaseRefusal {
@@ -134,34 +136,34 @@ impl ClientLeases {
 
     /// Removes a client and ends its lease.
     pub(crate) fn disconnect(&self, client: ClientId) {
-        let holder = self.board.with(|board| board.holder());
+        let holder = self.table.with(|table| table.holder());
         if let Some(holder) = holder.filter(|holder| holder.client == client) {
             let change = match self.end_lease(holder, Disarmed::Released) {
                 LeaseRefusal::Ended(Disarmed::Released) => MoverChange::Left,
                 other => MoverChange::Ended(other),
             };
-            self.board.with(|board| board.mover(client, change));
+            self.table.with(|table| table.mover(client, change));
         }
-        self.board.with(|board| board.disconnect(client));
+        self.table.with(|table| table.disconnect(client));
     }
 
     /// Ends the current lease; called when the gateway closes.
     pub(crate) fn close(&self) {
-        if let Some(holder) = self.board.with(|board| board.holder()) {
+        if let Some(holder) = self.table.with(|table| table.holder()) {
             self.end(holder, Disarmed::Released);
         }
     }
 
     fn lease(&self, client: ClientId) -> ClientLease {
         let lease = self
-            .board
-            .with(|board| board.row(client).map(|row| *row.lease()));
+            .table
+            .with(|table| table.row(client).map(|row| *row.lease()));
         lease.unwrap_or(ClientLease::Never)
     }
 
     fn mark(&self, client: ClientId, lease: ClientLease) {
-        self.board.with(|board| {
-            if let Some(row) = board.row(client) {
+        self.table.with(|table| {
+            if let Some(row) = table.row(client) {
                 *row.lease() = lease;
             }
         });
@@ -174,7 +176,7 @@ impl ClientLeases {
 
     /// Stops the hand if a request is a stop, even one that is invalid as a write; `None` if it is no stop. Without a live
     /// hand the stop stays pending, and the client gets an error.
-    pub(crate) async fn obey_stop(
+    pub(crate) async fn handle_stop(
         &self,
         client: ClientId,
         request: &[u8],
@@ -225,10 +227,10 @@ impl ClientLeases {
     /// and none moves elsewhere. Returns true if so.
     async fn stops(&self, client: ClientId, targets: &PerDof<i16>) -> bool {
         let now = Instant::now();
-        let stopped = |board: &mut ClientTable| board.row(client).and_then(|row| row.stopped);
-        let stopped = self.board.with(stopped);
+        let stopped = |table: &mut ClientTable| table.row(client).and_then(|row| row.stopped);
+        let stopped = self.table.with(stopped);
         let status = self.link.status();
-        let may_stop = status.goes_on()
+        let may_stop = status.may_continue()
             || status.state == LinkState::Holding
             || stopped.is_some_and(|at| now.duration_since(at) < STOP_REPEATS);
         let is_own = match self.lease(client) {
@@ -243,11 +245,11 @@ impl ClientLeases {
         }
         let stops = self.pose().await.is_some_and(|pose| stays(targets, &pose));
         if stops {
-            if self.link.status().goes_on() {
+            if self.link.status().may_continue() {
                 self.link.stop();
             }
-            self.board
-                .with(|board| board.row(client).map(|row| row.stopped = Some(now)));
+            self.table
+                .with(|table| table.row(client).map(|row| row.stopped = Some(now)));
         }
         stops
     }
@@ -268,14 +270,14 @@ impl ClientLeases {
         )
     }
 
-    async fn take(&self, client: ClientId, claim: LeaseClaim) -> Result<Lease, WriteRefusal> {
+    async fn acquire(&self, client: ClientId, claim: LeaseClaim) -> Result<Lease, WriteRefusal> {
         if claim == LeaseClaim::Wrote && self.writers != Writers::First {
             return Err(WriteRefusal::NotGranted);
         }
-        let begun = self.board.with(|board| board.begin_taking(client));
+        let begun = self.table.with(|table| table.begin_taking(client));
         let owner = Owner::Gateway(begun.ok_or(WriteRefusal::Taken)?);
         let taken = self.arm(client, owner, claim).await;
-        self.board.with(|board| board.end_taking());
+        self.table.with(|table| table.end_taking());
         taken
     }
 
@@ -302,11 +304,11 @@ impl ClientLeases {
             return Err(WriteRefusal::Taken);
         }
         // The client that had control loses it.
-        if let Some(before) = self.board.with(|board| board.holder()) {
+        if let Some(before) = self.table.with(|table| table.holder()) {
             let taken = LeaseRefusal::Taken(owner);
             self.mark(before.client, ClientLease::Ended(taken));
-            self.board
-                .with(|board| board.mover(before.client, MoverChange::Ended(taken)));
+            self.table
+                .with(|table| table.mover(before.client, MoverChange::Ended(taken)));
         }
         let lease = self.link.grant(owner);
         self.mark(client, ClientLease::Held(lease));
@@ -322,8 +324,8 @@ impl ClientLeases {
             self.mark(client, ClientLease::Never);
             return Err(WriteRefusal::NotArmed(reason));
         }
-        self.board
-            .with(|board| board.mover(client, MoverChange::Began));
+        self.table
+            .with(|table| table.mover(client, MoverChange::Began));
         Ok(lease)
     }
 

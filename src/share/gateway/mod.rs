@@ -2,19 +2,19 @@
 //! regular readings, so that many clients cost the same as one; one client at a time can get control of the hand, if the user allows it.
 
 mod allowed;
-pub mod board;
 pub mod client;
+pub mod clients;
 pub mod leases;
 pub mod refusal;
 mod service;
 
-pub use board::{CLIENTS_MAX, ClientId, ClientLease, GatewayClient, MoverChange, MoverEvent};
+pub use clients::{CLIENTS_MAX, ClientId, ClientLease, GatewayClient, MoverChange, MoverEvent};
 pub use leases::Writers;
 pub use refusal::WriteRefusal;
 
 use crate::link::LinkHandle;
-use crate::share::gateway::board::ClientTable;
 use crate::share::gateway::client::ClientConnection;
+use crate::share::gateway::clients::ClientTable;
 use crate::share::gateway::leases::ClientLeases;
 use crate::share::gateway::service::Service;
 use std::io;
@@ -84,24 +84,26 @@ impl Gateway {
     /// Connected clients, the oldest first.
     pub fn clients(&self) -> Vec<GatewayClient> {
         let now = self.leases.link.clock().now();
-        self.leases.board.with(|board| board.shown(now))
+        self.leases.table.with(|table| table.shown(now))
     }
 
     /// Control changes since the last call, each one, in order.
     pub fn movers(&self) -> Vec<MoverEvent> {
-        self.leases.board.with(ClientTable::take_events)
+        self.leases.table.with(ClientTable::take_events)
     }
 
     /// Number of connections refused because there were [`CLIENTS_MAX`].
     pub fn turned_away(&self) -> u64 {
-        self.leases.board.with(|board| board.turned_away)
+        self.leases.table.with(|table| table.turned_away)
     }
 
     /// Grants this client control of the hand: the present holder loses it, and the hand is armed with its present speeds and
     /// forces. Call only at the user's request. The result is the client's [`GatewayClient::lease`], or its refusal.
     pub fn grant(&self, client: ClientId) {
-        let tell = |row: &mut board::Client| row.granted.notify_one();
-        self.leases.board.with(|board| board.row(client).map(tell));
+        let notify = |row: &mut clients::Client| row.granted.notify_one();
+        self.leases
+            .table
+            .with(|table| table.row(client).map(notify));
     }
 }
 
@@ -120,10 +122,10 @@ async fn serve(listener: TcpListener, leases: ClientLeases) {
         tokio::select! {
             biased;
             changed = status.changed() => match changed {
-                Ok(()) => leases.look_after(),
+                Ok(()) => leases.end_stale_lease(),
                 Err(_gone) => return,
             },
-            _ = tick.tick() => leases.look_after(),
+            _ = tick.tick() => leases.end_stale_lease(),
             Some(_ended) = clients.join_next() => {}
             accepted = listener.accept() => match accepted {
                 Ok((stream, address)) => begin(&mut clients, &leases, stream, address),
@@ -136,7 +138,7 @@ async fn serve(listener: TcpListener, leases: ClientLeases) {
 /// Serves a new client, or refuses it.
 fn begin(clients: &mut JoinSet<()>, leases: &ClientLeases, stream: TcpStream, address: SocketAddr) {
     let now = leases.link.clock().now();
-    let Some(id) = leases.board.with(|board| board.connect(address, now)) else {
+    let Some(id) = leases.table.with(|table| table.connect(address, now)) else {
         return;
     };
     let service = Service {

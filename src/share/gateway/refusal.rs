@@ -91,20 +91,20 @@ mod tests {
 
     #[test]
     fn a_hands_own_exception_reaches_the_client_with_its_code() {
-        let told = |reason| {
+        let answer = |reason| {
             let address = 1000;
             exception_reply(exception(&RequestError::Refused { address, reason }), 3)
         };
         for code in [1, 2, 3, 4, 5, 6, 8, 10, 11, 7, 0xC8] {
             let own = Refusal::Exception(ModbusException::of(code));
-            assert_eq!(told(own), [0x83, code]);
+            assert_eq!(answer(own), [0x83, code]);
         }
         for rule in [
             Refusal::PackingUnknown,
             Refusal::PackingUnsafe,
             Refusal::NotIdentified,
         ] {
-            assert_eq!(told(rule), [0x83, 4], "{rule}");
+            assert_eq!(answer(rule), [0x83, 4], "{rule}");
         }
     }
 }

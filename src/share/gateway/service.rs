@@ -5,7 +5,7 @@ use crate::codec::modbus::READ_WORDS_MAX;
 use crate::codec::pdu::{self, ModbusRole, Pdu};
 use crate::hand::{HandCommand, ModbusException, Span};
 use crate::share::gateway::allowed;
-use crate::share::gateway::board::{Client, ClientId};
+use crate::share::gateway::clients::{Client, ClientId};
 use crate::share::gateway::leases::ClientLeases;
 use crate::share::gateway::refusal::{WriteRefusal, exception};
 
@@ -24,17 +24,17 @@ impl Service {
     /// Returns the whole message that answers a request. Any unit id is answered: there is one hand.
     pub(crate) async fn answer(&self, client: ClientId, asked: &Adu) -> Vec<u8> {
         let now = self.leases.link.clock().now();
-        self.note(client, |row| row.asked(now));
+        self.note(client, |row| row.count_request(now));
         let function = asked.function();
-        let said = match self.obey(client, asked.pdu()).await {
-            Ok(said) => [&[function], said.as_slice()].concat(),
+        let answer = match self.handle(client, asked.pdu()).await {
+            Ok(answer) => [&[function], answer.as_slice()].concat(),
             Err(exception) => pdu::exception_reply(exception, function).to_vec(),
         };
-        asked.reply(asked.unit, &said)
+        asked.reply(asked.unit, &answer)
     }
 
     /// Returns the answer without its function code.
-    async fn obey(&self, client: ClientId, request: &[u8]) -> Result<Vec<u8>, ModbusException> {
+    async fn handle(&self, client: ClientId, request: &[u8]) -> Result<Vec<u8>, ModbusException> {
         match pdu::parse(ModbusRole::Client, request) {
             Pdu::Read { address, count } => {
                 let words = self.read(address, count).await?;
@@ -55,7 +55,7 @@ impl Service {
                 self.write(client, request, command).await?;
                 Ok([address, count].map(u16::to_be_bytes).concat())
             }
-            _ => match self.leases.obey_stop(client, request).await {
+            _ => match self.leases.handle_stop(client, request).await {
                 // A stop counts even if its length is wrong.
                 Some(Ok(())) => Ok(request.get(1..5).unwrap_or_default().to_vec()),
                 Some(Err(refusal)) => Err(refusal.exception()),
@@ -92,22 +92,22 @@ impl Service {
     ) -> Result<(), ModbusException> {
         let written = match command {
             Ok(command) => self.leases.write(client, command, request).await,
-            Err(odd) => match self.leases.obey_stop(client, request).await {
+            Err(odd) => match self.leases.handle_stop(client, request).await {
                 Some(Ok(())) => {
-                    self.note(client, |row| row.obeyed_odd(odd));
+                    self.note(client, |row| row.note_odd_stop(odd));
                     return Ok(());
                 }
                 Some(Err(lost)) => Err(lost),
                 None => Err(odd),
             },
         };
-        let told = written.as_ref().map_err(WriteRefusal::exception).copied();
+        let result = written.as_ref().map_err(WriteRefusal::exception).copied();
         self.note(client, |row| row.wrote(written));
-        told
+        result
     }
 
     fn note(&self, client: ClientId, what: impl FnOnce(&mut Client)) {
-        self.leases.board.with(|board| board.row(client).map(what));
+        self.leases.table.with(|table| table.row(client).map(what));
     }
 }
 

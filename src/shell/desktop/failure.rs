@@ -158,10 +158,10 @@ mod tests {
                 "apt install libxkbcommon0'",
             ),
         ] {
-            let told = DesktopError::of(words).to_string();
-            assert!(told.contains(library) && told.contains(apt), "{told}");
-            assert!(told.contains("dnf") && told.contains("pacman"), "{told}");
-            assert!(told.contains("snapshot") && !told.contains('\n'), "{told}");
+            let text = DesktopError::of(words).to_string();
+            assert!(text.contains(library) && text.contains(apt), "{text}");
+            assert!(text.contains("dnf") && text.contains("pacman"), "{text}");
+            assert!(text.contains("snapshot") && !text.contains('\n'), "{text}");
         }
     }
 
@@ -174,9 +174,9 @@ mod tests {
             DesktopError::NoSurface { cause: cause() },
             DesktopError::Refused { cause: cause() },
         ] {
-            let told = error.to_string();
-            assert!(told.contains("(it failed)"), "{told}");
-            assert!(told.contains("handscope "), "{told}");
+            let text = error.to_string();
+            assert!(text.contains("(it failed)"), "{text}");
+            assert!(text.contains("handscope "), "{text}");
         }
     }
 }

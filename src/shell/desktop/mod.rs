@@ -2,7 +2,6 @@
 
 pub(crate) mod card;
 pub(crate) mod dialog;
-pub(crate) mod ending;
 pub(crate) mod failure;
 pub(crate) mod file_manager;
 pub(crate) mod gl;
@@ -11,6 +10,7 @@ pub(crate) mod libraries;
 pub(crate) mod options;
 pub(crate) mod program;
 pub(crate) mod screen;
+pub(crate) mod shutdown;
 pub(crate) mod software;
 pub(crate) mod start;
 

@@ -12,10 +12,10 @@ use crate::hand::Moment;
 use crate::inputs::pad::device::system_pads;
 use crate::link::{Clock, guard};
 use crate::shell::desktop::dialog::NativeDialog;
-use crate::shell::desktop::ending::{END_TIMEOUT, ShutdownState};
 use crate::shell::desktop::file_manager;
 use crate::shell::desktop::icon::icon;
 use crate::shell::desktop::options::{DesktopStart, Renderer};
+use crate::shell::desktop::shutdown::{END_TIMEOUT, ShutdownState};
 use crate::shell::{DesktopApp, REST_FRAME_INTERVAL, SOFTWARE_REST_FRAME_INTERVAL};
 use egui::{Vec2, ViewportBuilder, ViewportCommand, ViewportInfo, WindowLevel};
 use mundy::{Interest, Preferences, Subscription};
@@ -348,7 +348,7 @@ impl DesktopProgram {
 #[derive(Debug, Default)]
 struct Filling {
     /// Time of the last request.
-    told: Option<Moment>,
+    requested: Option<Moment>,
     /// True if there is no window manager to obey the request: size and position are set directly.
     by_hand: bool,
 }
@@ -356,23 +356,23 @@ struct Filling {
 impl Filling {
     /// True if a request is due: at first, and later whenever the window is not as large as its screen.
     fn is_due(&mut self, view: &ViewportInfo, now: Moment) -> bool {
-        let waits = |told| now.since(told) < FILL_INTERVAL;
-        if self.told.is_some_and(waits) {
+        let waits = |requested| now.since(requested) < FILL_INTERVAL;
+        if self.requested.is_some_and(waits) {
             return false;
         }
         let sizes = view.monitor_size.zip(view.inner_rect);
         let differs =
             |(screen, inner): (Vec2, egui::Rect)| (screen - inner.size()).abs().max_elem() > 1.0;
         let is_other = sizes.is_some_and(differs);
-        let was_told = self.told.is_some();
-        self.by_hand |= was_told && is_other && view.fullscreen == Some(true);
+        let was_requested = self.requested.is_some();
+        self.by_hand |= was_requested && is_other && view.fullscreen == Some(true);
         let is_moved = view
             .inner_rect
             .is_some_and(|inner| inner.min != egui::Pos2::ZERO);
         let is_hidden = view.fullscreen == Some(false) || view.minimized == Some(true);
-        let is_due = !was_told || is_other || is_hidden || self.by_hand && is_moved;
+        let is_due = !was_requested || is_other || is_hidden || self.by_hand && is_moved;
         if is_due {
-            self.told = Some(now);
+            self.requested = Some(now);
         }
         is_due
     }

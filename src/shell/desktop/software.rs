@@ -77,7 +77,7 @@ struct OpenWindow {
 }
 
 impl Software {
-    fn stand(&self, events: &ActiveEventLoop) -> Result<OpenWindow, DesktopError> {
+    fn create_window(&self, events: &ActiveEventLoop) -> Result<OpenWindow, DesktopError> {
         // A screen reader must know the window before it is shown.
         let hidden = viewport(&self.beginning.layout()).with_visible(false);
         let window = create_window(&self.ctx, events, &hidden)
@@ -133,7 +133,7 @@ impl Software {
 impl ApplicationHandler<LoopEvent> for Software {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         if self.open.is_none() {
-            match self.stand(events) {
+            match self.create_window(events) {
                 Ok(open) => self.open = Some(open),
                 Err(error) => self.follow(events, Err(error)),
             }
@@ -247,7 +247,7 @@ impl OpenWindow {
         if let Some(at) = Instant::now().checked_add(root.repaint_delay) {
             self.draw_by(at);
         }
-        Ok(self.obey(ctx, root.commands, closing))
+        Ok(self.apply_commands(ctx, root.commands, closing))
     }
 
     /// Runs a step while the window is invisible: drains the link and follows a stop, but draws nothing.
@@ -260,10 +260,15 @@ impl OpenWindow {
         self.pending = input;
         self.draw_by(Instant::now() + REPAINT_AT_LEAST);
         let commands = output.viewport_commands.remove(&ViewportId::ROOT);
-        Ok(self.obey(ctx, commands.unwrap_or_default(), closing))
+        Ok(self.apply_commands(ctx, commands.unwrap_or_default(), closing))
     }
 
-    fn obey(&mut self, ctx: &Context, commands: Vec<ViewportCommand>, closing: bool) -> Stays {
+    fn apply_commands(
+        &mut self,
+        ctx: &Context,
+        commands: Vec<ViewportCommand>,
+        closing: bool,
+    ) -> Stays {
         if closing && !commands.contains(&ViewportCommand::CancelClose) {
             return Stays::Closes;
         }

@@ -1,11 +1,11 @@
 //! Chooses one of the two windows, and starts the thread for all links. Opens no window itself.
 
 use crate::link::Clock;
-use crate::shell::desktop::ending::{ShutdownState, on_signals};
 use crate::shell::desktop::failure::{DesktopError, panic_words};
 use crate::shell::desktop::gl::run as run_opengl;
 use crate::shell::desktop::options::{DesktopStart, Renderer};
 use crate::shell::desktop::program::{Beginning, Services};
+use crate::shell::desktop::shutdown::{ShutdownState, on_signals};
 use crate::shell::desktop::software::run as run_software;
 use std::panic::AssertUnwindSafe;
 use std::rc::Rc;

@@ -54,7 +54,7 @@ const HARD: [(Dof, i32); 3] = [
 
 impl SceneCard {
     /// True if the card writes to a hand, or might: only the built-in hand may be written to.
-    pub const fn wants_built_in(self) -> bool {
+    pub const fn needs_built_in(self) -> bool {
         matches!(self, Self::Keep | Self::Danger | Self::Exhibit)
     }
 

@@ -67,9 +67,9 @@ pub fn parse(text: &str) -> Result<BodyParams, FileError> {
     let source = FileText::plain(text);
     let row: BodyRow = source.parse()?;
     let mut body = BodyParams::default();
-    take(source, &row.supply, SupplyBody::KEYS, &mut body.supply)?;
+    store_numbers(source, &row.supply, SupplyBody::KEYS, &mut body.supply)?;
     for (dof, numbers) in &row.joint {
-        take(source, numbers, JointBody::KEYS, &mut body.joints[*dof])?;
+        store_numbers(source, numbers, JointBody::KEYS, &mut body.joints[*dof])?;
     }
     for (finger, tip) in &row.fingertip {
         body.fingertips[*finger] = fingertip(source, tip)?;
@@ -78,7 +78,7 @@ pub fn parse(text: &str) -> Result<BodyParams, FileError> {
 }
 
 /// Stores the numbers in their fields.
-fn take<T>(
+fn store_numbers<T>(
     source: FileText<'_>,
     numbers: &NumberTable,
     keys: &[BodyKey<T>],

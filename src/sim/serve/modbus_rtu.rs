@@ -57,7 +57,7 @@ impl<W: Wire> RtuServer<W> {
                 biased;
                 read = self.wire.read(&mut chunk) => match read? {
                     0 => return Ok(()),
-                    len => self.take(chunk.get(..len).unwrap_or_default()).await?,
+                    len => self.receive(chunk.get(..len).unwrap_or_default()).await?,
                 },
                 () = sleep(silence), if self.is_noisy || !self.held.is_empty() => {
                     self.held.clear();
@@ -67,7 +67,7 @@ impl<W: Wire> RtuServer<W> {
         }
     }
 
-    async fn take(&mut self, mut bytes: &[u8]) -> io::Result<()> {
+    async fn receive(&mut self, mut bytes: &[u8]) -> io::Result<()> {
         while !bytes.is_empty() && !self.is_noisy {
             let (now, later) = bytes.split_at(bytes.len().min(self.held.remaining_capacity()));
             self.held.extend(now.iter().copied());

@@ -55,7 +55,7 @@ impl<W: Wire> Rs485Server<W> {
                 }
                 read = self.wire.read(&mut chunk) => match read? {
                     0 => return Ok(()),
-                    len => self.take(chunk.get(..len).unwrap_or_default()).await?,
+                    len => self.receive(chunk.get(..len).unwrap_or_default()).await?,
                 },
                 () = sleep(SILENCE), if self.decoder.buffered() > 0 => {
                     self.decoder.flush_pending();
@@ -65,7 +65,7 @@ impl<W: Wire> Rs485Server<W> {
         }
     }
 
-    async fn take(&mut self, mut bytes: &[u8]) -> io::Result<()> {
+    async fn receive(&mut self, mut bytes: &[u8]) -> io::Result<()> {
         while !bytes.is_empty() {
             let taken = self.decoder.push(bytes);
             bytes = bytes.get(taken..).unwrap_or_default();

@@ -61,15 +61,15 @@ impl<W: Wire> SlcanServer<W> {
             for byte in chunk.iter().take(got) {
                 match decoder.push(*byte) {
                     None => {}
-                    Some(Ok(command)) => self.obey(command).await?,
-                    Some(Err(_unreadable)) => self.say(&SlcanAnswer::Failed).await?,
+                    Some(Ok(command)) => self.execute(command).await?,
+                    Some(Err(_unreadable)) => self.reply(&SlcanAnswer::Failed).await?,
                 }
             }
             self.wire.flush().await?;
         }
     }
 
-    async fn obey(&mut self, command: SlcanCommand) -> io::Result<()> {
+    async fn execute(&mut self, command: SlcanCommand) -> io::Result<()> {
         let allowed = match &command {
             SlcanCommand::Open
             | SlcanCommand::Listen
@@ -80,7 +80,7 @@ impl<W: Wire> SlcanServer<W> {
             SlcanCommand::Other(_) => true,
         };
         if !allowed {
-            return self.say(&SlcanAnswer::Failed).await;
+            return self.reply(&SlcanAnswer::Failed).await;
         }
         match command {
             SlcanCommand::Open => self.mode = Mode::Open,
@@ -95,14 +95,14 @@ impl<W: Wire> SlcanServer<W> {
             SlcanCommand::Other(b'F') => return self.wire.write_all(FLAGS).await,
             SlcanCommand::Other(_) => {}
             // Hands do not know such frames (manual 2.3): they are sent and remain unanswered.
-            SlcanCommand::SendOther(b'R') => return self.say(&SlcanAnswer::Sent).await,
+            SlcanCommand::SendOther(b'R') => return self.reply(&SlcanAnswer::Sent).await,
             SlcanCommand::SendOther(_) => return self.wire.write_all(SENT_SHORT).await,
             SlcanCommand::Send(frame) => {
-                self.say(&SlcanAnswer::Sent).await?;
+                self.reply(&SlcanAnswer::Sent).await?;
                 return self.put_on_the_bus(&frame).await;
             }
         }
-        self.say(&SlcanAnswer::Done).await
+        self.reply(&SlcanAnswer::Done).await
     }
 
     async fn put_on_the_bus(&mut self, frame: &CanFrame) -> io::Result<()> {
@@ -112,13 +112,13 @@ impl<W: Wire> SlcanServer<W> {
         let hands = self.hands.clone();
         for hand in hands.iter() {
             for reply in can::answer(hand, frame).await {
-                self.say(&SlcanAnswer::Frame(reply)).await?;
+                self.reply(&SlcanAnswer::Frame(reply)).await?;
             }
         }
         Ok(())
     }
 
-    async fn say(&mut self, answer: &SlcanAnswer) -> io::Result<()> {
+    async fn reply(&mut self, answer: &SlcanAnswer) -> io::Result<()> {
         match encode_answer(answer) {
             Some(line) => self.wire.write_all(&line).await,
             None => Ok(()),

@@ -57,7 +57,7 @@ struct Participant {
     announcements: SocketAddrV4,
     messages: Option<SocketAddrV4>,
     expires_after: Duration,
-    heard: Instant,
+    last_seen: Instant,
     inquire_at: Instant,
     publications: Received,
     subscriptions: Received,
@@ -252,7 +252,8 @@ impl Core {
             self.announce_at = now + each;
             self.announce(&self.places.everyone.clone());
         }
-        let expired = |other: &&Participant| now.duration_since(other.heard) > other.expires_after;
+        let expired =
+            |other: &&Participant| now.duration_since(other.last_seen) > other.expires_after;
         let all = self.participants.iter();
         let expired: Vec<Prefix> = all
             .filter(|(_, other)| expired(other))
@@ -265,7 +266,7 @@ impl Core {
         let announcing = [&mut self.publications, &mut self.subscriptions];
         let writers = self.writers.values_mut().map(|local| &mut local.writer);
         for writer in announcing.into_iter().chain(writers) {
-            self.outgoing.extend(writer.ask(own, now));
+            self.outgoing.extend(writer.query_readers(own, now));
         }
         for (prefix, other) in &mut self.participants {
             if now >= other.inquire_at {
@@ -314,7 +315,7 @@ impl Core {
             return;
         }
         if let Some(other) = self.participants.get_mut(&from) {
-            other.heard = now;
+            other.last_seen = now;
         }
         let mut is_ours = true;
         for submessage in message {
@@ -422,7 +423,7 @@ impl Core {
             announcements: place,
             messages,
             expires_after: announced.lease.clamp(LEASE_MIN, LEASE_MAX),
-            heard: now,
+            last_seen: now,
             inquire_at: now + INQUIRY_INTERVAL,
             publications: unknown(HAS_PUBLICATIONS_WRITER),
             subscriptions: unknown(HAS_SUBSCRIPTIONS_WRITER),
@@ -446,7 +447,7 @@ impl Core {
             if has(bit) {
                 let prefix = from;
                 writer.add_reader((Guid { prefix, entity }, place), (true, true), now);
-                self.outgoing.extend(writer.ask(self.prefix, now));
+                self.outgoing.extend(writer.query_readers(self.prefix, now));
             }
         }
     }
@@ -568,19 +569,22 @@ impl Core {
     }
 
     #[cfg(test)]
-    pub(super) fn kept(&self) -> usize {
+    pub(super) fn stored(&self) -> usize {
         let others = self.participants.values().map(|other| {
-            let received = other.publications.kept() + other.subscriptions.kept();
+            let received = other.publications.stored() + other.subscriptions.stored();
             other.writers.len() + other.readers.len() + received + 1
         });
-        let writers = self.writers.values().map(|local| local.writer.kept());
+        let writers = self.writers.values().map(|local| local.writer.stored());
         let readers = self.readers.values().map(|reader| {
-            let received = reader.sources.values().map(|received| 1 + received.kept());
+            let received = reader
+                .sources
+                .values()
+                .map(|received| 1 + received.stored());
             received.sum::<usize>()
         });
-        let own = self.publications.kept() + self.subscriptions.kept();
+        let own = self.publications.stored() + self.subscriptions.stored();
         let all = others.sum::<usize>() + writers.sum::<usize>() + readers.sum::<usize>();
-        own + all + self.assemblies.kept() / 1024 + self.outgoing.len()
+        own + all + self.assemblies.stored() / 1024 + self.outgoing.len()
     }
 
     #[cfg(test)]

@@ -113,7 +113,7 @@ impl Received {
     }
 
     #[cfg(test)]
-    pub(super) fn kept(&self) -> usize {
+    pub(super) fn stored(&self) -> usize {
         self.ahead.len()
     }
 }
@@ -174,7 +174,7 @@ impl Assemblies {
     }
 
     #[cfg(test)]
-    pub(super) fn kept(&self) -> usize {
+    pub(super) fn stored(&self) -> usize {
         self.0.iter().map(|whole| whole.bytes.len()).sum()
     }
 }

@@ -143,7 +143,7 @@ impl Writer {
     }
 
     /// Queries the readers that may miss messages.
-    pub(super) fn ask(&mut self, own: Prefix, now: Instant) -> Vec<Outgoing> {
+    pub(super) fn query_readers(&mut self, own: Prefix, now: Instant) -> Vec<Outgoing> {
         let waiting = self.readers.iter().filter(|(_, proxy)| {
             proxy.is_reliable && proxy.acknowledged < self.last && proxy.ask_at <= now
         });
@@ -210,7 +210,7 @@ impl Writer {
         // A reader that never received a heartbeat sends an empty request.
         if missing.numbers.is_empty() && missing.base <= last {
             proxy.ask_at = now;
-            return self.ask(own, now);
+            return self.query_readers(own, now);
         }
         let (mut outgoing, mut absent) = (Vec::new(), Vec::new());
         for number in missing.numbers.iter().filter(|number| **number <= last) {
@@ -240,7 +240,7 @@ impl Writer {
     }
 
     #[cfg(test)]
-    pub(super) fn kept(&self) -> usize {
+    pub(super) fn stored(&self) -> usize {
         self.changes.len() + self.readers.len()
     }
 }

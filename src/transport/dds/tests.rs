@@ -210,7 +210,7 @@ fn receive(own: &mut Peer, packet: &[u8], now: Instant, what: impl Fn() -> Strin
 
 /// It still meets a new one, and hears it.
 fn is_well(own: Peer, mut now: Instant, what: &str) {
-    let kept = own.core.kept();
+    let kept = own.core.stored();
     assert!(kept < KEPT_MAX, "{what}: {kept} things are kept");
     let topic = topic("y", "t::T");
     let mut peers = [own, peer(3, now)];
@@ -262,7 +262,7 @@ fn a_field_of_a_real_packet_that_says_anything_takes_no_memory() {
                 receive(&mut own, &changed, now, what);
             }
         }
-        let kept = own.core.kept();
+        let kept = own.core.stored();
         assert!(kept < KEPT_MAX, "packet {number}: {kept} things are kept");
     }
     is_well(own, now, "fields were changed");
@@ -372,7 +372,7 @@ fn what_is_missing_is_asked_for_until_it_came_or_will_not() {
                 numbers,
             },
         );
-        assert!(received.kept() <= 256);
+        assert!(received.stored() <= 256);
     }
 }
 
@@ -408,7 +408,7 @@ fn a_long_message_is_put_together_and_no_longer_one() {
             assert_eq!(assemblies.push(key, &part), None);
         }
     }
-    assert!(assemblies.kept() <= 8 * ASSEMBLED_MAX);
+    assert!(assemblies.stored() <= 8 * ASSEMBLED_MAX);
 }
 
 #[test]

@@ -77,7 +77,7 @@ impl Exact {
 
     fn make() -> Self {
         use nix::sys::timerfd::{ClockId, TimerFd, TimerFlags};
-        if stands_still() {
+        if is_clock_paused() {
             return Self::Absent;
         }
         let flags = TimerFlags::TFD_NONBLOCK | TimerFlags::TFD_CLOEXEC;
@@ -95,7 +95,7 @@ impl Exact {
 
 /// True if the runtime's clock does not advance by itself, as in tests that pause it.
 #[cfg(target_os = "linux")]
-fn stands_still() -> bool {
+fn is_clock_paused() -> bool {
     let (real, runtime) = (std::time::Instant::now(), Instant::now());
     while real.elapsed().as_micros() < 1 {
         std::hint::spin_loop();

@@ -32,7 +32,7 @@ pub fn slips(curves: &JointCurves, from: f64, to: f64) -> Option<Vec<SlipEvent>>
     let mut detector = SlipDetector::new(&GripThresholds::default());
     for now in held {
         let before = detector.last().unwrap_or(f64::NEG_INFINITY);
-        let Some((first, second)) = detector.take(now) else {
+        let Some((first, second)) = detector.push(now) else {
             continue;
         };
         match found.last_mut().filter(|_| first.t - before < APART_S) {

@@ -1,6 +1,6 @@
 //! Parts of the hand to draw: joint positions and targets, load on the fingertips, the object held.
 
-use crate::draw::figure::light::{Coat, Part};
+use crate::draw::figure::light::{Coat, PlacedSolid};
 use crate::draw::figure::shape::{self, Held};
 use crate::hand::kinematics::{Segment, SegmentFrames, Side};
 use crate::hand::{Dof, Finger, PerDof, PerFinger};
@@ -109,11 +109,11 @@ impl HandPicture {
         &self,
         palette: &Palette,
         is_small: bool,
-    ) -> (SegmentFrames, ArrayVec<Part<'static>, 32>) {
+    ) -> (SegmentFrames, ArrayVec<PlacedSolid<'static>, 32>) {
         let pose = self.pose();
         let mut parts = ArrayVec::new();
         let part = |segment| {
-            Some(Part {
+            Some(PlacedSolid {
                 solid: shape::solid(segment, is_small)?,
                 segment: Some(segment),
                 frame: pose.frame(segment),
@@ -130,7 +130,7 @@ impl HandPicture {
         });
         let ghost = |segment: Segment| {
             let color = segment.dof().map_or(palette.accent, |dof| palette.dof[dof]);
-            Some(Part {
+            Some(PlacedSolid {
                 solid: shape::solid(segment, true)?,
                 segment: None,
                 frame: wanted.frame(segment),
@@ -142,7 +142,7 @@ impl HandPicture {
             .into_iter()
             .filter(|finger| self.is_known(*finger));
         parts.extend(known.filter_map(|finger| self.arrow(&pose, finger, palette)));
-        parts.extend(self.held.map(|held| Part {
+        parts.extend(self.held.map(|held| PlacedSolid {
             solid: shape::held(held),
             segment: None,
             frame: self.side.frame(),
@@ -198,7 +198,7 @@ impl HandPicture {
         pose: &SegmentFrames,
         finger: Finger,
         palette: &Palette,
-    ) -> Option<Part<'static>> {
+    ) -> Option<PlacedSolid<'static>> {
         let [normal, tipwards, right] = self.tips[finger].force?;
         let turn = pose.frame(Segment::tip(finger)).matrix3;
         let [out, up] = shape::pad_ways(finger).map(|way| turn * way);
@@ -212,7 +212,7 @@ impl HandPicture {
         let (side, front) = along.any_orthonormal_pair();
         let thick = length.clamp(12.0, 34.0);
         let shape = Mat3::from_cols(front * thick, along * length, side * thick);
-        Some(Part {
+        Some(PlacedSolid {
             solid: shape::arrow(),
             segment: None,
             frame: Affine3::from_mat3_translation(shape, pose.tip(finger)),

@@ -52,7 +52,7 @@ impl Script {
 
     fn read(&mut self, millis: u64, span: Span, values: &[i16]) {
         let bytes: Vec<u8> = values.iter().flat_map(|raw| raw.to_le_bytes()).collect();
-        let fresh = self.sample.take(&Reply {
+        let fresh = self.sample.apply(&Reply {
             span,
             bytes: &bytes,
             asked: at(millis),

@@ -607,7 +607,7 @@ fn session() -> Vec<u8> {
         part: None,
     };
     let mut sample = HandSample::default();
-    let fresh = sample.take(&Reply {
+    let fresh = sample.apply(&Reply {
         span: register::STATE,
         bytes: &[7; 78],
         asked: at(3),

@@ -43,7 +43,7 @@ fn entries() -> Vec<Entry> {
         let millis = 10 * number + if number > 2000 { 70_000 } else { 0 };
         let (asked, received) = (at(millis), at(millis + 3));
         let mut reply = |span: Span, bytes: &[u8]| {
-            let fresh = sample.take(&Reply {
+            let fresh = sample.apply(&Reply {
                 span,
                 bytes,
                 asked,

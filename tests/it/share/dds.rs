@@ -76,7 +76,7 @@ async fn states_are_told_while_the_hand_answers_and_not_a_moment_longer() {
         timeout(PATIENCE, heard.recv()).await.unwrap().unwrap();
     }
     // It may only say what it has read, and the link is what reads.
-    let told = publisher.told();
+    let told = publisher.counts();
     assert!(told.states >= 50 && told.lost == 0, "{told:?}");
     drop(link);
     sleep(Duration::from_millis(500)).await;
@@ -113,7 +113,7 @@ async fn the_grip_is_told_as_a_recording_has_it() {
         grip.at.nanos() >= grip.since.nanos() && grip.asked.nanos() > 0,
         "{grip:?}"
     );
-    assert_eq!(publisher.told().lost, 0);
+    assert_eq!(publisher.counts().lost, 0);
 }
 
 #[test]

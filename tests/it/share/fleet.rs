@@ -72,7 +72,7 @@ async fn a_shared_hand_is_listed_as_it_changes_and_not_longer_than_it_is_there()
         at: None,
         ..card("bread", &place)
     };
-    teller.say(without.clone());
+    teller.announce(without.clone());
     listed(&mut list, |hands| hands[0].card == without).await;
     place.wires.cut();
     listed(&mut list, |hands| !hands[0].state.is_live()).await;
@@ -102,7 +102,7 @@ async fn a_hundred_hands_are_listed_right_after_each_change() {
     listed(&mut list, |hands| hands.len() == 90).await;
     for (_, hands) in &programs {
         for hand in hands {
-            hand.say(card("same", &place));
+            hand.announce(card("same", &place));
         }
     }
     let is_same = |hands: &[FleetHand]| hands.iter().all(|hand| hand.card.name == "same");
@@ -137,7 +137,7 @@ async fn nonsense_on_the_topic_is_survived_and_listed_as_nothing() {
         }
         let _is_sent = noise.send(message);
     }
-    teller.say(card("bread", &place));
+    teller.announce(card("bread", &place));
     let hands = listed(&mut list, |hands| {
         hands.iter().any(|hand| hand.card.name == "bread")
     })

@@ -407,7 +407,7 @@ fn extremes_are_kept_by_the_decoders() {
         Span::new(3232, 58),
     ] {
         let bytes = hand.read(span, at(10)).unwrap();
-        sample.take(&Reply {
+        sample.apply(&Reply {
             span,
             bytes: &bytes,
             asked: at(10),

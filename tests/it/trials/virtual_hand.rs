@@ -199,7 +199,7 @@ impl<H: RegisterHand> VirtualHand<H> {
         for group in groups {
             let span = group.span();
             let bytes = self.hand.read(span, self.now);
-            let fresh = self.sample.take(&Reply {
+            let fresh = self.sample.apply(&Reply {
                 span,
                 bytes: &bytes,
                 asked: self.now,

@@ -239,7 +239,7 @@ impl StdioSession<'_> {
         };
         self.seen = *sample;
         let read = sample.newest(fresh).unwrap_or_default();
-        let mut grip = self.grip.take(&sample, fresh, read);
+        let mut grip = self.grip.apply(&sample, fresh, read);
         if self.hand.link.status().feedback_in_doubt {
             grip = Grip::default();
         }

@@ -106,14 +106,14 @@ impl FeedbackWatch {
             let targets = write.shorts(&register::ANGLE_SET);
             let targets = targets.map(|target| target.filter(|target| *target >= 0));
             self.aim(&targets, now);
-            self.tell(now, |command| put(&mut command.targets, &targets));
+            self.push_command(now, |command| put(&mut command.targets, &targets));
         } else if within(&register::SPEED_SET) {
             self.speeds_written = Some(now);
             let speeds = write.shorts(&register::SPEED_SET);
-            self.tell(now, |command| put(&mut command.speeds, &speeds));
+            self.push_command(now, |command| put(&mut command.speeds, &speeds));
         } else if write.is_motion() {
             // A gesture: the hand may move anywhere.
-            self.tell(now, |command| {
+            self.push_command(now, |command| {
                 command.targets = PerDof::splat(None);
                 command.gesture = true;
             });
@@ -156,7 +156,7 @@ impl FeedbackWatch {
         }
     }
 
-    fn tell(&mut self, at: Moment, change: impl FnOnce(&mut TimedCommand)) {
+    fn push_command(&mut self, at: Moment, change: impl FnOnce(&mut TimedCommand)) {
         let before = self.commands.back().copied();
         let mut command = TimedCommand {
             at,
@@ -176,8 +176,8 @@ impl FeedbackWatch {
     }
 
     /// Applies a reading.
-    pub(crate) fn take(&mut self, sample: &HandSample, fresh: Groups) {
-        self.take_speeds(sample, fresh);
+    pub(crate) fn apply(&mut self, sample: &HandSample, fresh: Groups) {
+        self.apply_speeds(sample, fresh);
         let before = std::mem::replace(&mut self.last, *sample);
         if has_changed(&before, sample, fresh) {
             let unchanged = self
@@ -217,10 +217,13 @@ impl FeedbackWatch {
             return false;
         };
         let within = SetpointRegister::AngleSet.rounds_by().unsigned_abs();
-        let is_ours = |told: &TimedCommand| {
-            told.targets[dof].is_some_and(|told| told.abs_diff(holds) <= within)
+        let is_ours = |command: &TimedCommand| {
+            command.targets[dof].is_some_and(|target| target.abs_diff(holds) <= within)
         };
-        let last = self.commands.back().and_then(|told| told.targets[dof]);
+        let last = self
+            .commands
+            .back()
+            .and_then(|command| command.targets[dof]);
         last.is_some() && !self.commands.iter().any(is_ours)
     }
 
@@ -231,7 +234,7 @@ impl FeedbackWatch {
         };
         let way = |from: i16| (f64::from(aim.target) - f64::from(from)).abs();
         let goes_away = way(angle.raw()) > way(joint.seen) + AWAY;
-        let speed = self.commands.back().and_then(|told| told.speeds[dof]);
+        let speed = self.commands.back().and_then(|command| command.speeds[dof]);
         let speed = f64::from(speed.unwrap_or(Speed::MAX.get())) * Speed::ANGLE_PER_UNIT;
         let farthest = way(aim.from) + VISIBLE + speed * TURN_TIMEOUT.as_secs_f64();
         goes_away && asked.since(aim.at) >= TURN_TIMEOUT || way(angle.raw()) > farthest
@@ -301,8 +304,8 @@ impl FeedbackWatch {
 
     /// True if a gesture moves this joint to an unknown position.
     fn is_led_by_gesture(&self, dof: Dof) -> bool {
-        let told = self.commands.back();
-        told.is_some_and(|told| told.gesture && told.targets[dof].is_none())
+        let command = self.commands.back();
+        command.is_some_and(|command| command.gesture && command.targets[dof].is_none())
     }
 
     /// True if the drive itself reports why the joint does not move further as commanded.
@@ -310,7 +313,10 @@ impl FeedbackWatch {
         let Some(status) = self.last.status.map(|status| status.value[dof]) else {
             return false;
         };
-        let target = self.commands.back().and_then(|told| told.targets[dof]);
+        let target = self
+            .commands
+            .back()
+            .and_then(|command| command.targets[dof]);
         match status {
             Status::ForceReached => joint.estimate < f64::from(joint.seen),
             Status::CurrentProtection | Status::Stalled | Status::DriveFault => true,
@@ -324,14 +330,14 @@ impl FeedbackWatch {
     }
 
     /// Applies speeds that another controller set, or that this program never wrote.
-    fn take_speeds(&mut self, sample: &HandSample, fresh: Groups) {
+    fn apply_speeds(&mut self, sample: &HandSample, fresh: Groups) {
         let Some(speeds) = sample.speed_set.filter(|_| fresh.contains(Group::SpeedSet)) else {
             return;
         };
         let ours = self.speeds_written;
         if ours.is_none_or(|at| speeds.asked.since(at) >= Duration::from_secs(1)) {
             let read = speeds.value.map(|speed| speed.map(Speed::get));
-            self.tell(speeds.asked, |command| put(&mut command.speeds, &read));
+            self.push_command(speeds.asked, |command| put(&mut command.speeds, &read));
         }
     }
 
@@ -473,9 +479,9 @@ impl FeedbackWatch {
         }
         let age = now.since(self.last.angle?.received).as_secs_f64();
         let took = joint.at.since(since).max(Duration::from_millis(1));
-        let speed = self.commands.back().and_then(|told| told.speeds[dof]);
-        let told = f64::from(speed.unwrap_or_default()) * Speed::ANGLE_PER_UNIT;
-        let gone = (way.abs() / took.as_secs_f64()).min(told) * age;
+        let speed = self.commands.back().and_then(|command| command.speeds[dof]);
+        let commanded = f64::from(speed.unwrap_or_default()) * Speed::ANGLE_PER_UNIT;
+        let gone = (way.abs() / took.as_secs_f64()).min(commanded) * age;
         let gone = gone.min(left.abs()).copysign(left);
         Some(Target::Go(nearest(seen + gone)))
     }
@@ -493,7 +499,7 @@ impl FeedbackWatch {
 
     /// Time that a joint needs for this distance, in counts; zero if it is too short to be visible.
     fn back_from(&self, dof: Dof, way: f64) -> Duration {
-        let speed = self.commands.back().and_then(|told| told.speeds[dof]);
+        let speed = self.commands.back().and_then(|command| command.speeds[dof]);
         let counts_per_s = f64::from(speed.unwrap_or_default()) * Speed::ANGLE_PER_UNIT;
         if way.abs() < VISIBLE || counts_per_s <= 0.0 {
             return Duration::ZERO;
@@ -608,7 +614,7 @@ mod tests {
         }
     }
 
-    fn sample(told: JointFeedback, now: Moment) -> (HandSample, Groups) {
+    fn sample(feedback: JointFeedback, now: Moment) -> (HandSample, Groups) {
         fn timed<T>(value: T, now: Moment) -> Option<Timed<PerDof<T>>>
         where
             T: Copy,
@@ -620,9 +626,9 @@ mod tests {
             })
         }
         let sample = HandSample {
-            angle: timed(AngleReading::new(told.angle), now),
-            force: timed(ForceReading::new(told.force), now),
-            status: timed(Status::from_raw(told.status), now),
+            angle: timed(AngleReading::new(feedback.angle), now),
+            force: timed(ForceReading::new(feedback.force), now),
+            status: timed(Status::from_raw(feedback.status), now),
             ..HandSample::default()
         };
         let groups = [Group::Angle, Group::Force, Group::Status];
@@ -632,17 +638,17 @@ mod tests {
     fn watch(speed: i16, target: Target) -> FeedbackWatch {
         let mut watch = FeedbackWatch::default();
         let (first, fresh) = sample(at(1000, 2), ms(0));
-        watch.take(&first, fresh);
+        watch.apply(&first, fresh);
         let speeds = HandCommand::Speeds(PerDof::splat(Some(Speed::nearest(speed))));
         let angles = HandCommand::Angles(PerDof::splat(Some(target)));
         for command in [speeds, angles] {
-            tell(&mut watch, &command, ms(0));
+            send(&mut watch, &command, ms(0));
         }
         watch
     }
 
     /// Writes a command and acknowledges it.
-    fn tell(watch: &mut FeedbackWatch, command: &HandCommand, at: Moment) {
+    fn send(watch: &mut FeedbackWatch, command: &HandCommand, at: Moment) {
         let writes = command.writes();
         watch.wrote(&writes[0], at);
         watch.acknowledged(&writes[0]);
@@ -665,13 +671,13 @@ mod tests {
         watch.wrote(&close.writes()[0], ms(0));
         for t in (20..900).step_by(20) {
             let (unmoved, fresh) = sample(at(1000, 2), ms(t));
-            watch.take(&unmoved, fresh);
+            watch.apply(&unmoved, fresh);
             assert!(!watch.is_suspect() && !watch.is_frozen(), "{t}");
         }
-        tell(&mut watch, &close, ms(900));
+        send(&mut watch, &close, ms(900));
         for t in (900..1700).step_by(20) {
             let (unmoved, fresh) = sample(at(1000, 2), ms(t));
-            watch.take(&unmoved, fresh);
+            watch.apply(&unmoved, fresh);
         }
         assert!(watch.is_frozen());
     }
@@ -681,7 +687,7 @@ mod tests {
         let mut watch = watch(250, go(1000));
         for t in (20..2000).step_by(20) {
             let (moved, fresh) = sample(at((1000 - i16::try_from(t).unwrap()).max(600), 2), ms(t));
-            watch.take(&moved, fresh);
+            watch.apply(&moved, fresh);
             assert!(!watch.is_suspect(), "{t}");
         }
     }
@@ -690,15 +696,15 @@ mod tests {
     fn where_a_gesture_moves_a_joint_is_not_known_until_it_is_read() {
         let mut watch = watch(250, go(0));
         let gesture = HandCommand::Gesture(Gesture::MIN, GestureRoute::Register1008);
-        tell(&mut watch, &gesture, ms(300));
+        send(&mut watch, &gesture, ms(300));
         assert_eq!(watch.expected(Dof::Index, ms(400)), None);
         let (read, fresh) = sample(at(700, 1), ms(500));
-        watch.take(&read, fresh);
+        watch.apply(&read, fresh);
         assert_eq!(watch.expected(Dof::Index, ms(600)), None, "it goes on");
         let hold = HandCommand::Angles(PerDof::splat(Some(go(700))));
-        tell(&mut watch, &hold, ms(600));
+        send(&mut watch, &hold, ms(600));
         let (read, fresh) = sample(at(690, 1), ms(700));
-        watch.take(&read, fresh);
+        watch.apply(&read, fresh);
         assert!(watch.expected(Dof::Index, ms(750)).is_some());
     }
 
@@ -712,9 +718,9 @@ mod tests {
         // It is sent back to its reading: it counts as at rest there only once it had the time to return, whatever its
         // drive reports.
         let back = HandCommand::Angles(PerDof::splat(Some(go(1000))));
-        tell(&mut watch, &back, ms(300));
+        send(&mut watch, &back, ms(300));
         let (frozen, fresh) = sample(at(1000, 2), ms(400));
-        watch.take(&frozen, fresh);
+        watch.apply(&frozen, fresh);
         let left = watch.way_back(ms(400)).as_millis();
         assert!((300..400).contains(&left), "{left}");
     }
@@ -807,7 +813,7 @@ mod tests {
             let mut watch = watch(case.speed, case.target);
             let seen = (10..5000).step_by(10).find(|t| {
                 let (sample, fresh) = sample((case.tells)(*t), ms(*t));
-                watch.take(&sample, fresh);
+                watch.apply(&sample, fresh);
                 watch.is_frozen()
             });
             let is_right = match (&case.frozen, seen) {
@@ -825,7 +831,7 @@ mod tests {
         let read = |watch: &mut FeedbackWatch, t: std::ops::Range<u64>, status| {
             for t in t.step_by(10) {
                 let (sample, fresh) = sample(at(moving(t.min(300)), status), ms(t));
-                watch.take(&sample, fresh);
+                watch.apply(&sample, fresh);
             }
         };
         read(&mut watch, 10..420, 1);
@@ -833,7 +839,7 @@ mod tests {
         let held = watch.hold_target(Dof::Index, ms(420)).unwrap();
         let way = moving(300) - held.angle().unwrap().get();
         assert!((30..=50).contains(&way), "{way}");
-        tell(
+        send(
             &mut watch,
             &HandCommand::Angles(PerDof::splat(Some(held))),
             ms(420),
@@ -848,7 +854,7 @@ mod tests {
         let read = |watch: &mut FeedbackWatch, t: std::ops::Range<u64>| {
             for t in t.step_by(10) {
                 let (sample, fresh) = sample(at(moving(t.min(300)), 1), ms(t));
-                watch.take(&sample, fresh);
+                watch.apply(&sample, fresh);
             }
         };
         read(&mut watch, 10..600);
@@ -857,7 +863,7 @@ mod tests {
         let hold = HandCommand::Angles(PerDof::splat(Some(held)));
         watch.wrote(&hold.writes()[0], ms(600));
         read(&mut watch, 610..700);
-        tell(&mut watch, &hold, ms(700));
+        send(&mut watch, &hold, ms(700));
         read(&mut watch, 710..1500);
         let kept = watch.hold_target(Dof::Index, ms(1500)).unwrap();
         let [held, kept] = [held, kept].map(|target| target.angle().unwrap().get());
@@ -873,7 +879,7 @@ mod tests {
         let mut watch = watch(250, go(0));
         for t in [100, 900, 1700] {
             let (sample, fresh) = sample(at(1000, 2), ms(t));
-            watch.take(&sample, fresh);
+            watch.apply(&sample, fresh);
             assert!(!watch.is_frozen());
         }
     }
@@ -890,11 +896,11 @@ mod tests {
         assert_eq!(held(&watch, 564), go(620));
         assert_eq!(held(&watch, 3000), go(200));
         let (seen, fresh) = sample(at(900, 1), ms(200));
-        watch.take(&seen, fresh);
+        watch.apply(&seen, fresh);
         assert_eq!(held(&watch, 300), go(824));
         // The hold takes effect late too.
         let hold = HandCommand::Angles(PerDof::splat(Some(go(824))));
-        tell(&mut watch, &hold, ms(300));
+        send(&mut watch, &hold, ms(300));
         assert_eq!(held(&watch, 364), go(775));
         assert_eq!(held(&watch, 1000), go(824));
         assert_eq!(

@@ -29,7 +29,7 @@ impl HeatWatch {
     }
 
     /// Applies a reading.
-    pub(crate) fn take(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
+    pub(crate) fn apply(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         if !fresh.contains(Group::Temperature) {
             return;
         }
@@ -106,13 +106,13 @@ mod tests {
 
         fn reads(&mut self, celsius: u8) -> Option<Disarmed> {
             self.now = self.now.plus(Duration::from_millis(200));
-            let fresh = self.sample.take(&Reply {
+            let fresh = self.sample.apply(&Reply {
                 span: Group::Temperature.span(),
                 bytes: &[30, 30, celsius, 30, 30, 30],
                 asked: self.now,
                 received: self.now,
             });
-            self.watch.take(&self.sample, fresh, self.now);
+            self.watch.apply(&self.sample, fresh, self.now);
             self.reason()
         }
 

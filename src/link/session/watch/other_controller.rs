@@ -176,7 +176,7 @@ mod tests {
     fn read(other: &mut OtherController, speed: u8, ms: u64) {
         let mut sample = HandSample::default();
         let bytes = [speed, 0].repeat(6);
-        let fresh = sample.take(&Reply {
+        let fresh = sample.apply(&Reply {
             span: register::SPEED_SET.span(),
             bytes: &bytes,
             asked: at(ms),

@@ -363,10 +363,10 @@ mod tests {
     use super::*;
 
     /// The value that a hand holds after a write, given the value before.
-    type Takes = fn(told: Wrote, holds: i16) -> i16;
+    type Takes = fn(written: Wrote, holds: i16) -> i16;
 
-    fn value(told: Wrote, holds: i16) -> i16 {
-        match told {
+    fn value(written: Wrote, holds: i16) -> i16 {
+        match written {
             Wrote::Value(value) => value,
             Wrote::Nothing | Wrote::Leave => holds,
         }
@@ -387,8 +387,8 @@ mod tests {
                     watch.wrote(PerDof::splat(tells(t)), ms(t));
                     under_way.push_back((t + late_ms, tells(t)));
                 }
-                while let Some((_, told)) = under_way.pop_front_if(|(due, _)| *due <= t) {
-                    holds = takes(told, holds);
+                while let Some((_, written)) = under_way.pop_front_if(|(due, _)| *due <= t) {
+                    holds = takes(written, holds);
                 }
                 if t % 97 == 0 {
                     let at = Some(PerDof::splat(holds));
@@ -413,47 +413,55 @@ mod tests {
     fn whatever_a_hand_makes_of_what_it_is_told_is_no_other_controller() {
         let ways: [(&str, Takes, bool); 6] = [
             ("as told", value, false),
-            ("rounds", |told, holds| value(told, holds) / 16 * 16, false),
-            ("limits", |told, holds| value(told, holds).min(600), true),
+            (
+                "rounds",
+                |written, holds| value(written, holds) / 16 * 16,
+                false,
+            ),
+            (
+                "limits",
+                |written, holds| value(written, holds).min(600),
+                true,
+            ),
             (
                 "limits below",
-                |told, holds| value(told, holds).max(400),
+                |written, holds| value(written, holds).max(400),
                 true,
             ),
             (
                 "both",
-                |told, holds| value(told, holds).clamp(300, 700),
+                |written, holds| value(written, holds).clamp(300, 700),
                 true,
             ),
             ("ignores", |_, holds| holds, true),
         ];
-        for (name, takes, is_told) in ways {
+        for (name, takes, is_reported) in ways {
             for late_ms in [0, 30, 300, 1900] {
                 let seen = streamed(takes, sweep, late_ms);
                 let foreign = seen
                     .iter()
                     .find(|seen| matches!(seen, SetpointCheck::Foreign(_)));
                 assert_eq!(foreign, None, "{name}, {late_ms} ms late");
-                let told = seen
+                let is_seen = seen
                     .iter()
                     .any(|seen| matches!(seen, SetpointCheck::NotTaken(_)));
-                assert_eq!(told, is_told, "{name}, {late_ms} ms late: {seen:?}");
+                assert_eq!(is_seen, is_reported, "{name}, {late_ms} ms late: {seen:?}");
             }
         }
         let leaves: [(&str, Takes); 3] = [
-            ("keeps -1", |told, holds| {
-                if told == Wrote::Leave {
+            ("keeps -1", |written, holds| {
+                if written == Wrote::Leave {
                     -1
                 } else {
-                    value(told, holds)
+                    value(written, holds)
                 }
             }),
             ("keeps the target", value),
-            ("takes it for 1000", |told, holds| {
-                if told == Wrote::Leave {
+            ("takes it for 1000", |written, holds| {
+                if written == Wrote::Leave {
                     1000
                 } else {
-                    value(told, holds)
+                    value(written, holds)
                 }
             }),
         ];
@@ -471,18 +479,22 @@ mod tests {
 
     #[test]
     fn a_value_from_before_a_write_that_is_near_to_it_is_not_taken_for_it() {
-        for (held, told) in [(800, 810), (810, 800), (800, 800)] {
+        for (held, written) in [(800, 810), (810, 800), (800, 800)] {
             let mut watch = SetpointWatch::new(SetpointRegister::AngleSet);
-            watch.wrote(PerDof::splat(Wrote::Value(told)), ms(100));
-            for (value, t) in [(held, 101), (told, 150), (told, 200), (told, 5000)] {
+            watch.wrote(PerDof::splat(Wrote::Value(written)), ms(100));
+            for (value, t) in [(held, 101), (written, 150), (written, 200), (written, 5000)] {
                 let seen = watch.read(&PerDof::splat(value), None, ms(t));
-                assert_eq!(seen, SetpointCheck::Usual, "{held}, {told}: {value} at {t}");
+                assert_eq!(
+                    seen,
+                    SetpointCheck::Usual,
+                    "{held}, {written}: {value} at {t}"
+                );
             }
             watch.read(&PerDof::splat(held + 100), None, ms(5050));
             let foreign = watch.read(&PerDof::splat(held + 100), None, ms(5100));
             assert!(
                 matches!(foreign, SetpointCheck::Foreign(_)),
-                "{held}, {told}"
+                "{held}, {written}"
             );
         }
     }
@@ -490,7 +502,7 @@ mod tests {
     /// A foreign value arrives before ours is read back.
     #[test]
     fn a_value_beyond_what_the_hand_held_or_to_a_joint_that_stays_is_no_limit_of_the_hand() {
-        for (held, told, foreign) in [
+        for (held, written, foreign) in [
             (1000, 1000, 500),
             (500, 500, 900),
             (1000, 600, 300),
@@ -502,13 +514,13 @@ mod tests {
                 watch.read(&PerDof::splat(value), None, ms(t))
             };
             assert_eq!(read(&mut watch, held, 0), SetpointCheck::Usual);
-            watch.wrote(PerDof::splat(Wrote::Value(told)), ms(100));
+            watch.wrote(PerDof::splat(Wrote::Value(written)), ms(100));
             let seen = (0..10).map(|nth| read(&mut watch, foreign, 110 + 40 * nth));
             let foreign = seen.collect::<Vec<_>>();
             let is_foreign = |seen: &SetpointCheck| matches!(seen, SetpointCheck::Foreign(_));
             assert!(
                 foreign[..3].iter().any(is_foreign),
-                "{held}, {told}: {foreign:?}"
+                "{held}, {written}: {foreign:?}"
             );
         }
     }

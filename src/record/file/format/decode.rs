@@ -51,12 +51,12 @@ impl EntryDecoder {
             Topic::Joints | Topic::Grip => None,
             Topic::State => {
                 let state: StateMessage = cdr::decode(bytes)?;
-                let asked = self.asked(times, (state.asked, state.received));
+                let asked = self.request_time(times, (state.asked, state.received));
                 self.state((asked, at), &state)
             }
             Topic::Touch(finger) => {
                 let touch: TouchMessage = cdr::decode(bytes)?;
-                let asked = self.asked(times, (touch.asked, touch.received));
+                let asked = self.request_time(times, (touch.asked, touch.received));
                 self.touch((asked, at), finger, &touch)
             }
             Topic::Command => command(at, &cdr::decode(bytes)?),
@@ -68,7 +68,7 @@ impl EntryDecoder {
     }
 
     /// Time of the request.
-    fn asked(&self, (log, publish): (u64, u64), (asked, received): (Time, Time)) -> Moment {
+    fn request_time(&self, (log, publish): (u64, u64), (asked, received): (Time, Time)) -> Moment {
         let before = if asked.has_ended() || received.has_ended() {
             log.saturating_sub(publish)
         } else {
@@ -94,7 +94,7 @@ impl EntryDecoder {
         let mut fresh = Groups::NONE;
         let mut take = |span: Span, bytes: &[u8]| {
             if !bytes.is_empty() {
-                let taken = self.sample.take(&Reply {
+                let taken = self.sample.apply(&Reply {
                     span,
                     bytes,
                     asked,
@@ -131,7 +131,7 @@ impl EntryDecoder {
         finger: Finger,
         touch: &TouchMessage,
     ) -> Option<Entry> {
-        let fresh = self.sample.take(&Reply {
+        let fresh = self.sample.apply(&Reply {
             span: Group::Tactile(finger).span(),
             bytes: &touch.raw,
             asked,

@@ -37,7 +37,7 @@ pub(crate) struct EntryEncoder {
     joint_names: Vec<String>,
     grip: GripFollower,
     /// Time and states of the last grip message.
-    told: Option<(Moment, [GripState; 6])>,
+    last_grip: Option<(Moment, [GripState; 6])>,
 }
 
 impl EntryEncoder {
@@ -46,7 +46,7 @@ impl EntryEncoder {
             base_nanos: opening.base_nanos,
             joint_names: joint_names(opening.side),
             grip: GripFollower::default(),
-            told: None,
+            last_grip: None,
         }
     }
 
@@ -65,7 +65,7 @@ impl EntryEncoder {
 
     /// Applies an entry without output, because later messages depend on it.
     pub(crate) fn pass(&mut self, entry: &Entry) {
-        self.grip.take(entry);
+        self.grip.apply(entry);
     }
 
     fn nanos(&self, at: Moment) -> u64 {
@@ -95,20 +95,23 @@ impl EntryEncoder {
         let mut messages = self.own(entry);
         let at = entry.at();
         // At the start of a file or a cut, and when readings stop, the grip is known at most a second later.
-        let grip = self.grip.take(entry).unwrap_or_else(|| self.grip.known(at));
-        messages.extend(self.tell(&grip, at));
+        let grip = self
+            .grip
+            .apply(entry)
+            .unwrap_or_else(|| self.grip.known(at));
+        messages.extend(self.grip_message(&grip, at));
         messages
     }
 
     /// A message with the grip, if it changed or was not written for a while.
-    fn tell(&mut self, grip: &Grip, at: Moment) -> Option<EncodedMessage> {
-        let is_told = |(told, before): (Moment, [GripState; 6])| {
-            before == states(grip) && at.since(told) < GRIP_INTERVAL
+    fn grip_message(&mut self, grip: &Grip, at: Moment) -> Option<EncodedMessage> {
+        let is_unchanged = |(written, before): (Moment, [GripState; 6])| {
+            before == states(grip) && at.since(written) < GRIP_INTERVAL
         };
-        if self.told.is_some_and(is_told) {
+        if self.last_grip.is_some_and(is_unchanged) {
             return None;
         }
-        self.told = Some((at, states(grip)));
+        self.last_grip = Some((at, states(grip)));
         let asked = |own: &GripEstimate| own.asked.map(|at| self.time(at)).unwrap_or_default();
         let fingers = grip.fingers.as_array();
         let message = GripMessage {

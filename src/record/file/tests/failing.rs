@@ -185,7 +185,7 @@ struct Schedule {
     disk: FailingDisk,
     recording: RecordingTask,
     input: RecorderInput,
-    taken: std::sync::mpsc::Receiver<crate::record::file::recording::Given>,
+    taken: std::sync::mpsc::Receiver<crate::record::file::recording::QueuedEntry>,
     entries: Vec<Entry>,
     pushed: usize,
 }
@@ -260,7 +260,7 @@ impl Schedule {
             self.pushed += 1;
         }
         while let Ok(given) = self.taken.try_recv() {
-            self.recording.take(&given);
+            self.recording.accept(&given);
         }
         let now = self.now();
         self.recording.step(now);

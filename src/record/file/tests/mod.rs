@@ -57,7 +57,7 @@ pub(crate) fn entries(seed: u64, count: u64) -> Vec<Entry> {
             _ => Span::new(1534, 36),
         };
         let bytes: Vec<u8> = (0..span.len).map(|_| random.u8(..)).collect();
-        let fresh = sample.take(&Reply {
+        let fresh = sample.apply(&Reply {
             span,
             bytes: &bytes,
             asked,

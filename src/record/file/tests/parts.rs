@@ -8,7 +8,7 @@ use crate::record::file::disk::SystemDisk;
 use crate::record::file::format::opening::Opening;
 use crate::record::file::parts::recordings;
 use crate::record::file::reader::{RecordingFile, TimeRange};
-use crate::record::file::recording::{Given, Now, RecordingPlan, RecordingTask};
+use crate::record::file::recording::{Now, QueuedEntry, RecordingPlan, RecordingTask};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -38,7 +38,7 @@ fn record(opening: Opening, path: PathBuf, entries: &[Entry]) -> PathBuf {
     let mut last = opening.began;
     for entry in entries {
         last = entry.at();
-        recording.take(&Given {
+        recording.accept(&QueuedEntry {
             _taken: None,
             entry: entry.clone(),
             lost_before: 0,

@@ -44,7 +44,7 @@ pub(super) fn by_index<F: Read + Seek>(file: &mut F, len: u64) -> io::Result<Opt
         let new = piece.get_mut(before..).unwrap_or_default();
         read_at(file, at, new)?;
         index.hash.update(new);
-        let Some(taken) = index.take(&piece) else {
+        let Some(taken) = index.parse(&piece) else {
             return Ok(None);
         };
         piece.drain(..taken);
@@ -58,7 +58,7 @@ pub(super) fn by_index<F: Read + Seek>(file: &mut F, len: u64) -> io::Result<Opt
     // The indexed records fill the file from its header to the end of the data: nothing is missing, and the index belongs to this
     // file.
     let data = start.saturating_sub(header + HEAD + 4);
-    Ok((whole && index.told == data).then_some(index.found))
+    Ok((whole && index.indexed_bytes == data).then_some(index.found))
 }
 
 /// Content of the index read so far.
@@ -70,7 +70,7 @@ struct Index {
     /// End of the last chunk. The next one must come after it, so that none can be listed repeatedly.
     after: u64,
     /// Total bytes of the indexed records.
-    told: u64,
+    indexed_bytes: u64,
 }
 
 impl Index {
@@ -83,12 +83,12 @@ impl Index {
             hash: crc32fast::Hasher::new(),
             start,
             after: 0,
-            told: 0,
+            indexed_bytes: 0,
         }
     }
 
     /// Parses the whole records of some bytes; returns their length. `None` if they are invalid for this file.
-    fn take(&mut self, bytes: &[u8]) -> Option<usize> {
+    fn parse(&mut self, bytes: &[u8]) -> Option<usize> {
         let mut rest = bytes;
         while let Some((op, body, next)) = record(rest) {
             self.record(op, body)?;
@@ -107,7 +107,7 @@ impl Index {
                 }
                 self.after = place.offset + HEAD + place.len;
                 let places = usize::try_from(u32_at(body, 32)?).ok()?;
-                self.tell(u64_at(body, places.checked_add(36)?)?);
+                self.add_bytes(u64_at(body, places.checked_add(36)?)?);
                 self.found.chunk(ChunkPlace {
                     kind: ChunkKind::Chunk,
                     place,
@@ -129,12 +129,12 @@ impl Index {
         Some(())
     }
 
-    const fn tell(&mut self, bytes: u64) {
-        self.told = self.told.saturating_add(bytes);
+    const fn add_bytes(&mut self, bytes: u64) {
+        self.indexed_bytes = self.indexed_bytes.saturating_add(bytes);
     }
 
     fn place(&mut self, offset: u64, whole: u64) -> Option<ByteRange> {
-        self.tell(whole);
+        self.add_bytes(whole);
         let len = whole.checked_sub(HEAD).filter(|len| *len <= RECORD_MAX)?;
         let end = offset.checked_add(whole)?;
         (len > 0 && end <= self.start).then_some(ByteRange { offset, len })

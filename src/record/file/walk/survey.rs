@@ -101,7 +101,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         while at + HEAD <= self.len {
             let head = self.head(at)?;
             let Some(next) = self.end(&head, at) else {
-                self.look_at_loose()?;
+                self.survey_loose()?;
                 let next = self.after_damage(at + 1)?;
                 self.survey.found.skipped += next - at;
                 at = next;
@@ -113,26 +113,26 @@ impl<F: Read + Seek> Surveyor<'_, F> {
                 len: next - at - HEAD,
             };
             if let Some(chunk) = chunk_head(&head) {
-                self.look_at_loose()?;
-                self.look_at_chunk(chunk, place)?;
+                self.survey_loose()?;
+                self.survey_chunk(chunk, place)?;
             } else if matches!(code, op::MESSAGE | op::SCHEMA | op::CHANNEL) {
                 if self.loose.is_some_and(|(_, to)| to != at) {
-                    self.look_at_loose()?;
+                    self.survey_loose()?;
                 }
                 let (from, _) = self.loose.unwrap_or((at, at));
                 self.loose = Some((from, next));
                 if next - from >= LOOSE_MAX {
-                    self.look_at_loose()?;
+                    self.survey_loose()?;
                 }
             } else if code == op::METADATA {
                 self.survey.found.metadata(place);
             } else if code == op::DATA_END {
-                self.look_at_loose()?;
+                self.survey_loose()?;
                 return Ok(u32_at(&head, HEAD_LEN).map(|sum| (at, sum)));
             }
             at = next;
         }
-        self.look_at_loose()?;
+        self.survey_loose()?;
         self.survey.found.skipped += self.len.saturating_sub(at);
         Ok(None)
     }
@@ -179,7 +179,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         })
     }
 
-    fn look_at_loose(&mut self) -> io::Result<()> {
+    fn survey_loose(&mut self) -> io::Result<()> {
         let Some((from, to)) = self.loose.take() else {
             return Ok(());
         };
@@ -187,11 +187,11 @@ impl<F: Read + Seek> Surveyor<'_, F> {
             offset: from,
             len: to - from - HEAD,
         };
-        self.look_at(ChunkKind::Loose, place)
+        self.survey_range(ChunkKind::Loose, place)
     }
 
     /// Reads a chunk, unless it claims to unpack to more than any recording does.
-    fn look_at_chunk(&mut self, chunk: ChunkHead, place: ByteRange) -> io::Result<()> {
+    fn survey_chunk(&mut self, chunk: ChunkHead, place: ByteRange) -> io::Result<()> {
         let survey = &mut self.survey;
         survey.unpacked = survey.unpacked.saturating_add(chunk.unpacked);
         let times = self.len.saturating_mul(UNPACKED_TIMES);
@@ -203,12 +203,12 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         }
         let is_long = chunk.unpacked.max(chunk.size) > RECORD_MAX;
         if !is_long {
-            return self.look_at(ChunkKind::Foreign, place);
+            return self.survey_range(ChunkKind::Foreign, place);
         }
         // Its checksum is verified only at its end, and a damaged one must not count.
         let is_whole = long_records(&mut reader(&mut self.file, place)?, |_| ())?;
         if is_whole {
-            self.look_at(ChunkKind::Long, place)
+            self.survey_range(ChunkKind::Long, place)
         } else {
             self.survey.damaged += 1;
             Ok(())
@@ -216,15 +216,15 @@ impl<F: Read + Seek> Surveyor<'_, F> {
     }
 
     /// Reads a chunk: its definitions, its messages, and their times.
-    fn look_at(&mut self, kind: ChunkKind, place: ByteRange) -> io::Result<()> {
+    fn survey_range(&mut self, kind: ChunkKind, place: ByteRange) -> io::Result<()> {
         let mut times: Option<(u64, u64)> = None;
         let (definitions, clock) = (&mut self.survey.definitions, &mut self.survey.clock);
         let mut has_unlogged = false;
         let take = |record: ChunkRecord<'_>| match record {
-            ChunkRecord::Definition(code, content) => definitions.take(code, content),
+            ChunkRecord::Definition(code, content) => definitions.push(code, content),
             ChunkRecord::Message(message) => {
                 definitions.count(message.channel);
-                clock.take(message.channel, message.times.0, message.data);
+                clock.push(message.channel, message.times.0, message.data);
                 if message.times.0 == 0 {
                     has_unlogged = true;
                     return;
@@ -257,7 +257,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
     /// Reads the index, and compares it with the records found.
     fn index(&mut self, from: u64) -> io::Result<()> {
         let mut at = from;
-        let (mut told, mut strangers) = (0_usize, 0_usize);
+        let (mut known_chunks, mut unknown_chunks) = (0_usize, 0_usize);
         while at + HEAD <= self.len {
             let head = self.head(at)?;
             let Some(next) = plausible(&head, at, self.len) else {
@@ -270,8 +270,8 @@ impl<F: Read + Seek> Surveyor<'_, F> {
                     let known = chunks
                         .binary_search_by_key(&offset, |chunk| Some(chunk.place.offset))
                         .is_ok();
-                    told += usize::from(known);
-                    strangers += usize::from(!known);
+                    known_chunks += usize::from(known);
+                    unknown_chunks += usize::from(!known);
                 }
                 Some(&op::STATISTICS) => self.survey.found.messages = u64_at(&head, HEAD_LEN),
                 Some(&op::FOOTER) => {
@@ -285,10 +285,10 @@ impl<F: Read + Seek> Surveyor<'_, F> {
         let survey = &mut self.survey;
         let chunks = survey.found.chunks.iter();
         let chunks = chunks.filter(|chunk| chunk.kind != ChunkKind::Loose);
-        let has_index = told + strangers > 0;
+        let has_index = known_chunks + unknown_chunks > 0;
         // The index also lists chunks that are empty or damaged.
-        let misses = has_index && told < chunks.count();
-        let points_aside = has_index && told == 0;
+        let misses = has_index && known_chunks < chunks.count();
+        let points_aside = has_index && known_chunks == 0;
         let counts_others = survey.damaged == 0
             && survey.found.skipped == 0
             && survey

@@ -19,7 +19,7 @@ impl FleetAnnouncer {
     /// Announces this hand from now on, with the status of its link; its gateway only if listeners can reach it. Must be
     /// called within a tokio runtime.
     pub fn open(node: &DdsNode, link: &LinkHandle, card: FleetCard) -> Self {
-        let telling = FleetPublisher {
+        let publisher = FleetPublisher {
             writer: node.writer(&topic()),
             interface: node.address(),
             status: link.observe().status,
@@ -27,15 +27,15 @@ impl FleetAnnouncer {
         let (card, cards) = watch::channel(card);
         Self {
             card,
-            _task: AbortOnDropHandle::new(tokio::spawn(telling.run(cards))),
+            _task: AbortOnDropHandle::new(tokio::spawn(publisher.run(cards))),
         }
     }
 
     /// Announces it with this card from now on.
-    pub fn say(&self, card: FleetCard) {
-        self.card.send_if_modified(|said| {
-            let is_new = *said != card;
-            *said = card;
+    pub fn announce(&self, card: FleetCard) {
+        self.card.send_if_modified(|current| {
+            let is_new = *current != card;
+            *current = card;
             is_new
         });
     }
@@ -53,14 +53,14 @@ impl FleetPublisher {
         loop {
             let mut card = cards.borrow_and_update().clone();
             card.at = card.at.and_then(|at| reachable(at, self.interface));
-            let told = of(&self.status.borrow_and_update());
-            let (state, owner) = told;
+            let published = of(&self.status.borrow_and_update());
+            let (state, owner) = published;
             // A lost announcement is soon repeated.
             let _is_sent = self.writer.send(FleetHand { card, state, owner }.message());
             // Random pauses, so that announcers that started together do not stay in step.
             let pause = ANNOUNCE_INTERVAL.mul_f64(0.75 + 0.25 * fastrand::f64());
             let is_open = tokio::select! {
-                changed = self.status.wait_for(|status| of(status) != told) => changed.is_ok(),
+                changed = self.status.wait_for(|status| of(status) != published) => changed.is_ok(),
                 changed = cards.changed() => changed.is_ok(),
                 () = sleep(pause) => true,
             };

@@ -58,7 +58,7 @@ impl ShutdownState {
         self.wanted.load(Ordering::Relaxed)
     }
 
-    fn want(&self) {
+    fn request_end(&self) {
         // From now on the window has to show activity.
         self.lives(self.clock.now());
         self.wanted.store(true, Ordering::Relaxed);
@@ -80,7 +80,7 @@ pub(crate) async fn on_signals(ending: Arc<ShutdownState>) {
     };
     let status = interrupt.status().await;
     guard::hold_all();
-    ending.want();
+    ending.request_end();
     loop {
         tokio::time::sleep(POLL_INTERVAL).await;
         if ending.is_frozen() {

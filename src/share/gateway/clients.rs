@@ -81,7 +81,7 @@ pub(crate) struct SharedClientTable(Arc<Mutex<ClientTable>>);
 
 impl SharedClientTable {
     pub(crate) fn with<T>(&self, act: impl FnOnce(&mut ClientTable) -> T) -> T {
-        // Each call leaves the board consistent, even one that panicked.
+        // Each call leaves the table consistent, even one that panicked.
         act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
@@ -105,7 +105,7 @@ pub(crate) struct ClientTable {
 pub(crate) struct Holder {
     pub(crate) client: ClientId,
     pub(crate) lease: Lease,
-    pub(crate) heard: Moment,
+    pub(crate) last_request: Moment,
 }
 
 /// One client's entry.
@@ -114,7 +114,7 @@ pub(crate) struct Client {
     shown: GatewayClient,
     pace: Pace,
     /// Time of its last request.
-    heard: Moment,
+    last_request: Moment,
     /// Time at which it last stopped another controller's motion.
     pub(crate) stopped: Option<Instant>,
     /// Notified when the user grants it control.
@@ -123,8 +123,8 @@ pub(crate) struct Client {
 
 impl Client {
     /// Counts a complete request.
-    pub(crate) fn asked(&mut self, now: Moment) {
-        self.heard = now;
+    pub(crate) fn count_request(&mut self, now: Moment) {
+        self.last_request = now;
         self.pace.hit(now);
     }
 
@@ -144,7 +144,7 @@ impl Client {
     }
 
     /// Counts a stop that was obeyed although the request itself was invalid.
-    pub(crate) fn obeyed_odd(&mut self, odd: WriteRefusal) {
+    pub(crate) fn note_odd_stop(&mut self, odd: WriteRefusal) {
         self.shown.writes += 1;
         self.shown.refusal = Some(odd);
     }
@@ -183,7 +183,7 @@ impl ClientTable {
                 lease: ClientLease::Never,
             },
             pace: Pace::default(),
-            heard: now,
+            last_request: now,
             stopped: None,
             granted: Arc::default(),
         });
@@ -218,7 +218,7 @@ impl ClientTable {
             ClientLease::Held(lease) => Some(Holder {
                 client: row.shown.id,
                 lease,
-                heard: row.heard,
+                last_request: row.last_request,
             }),
             _ => None,
         })
@@ -295,7 +295,7 @@ impl Pace {
 mod tests {
     use super::*;
 
-    fn board() -> ClientTable {
+    fn table() -> ClientTable {
         ClientTable::default()
     }
 
@@ -305,39 +305,39 @@ mod tests {
 
     #[test]
     fn the_rate_is_that_of_the_last_whole_second_and_ends_with_the_requests() {
-        let (mut board, ms) = (board(), |ms: u64| Moment::from_micros(ms * 1000));
-        let id = board.connect(address(), ms(0)).unwrap();
+        let (mut table, ms) = (table(), |ms: u64| Moment::from_micros(ms * 1000));
+        let id = table.connect(address(), ms(0)).unwrap();
         for nth in 0..300 {
-            board.row(id).unwrap().asked(ms(10_000 + 10 * nth));
+            table.row(id).unwrap().count_request(ms(10_000 + 10 * nth));
         }
-        let hz = |board: &ClientTable, at| board.shown(ms(at))[0].hz;
-        assert_eq!(hz(&board, 12_995), 100);
-        assert_eq!(hz(&board, 13_500), 100);
-        assert_eq!(hz(&board, 14_500), 0);
+        let hz = |table: &ClientTable, at| table.shown(ms(at))[0].hz;
+        assert_eq!(hz(&table, 12_995), 100);
+        assert_eq!(hz(&table, 13_500), 100);
+        assert_eq!(hz(&table, 14_500), 0);
     }
 
     #[test]
     fn clients_beyond_the_most_are_turned_away_and_counted() {
-        let mut board = board();
+        let mut table = table();
         let ids: Vec<_> = (0..CLIENTS_MAX)
-            .map(|_| board.connect(address(), Moment::ZERO).unwrap())
+            .map(|_| table.connect(address(), Moment::ZERO).unwrap())
             .collect();
-        assert_eq!(board.connect(address(), Moment::ZERO), None);
-        assert_eq!(board.turned_away, 1);
-        board.disconnect(ids[3]);
-        let next = board.connect(address(), Moment::ZERO).unwrap();
+        assert_eq!(table.connect(address(), Moment::ZERO), None);
+        assert_eq!(table.turned_away, 1);
+        table.disconnect(ids[3]);
+        let next = table.connect(address(), Moment::ZERO).unwrap();
         assert!(!ids.contains(&next));
     }
 
     #[test]
     fn the_newest_refusal_is_shown() {
-        let mut board = board();
-        let id = board.connect(address(), Moment::ZERO).unwrap();
-        let row = board.row(id).unwrap();
+        let mut table = table();
+        let id = table.connect(address(), Moment::ZERO).unwrap();
+        let row = table.row(id).unwrap();
         row.wrote(Err(WriteRefusal::NotGranted));
         row.wrote(Err(WriteRefusal::Taken));
         row.wrote(Ok(()));
-        let shown = &board.shown(Moment::ZERO)[0];
+        let shown = &table.shown(Moment::ZERO)[0];
         assert_eq!((shown.writes, shown.refused), (1, 2));
         assert_eq!(shown.refusal, Some(WriteRefusal::Taken));
     }

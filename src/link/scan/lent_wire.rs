@@ -17,8 +17,8 @@ pub(crate) struct LentWire(Arc<Mutex<ObservedWire>>);
 struct ObservedWire {
     wire: BoxedWire,
     sent: Vec<u8>,
-    heard: Vec<u8>,
-    heard_bytes: usize,
+    received: Vec<u8>,
+    received_bytes: usize,
 }
 
 impl LentWire {
@@ -26,20 +26,20 @@ impl LentWire {
         Self(Arc::new(Mutex::new(ObservedWire {
             wire,
             sent: Vec::new(),
-            heard: Vec::new(),
-            heard_bytes: 0,
+            received: Vec::new(),
+            received_bytes: 0,
         })))
     }
 
     /// Bytes received since the last call; 0 if they are only an echo of what was sent.
-    pub(crate) fn take_heard(&self) -> usize {
+    pub(crate) fn take_received(&self) -> usize {
         let mut line = self.line();
-        let echo = line.sent == line.heard && line.heard_bytes == line.heard.len();
-        let heard = if echo { 0 } else { line.heard_bytes };
+        let echo = line.sent == line.received && line.received_bytes == line.received.len();
+        let received = if echo { 0 } else { line.received_bytes };
         line.sent.clear();
-        line.heard.clear();
-        line.heard_bytes = 0;
-        heard
+        line.received.clear();
+        line.received_bytes = 0;
+        received
     }
 
     fn line(&self) -> MutexGuard<'_, ObservedWire> {
@@ -63,8 +63,8 @@ impl AsyncRead for LentWire {
         let before = buf.filled().len();
         let polled = Pin::new(&mut line.wire).poll_read(cx, buf);
         let got = buf.filled().get(before..).unwrap_or_default();
-        line.heard_bytes = line.heard_bytes.saturating_add(got.len());
-        keep(&mut line.heard, got);
+        line.received_bytes = line.received_bytes.saturating_add(got.len());
+        keep(&mut line.received, got);
         polled
     }
 }
@@ -103,7 +103,7 @@ mod tests {
     async fn an_echo_is_not_taken_for_talk() {
         let (near, mut far) = pair();
         let lent = LentWire::new(Box::new(near));
-        for (sent, came, heard) in [
+        for (sent, came, received) in [
             (&b"question"[..], &b"question"[..], 0),
             (b"question", b"", 0),
             (b"question", b"questionanswer", 14),
@@ -116,7 +116,7 @@ mod tests {
             far.write_all(came).await.unwrap();
             let mut got = vec![0; came.len()];
             user.read_exact(&mut got).await.unwrap();
-            assert_eq!(lent.take_heard(), heard, "{came:?}");
+            assert_eq!(lent.take_received(), received, "{came:?}");
             let mut rest = vec![0; sent.len()];
             far.read_exact(&mut rest).await.unwrap();
         }

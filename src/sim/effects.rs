@@ -65,7 +65,7 @@ impl SimHand {
         match change.register.address {
             a if a == ANGLE_SET.address || a == POS_SET.address => self.apply_target(change),
             a if a == SPEED_SET.address && change.value == 0 => self.apply_no_speed(change, speeds),
-            a if a == HAND_ID.address || a == REDU_RATIO.address => self.take_codes(
+            a if a == HAND_ID.address || a == REDU_RATIO.address => self.apply_codes(
                 self.config.personality.id_effect == Effect::Now,
                 self.config.personality.baud_effect == BaudEffect::Now,
             ),
@@ -73,15 +73,15 @@ impl SimHand {
             a if a == SAVE.address && on => self.save(now),
             a if a == RESET_PARA.address && on => {
                 self.memory.reset_parameters();
-                self.take_codes(
+                self.apply_codes(
                     self.config.personality.id_effect != Effect::AfterPower,
                     self.config.personality.baud_effect != BaudEffect::AfterPower,
                 );
             }
             a if a == GESTURE_FORCE_CLB.address && on => self.calibrate(now),
-            a if a == GESTURE_NO_SET.address => self.take_pose(change.value),
+            a if a == GESTURE_NO_SET.address => self.apply_pose(change.value),
             a if a == ACTION_SEQ_RUN.address && on => {
-                self.take_pose(i32::from(self.memory.byte(ACTION_SEQ_INDEX.address)));
+                self.apply_pose(i32::from(self.memory.byte(ACTION_SEQ_INDEX.address)));
             }
             _ => {}
         }
@@ -101,7 +101,7 @@ impl SimHand {
     }
 
     /// Applies the id and serial speed stored in the memory.
-    fn take_codes(&mut self, id: bool, baud: bool) {
+    fn apply_codes(&mut self, id: bool, baud: bool) {
         if id {
             self.id = self.memory.byte(HAND_ID.address);
         }
@@ -155,7 +155,7 @@ impl SimHand {
         self.body.drive_mut(dof).command(goal, self.now_ms);
     }
 
-    fn take_pose(&mut self, number: i32) {
+    fn apply_pose(&mut self, number: i32) {
         let number = u8::try_from(number).unwrap_or_default();
         let taught = UserGesture::new(number).map(|number| {
             let first = 6 * u16::from(number.get() - UserGesture::MIN.get());
@@ -173,7 +173,7 @@ impl SimHand {
     /// Copies the saved parameters to flash and applies codes that take effect then.
     pub(crate) fn write_flash(&mut self) {
         self.memory.save();
-        self.take_codes(
+        self.apply_codes(
             self.config.personality.id_effect == Effect::AfterSave,
             self.config.personality.baud_effect == BaudEffect::AfterSave,
         );

@@ -6,10 +6,10 @@ use crate::hand::register::HAND_ID;
 use crate::link::bus::late_replies::LateReplies;
 use crate::link::bus::{self, Bus, BusError};
 use crate::link::clock::Clock;
-use crate::link::scan::board::ScanTracker;
 use crate::link::scan::event::{FoundHand, ScanEvent, ScanHint};
-use crate::link::scan::heard::LentWire;
+use crate::link::scan::lent_wire::LentWire;
 use crate::link::scan::plan::{Lane, LaneKind, Try, same_line};
+use crate::link::scan::tracker::ScanTracker;
 use crate::link::series::{DeviceSeries, SeriesEvidence, SeriesQuestion};
 use crate::transport::{Dial, Endpoint, TransportError};
 use std::collections::VecDeque;
@@ -25,20 +25,20 @@ pub(crate) struct ScanContext {
     pub(crate) clock: Clock,
     pub(crate) events: mpsc::Sender<ScanEvent>,
     pub(crate) wake: Arc<dyn Fn() + Send + Sync>,
-    pub(crate) board: Arc<Mutex<ScanTracker>>,
+    pub(crate) tracker: Arc<Mutex<ScanTracker>>,
     /// One failure of a range was reported; the same failure of all others is not.
     pub(crate) range_told: AtomicBool,
 }
 
 impl ScanContext {
-    pub(crate) async fn tell(&self, event: ScanEvent) {
+    pub(crate) async fn publish(&self, event: ScanEvent) {
         // An error means that the scan is being ended.
         let _unheard = self.events.send(event).await;
         (self.wake)();
     }
 
-    pub(crate) fn board(&self) -> MutexGuard<'_, ScanTracker> {
-        self.board.lock().unwrap_or_else(PoisonError::into_inner)
+    pub(crate) fn tracker(&self) -> MutexGuard<'_, ScanTracker> {
+        self.tracker.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -104,12 +104,12 @@ struct LaneScan {
     asked: usize,
     failed: bool,
     /// The last trouble, which is reported once.
-    told: Option<TransportError>,
+    reported: Option<TransportError>,
 }
 
 /// Runs all probes of a lane, except those that earlier results make unnecessary.
-pub(crate) async fn look(room: Arc<ScanContext>, nth: usize, lane: Lane) {
-    let mut look = LaneScan {
+pub(crate) async fn scan_lane(room: Arc<ScanContext>, nth: usize, lane: Lane) {
+    let mut scan = LaneScan {
         room,
         nth,
         lane,
@@ -118,17 +118,17 @@ pub(crate) async fn look(room: Arc<ScanContext>, nth: usize, lane: Lane) {
         found: 0,
         asked: 0,
         failed: false,
-        told: None,
+        reported: None,
     };
-    look.go().await;
-    look.finish().await;
+    scan.go().await;
+    scan.finish().await;
 }
 
 impl LaneScan {
     async fn go(&mut self) {
         let mut rest: VecDeque<Try> = std::mem::take(&mut self.lane.tries).into();
         while let Some(one) = rest.pop_front() {
-            match self.ask(&one).await {
+            match self.probe(&one).await {
                 ProbeAnswer::Silence => {}
                 ProbeAnswer::Hand {
                     hand_id,
@@ -152,21 +152,21 @@ impl LaneScan {
                     self.trouble(error).await;
                 }
             }
-            self.room.board().left(self.nth, rest.iter());
+            self.room.tracker().left(self.nth, rest.iter());
             (self.room.wake)();
         }
     }
 
     async fn found(&mut self, one: &Try, hand_id: u8, round_trip: Duration) {
         self.found += 1;
-        self.room.board().summary.found += 1;
+        self.room.tracker().summary.found += 1;
         let found = FoundHand {
             endpoint: one.endpoint.clone(),
             hand_id,
             round_trip,
             usb: self.lane.usb.clone(),
         };
-        self.room.tell(ScanEvent::Found(found)).await;
+        self.room.publish(ScanEvent::Found(found)).await;
     }
 
     /// Drops the probes that would fail in the same way.
@@ -184,10 +184,10 @@ impl LaneScan {
     }
 
     async fn trouble(&mut self, error: TransportError) {
-        if self.told.as_ref() == Some(&error) {
+        if self.reported.as_ref() == Some(&error) {
             return;
         }
-        self.told = Some(error.clone());
+        self.reported = Some(error.clone());
         // A host that does not accept the connection was scanned: no hand is there.
         let nobody = matches!(
             error,
@@ -200,28 +200,28 @@ impl LaneScan {
             return;
         }
         let place = self.lane.place.clone();
-        self.room.tell(ScanEvent::Trouble { place, error }).await;
+        self.room.publish(ScanEvent::Trouble { place, error }).await;
     }
 
     async fn finish(mut self) {
         self.open = None;
         {
-            let mut board = self.room.board();
-            board.summary.asked += self.asked;
-            board.left(self.nth, [].iter());
+            let mut tracker = self.room.tracker();
+            tracker.summary.asked += self.asked;
+            tracker.left(self.nth, [].iter());
             if self.failed && self.asked == 0 {
-                board.summary.failed += 1
+                tracker.summary.failed += 1
             } else {
-                board.summary.places += 1
+                tracker.summary.places += 1
             }
         }
         let hint = self.noticed.hint(&self.lane.place);
         if let Some(hint) = hint.filter(|_| self.found == 0) {
-            self.room.tell(ScanEvent::Hint(hint)).await;
+            self.room.publish(ScanEvent::Hint(hint)).await;
         }
     }
 
-    async fn ask(&mut self, one: &Try) -> ProbeAnswer {
+    async fn probe(&mut self, one: &Try) -> ProbeAnswer {
         let wire = match self.wire(&one.endpoint).await {
             Ok(wire) => wire,
             Err(error) => return ProbeAnswer::Shut(error),
@@ -239,9 +239,9 @@ impl LaneScan {
             }
             _ => DeviceSeries::Unknown,
         };
-        let heard = wire.take_heard();
+        let received = wire.take_received();
         let foreign = bus.counts().foreign_replies > 0;
-        if heard > 0 && !matches!(read, Err(BusError::Lost(_))) {
+        if received > 0 && !matches!(read, Err(BusError::Lost(_))) {
             // The next request must not collide with data that still arrives. A wire that breaks now fails the next
             // request too.
             let _broken = bus.quiet().await;
@@ -265,7 +265,7 @@ impl LaneScan {
                 ProbeAnswer::Broke(error)
             }
             Err(_) => {
-                self.notice(&one.endpoint, heard, foreign);
+                self.notice(&one.endpoint, received, foreign);
                 ProbeAnswer::Silence
             }
         }
@@ -286,15 +286,15 @@ impl LaneScan {
     }
 
     /// Records bytes that were not a reply.
-    fn notice(&mut self, endpoint: &Endpoint, heard: usize, foreign: bool) {
+    fn notice(&mut self, endpoint: &Endpoint, received: usize, foreign: bool) {
         let (Endpoint::Rs485(line) | Endpoint::Rtu(line)) = endpoint else {
             return;
         };
         if foreign {
             self.noticed.foreign.get_or_insert_with(|| endpoint.clone());
         }
-        if heard > 0 {
-            self.noticed.bytes += heard;
+        if received > 0 {
+            self.noticed.bytes += received;
             if !self.noticed.garbled.contains(&line.baud) {
                 self.noticed.garbled.push(line.baud);
             }
