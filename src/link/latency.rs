@@ -4,7 +4,7 @@ use arrayvec::ArrayVec;
 use std::time::Duration;
 
 /// Longest reply, in memory bytes, that an adapter holds back until its timer ticks; a fuller packet is forwarded at once.
-pub const KEPT_MAX: u16 = 48;
+pub const BYTES_MAX: u16 = 48;
 /// Round trips that a verdict needs, and considers.
 const TRIPS: usize = 16;
 /// Default tick of adapters.
@@ -21,7 +21,7 @@ pub struct Ticks {
 impl Ticks {
     /// Records that a reply of this many memory bytes took this long, measured at this end.
     pub fn record(&mut self, bytes: u16, trip: Duration) {
-        if bytes > KEPT_MAX {
+        if bytes > BYTES_MAX {
             return;
         }
         if self.trips.is_full() {

@@ -125,21 +125,21 @@ mod tests {
             Side::Right,
         );
         let mut encoder = EntryEncoder::new(&opening);
-        let mut told: Vec<GripMessage> = Vec::new();
+        let mut published: Vec<GripMessage> = Vec::new();
         for ms in (10..=2500).step_by(10) {
             let messages = encoder.encode(&reading(Moment::from_micros(ms * 1000)));
             let grips = messages.iter().filter(|own| own.topic == Topic::Grip);
-            told.extend(grips.map(|own| cdr::decode::<GripMessage>(&own.bytes).unwrap()));
+            published.extend(grips.map(|own| cdr::decode::<GripMessage>(&own.bytes).unwrap()));
         }
-        let states: Vec<&str> = told.iter().map(|own| own.state.as_str()).collect();
+        let states: Vec<&str> = published.iter().map(|own| own.state.as_str()).collect();
         let held = states.iter().position(|state| *state == "holding").unwrap();
         assert!(held <= 2, "{states:?}");
         assert_eq!(states[held..], ["holding"; 3], "and no more");
-        let last = &told[told.len() - 1];
+        let last = &published[published.len() - 1];
         assert_eq!(last.finger_states, ["holding"; 5]);
-        assert_eq!(last.since, told[held].since);
+        assert_eq!(last.since, published[held].since);
         assert_eq!(last.asked, last.at, "it was asked for at once");
-        let second = last.at.nanos() - told[told.len() - 2].at.nanos();
+        let second = last.at.nanos() - published[published.len() - 2].at.nanos();
         assert_eq!(second, 1_000_000_000);
         // The next file knows of it at once.
         let mut next = encoder.next(&opening);
@@ -164,23 +164,23 @@ mod tests {
             let state = LinkState::Monitoring;
             Entry::Heard(Record::State { at, state })
         };
-        let told = |encoder: &mut EntryEncoder, entry: &Entry| -> Option<String> {
+        let grip_state = |encoder: &mut EntryEncoder, entry: &Entry| -> Option<String> {
             let messages = encoder.encode(entry);
             let grip = messages.iter().find(|own| own.topic == Topic::Grip)?;
             Some(cdr::decode::<GripMessage>(&grip.bytes).unwrap().state)
         };
         let mut encoder = EntryEncoder::new(&opening);
-        let first = told(&mut encoder, &state(5));
+        let first = grip_state(&mut encoder, &state(5));
         assert_eq!(first.as_deref(), Some("unknown"), "before any reading");
         for ms in (10..=500).step_by(10) {
             encoder.encode(&reading(Moment::from_micros(ms * 1000)));
         }
         // A file that begins in the middle, with whatever comes first.
         let mut next = encoder.next(&opening);
-        let held = told(&mut next, &state(510));
+        let held = grip_state(&mut next, &state(510));
         assert_eq!(held.as_deref(), Some("holding"));
-        assert_eq!(told(&mut next, &state(520)), None, "once");
-        let old = told(&mut next, &state(1200));
+        assert_eq!(grip_state(&mut next, &state(520)), None, "once");
+        let old = grip_state(&mut next, &state(1200));
         assert_eq!(old.as_deref(), Some("unknown"), "its readings are old");
     }
 

@@ -14,7 +14,7 @@ const FAST_UNITS: i16 = 3;
 const SLOW: Duration = Duration::from_millis(500);
 const SLOW_UNITS: i16 = 2;
 /// Capacity of the angle history: [`SLOW`] divided by [`STEP`], with some reserve.
-const KEPT_MAX: usize = 80;
+const ANGLES_MAX: usize = 80;
 
 /// Angles of one joint over the last half second.
 #[derive(Debug, Clone, Default)]
@@ -33,7 +33,7 @@ impl JointMotion {
             *known = angle;
             return;
         }
-        while self.angles.len() >= KEPT_MAX
+        while self.angles.len() >= ANGLES_MAX
             || self
                 .angles
                 .front()

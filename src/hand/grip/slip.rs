@@ -20,7 +20,7 @@ const LEVEL_COUNT: usize = 5;
 /// Share of the rise that suffices where the tangential force turns as well.
 const TURNED_SHARE: f64 = 0.75;
 /// Capacity of the history: one second of a sensor that is read 500 times a second.
-const KEPT_MAX: usize = 512;
+const READINGS_MAX: usize = 512;
 
 /// One reading while the fingertip holds something.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +87,7 @@ impl SlipDetector {
     /// Adds the next reading. Returns the first and the second of two rises in a row.
     pub fn push(&mut self, now: HeldMoment) -> Option<(SlipJump, SlipJump)> {
         let jump = self.jump(&now);
-        if self.held.len() >= KEPT_MAX {
+        if self.held.len() >= READINGS_MAX {
             self.held.pop_front();
         }
         self.held.push_back(now);

@@ -107,12 +107,12 @@ impl HolderTie {
             to: None,
             is_closed: false,
         }));
-        let (tell, state) = watch::channel(HolderState::Starting);
-        let tell = Arc::new(tell);
+        let (sender, state) = watch::channel(HolderState::Starting);
+        let sender = Arc::new(sender);
         let watcher = Watcher {
             command,
             pipe: Arc::clone(&pipe),
-            tell: Arc::clone(&tell),
+            sender: Arc::clone(&sender),
             complain,
         };
         let thread = std::thread::Builder::new().name("holder".into());
@@ -120,7 +120,7 @@ impl HolderTie {
             let why = format!("no thread can be started: {error}");
             lock(&pipe).is_closed = true;
             complain(&unguarded(&why));
-            tell.send_replace(HolderState::Missing(why));
+            sender.send_replace(HolderState::Missing(why));
         }
         Self {
             endpoint: endpoint.clone(),
@@ -168,7 +168,7 @@ impl Drop for HolderTie {
 struct Watcher {
     command: Command,
     pipe: Arc<Mutex<HolderPipe>>,
-    tell: Arc<watch::Sender<HolderState>>,
+    sender: Arc<watch::Sender<HolderState>>,
     complain: Complain,
 }
 
@@ -197,7 +197,7 @@ impl Watcher {
                     if failures >= FAILURES_MAX {
                         lock(&self.pipe).is_closed = true;
                         (self.complain)(&unguarded(&why));
-                        self.tell.send_replace(HolderState::Missing(why));
+                        self.sender.send_replace(HolderState::Missing(why));
                         return;
                     }
                 }
@@ -220,7 +220,7 @@ impl Watcher {
                 pipe.to = Some(stdin);
             }
         }
-        self.tell.send_replace(HolderState::Ready);
+        self.sender.send_replace(HolderState::Ready);
         let ended = child.wait();
         let mut pipe = lock(&self.pipe);
         pipe.to = None;

@@ -64,12 +64,12 @@ pub struct ScanHandle {
 
 /// Starts a scan. It reads HAND_ID and the registers that identify the series, and writes nothing.
 pub fn start(config: ScanConfig, runtime: &Handle) -> ScanHandle {
-    let (tell, events) = mpsc::channel(EVENTS_MAX);
+    let (sender, events) = mpsc::channel(EVENTS_MAX);
     let tracker = Arc::new(Mutex::new(ScanTracker::default()));
     let room = ScanContext {
         dial: Arc::clone(&config.dial),
         clock: config.clock,
-        events: tell,
+        events: sender,
         wake: Arc::clone(&config.wake),
         tracker: Arc::clone(&tracker),
         range_told: AtomicBool::new(false),

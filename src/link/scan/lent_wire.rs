@@ -8,7 +8,7 @@ use std::task::{Context, Poll};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
 /// Bytes kept of each direction, to detect an echo: longer than any request of a scan.
-const KEPT_MAX: usize = 64;
+const BYTES_MAX: usize = 64;
 
 /// One open wire with several users in turn. It closes when the last of them is dropped.
 #[derive(Clone)]
@@ -49,7 +49,7 @@ impl LentWire {
 }
 
 fn keep(kept: &mut Vec<u8>, bytes: &[u8]) {
-    let room = KEPT_MAX.saturating_sub(kept.len());
+    let room = BYTES_MAX.saturating_sub(kept.len());
     kept.extend(bytes.iter().take(room));
 }
 

@@ -23,7 +23,7 @@ const EVIDENCE_INTERVAL: Duration = Duration::from_millis(500);
 /// Number of consecutive reads that a slow link is given time for.
 const QUESTIONS: u32 = 8;
 /// Attempts per read: one lost reply must not look like a quirk.
-const ASKED: u32 = 2;
+const ATTEMPTS: u32 = 2;
 
 /// Read shapes for the id and for the baud rate code, each of another length.
 const ID_SHAPES: [Span; 3] = [
@@ -244,7 +244,7 @@ impl Session {
         until: Moment,
     ) -> Result<Option<BytePacking>, WireEnd> {
         let mut unanswered = 0;
-        while unanswered < ASKED && !self.hurried(until) {
+        while unanswered < ATTEMPTS && !self.hurried(until) {
             self.turn(bus).await?;
             let limit = self.reply_limit(bus, 2 * words_per_group(BytePacking::OnePerWord));
             match bus.words(TEMP.address, limit).await {
@@ -317,7 +317,7 @@ impl Session {
         until: Moment,
     ) -> Result<IdentityReply, WireEnd> {
         let mut reply = self.read_shapes_once(bus, shapes, until).await?;
-        for _ in 1..ASKED {
+        for _ in 1..ATTEMPTS {
             if matches!(reply, IdentityReply::Silent) {
                 reply = self.read_shapes_once(bus, shapes, until).await?;
             }

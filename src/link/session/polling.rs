@@ -14,7 +14,7 @@ use std::time::Duration;
 /// Delay before a group that cannot be requested now is tried again: often enough, without a busy loop.
 const AMBIGUOUS_WAIT: Duration = Duration::from_millis(50);
 /// Delay before reading setpoints again that this program did not write: one reading may be wrong.
-const LOOK_AGAIN: Duration = Duration::from_millis(30);
+const REREAD_DELAY: Duration = Duration::from_millis(30);
 
 impl Session {
     /// The next read. While a stop is being confirmed only motion and faults are read; once it failed, the rest has its
@@ -128,7 +128,7 @@ impl Session {
         self.ends.image.send_modify(|image| image.apply(reply));
         let fresh = self.sample.apply(reply);
         if self.others.read(&self.sample, fresh) {
-            self.plan.schedule_settings_read(now.plus(LOOK_AGAIN));
+            self.plan.schedule_settings_read(now.plus(REREAD_DELAY));
             self.plan.doubt_setpoints(now);
         }
         self.moving.apply(&self.sample, fresh, now);

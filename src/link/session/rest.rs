@@ -150,13 +150,13 @@ mod tests {
 
     #[test]
     fn status_angles_and_commands_each_show_motion_for_a_second() {
-        let (mut said, mut seen, mut told) = <(RestWatch, RestWatch, RestWatch)>::default();
-        said.apply(&sample(1, 500, ms(0)), all(), ms(0));
+        let (mut sampled, mut seen, mut commanded) = <(RestWatch, RestWatch, RestWatch)>::default();
+        sampled.apply(&sample(1, 500, ms(0)), all(), ms(0));
         seen.apply(&sample(2, 500, ms(0)), all(), ms(0));
         seen.apply(&sample(2, 503, ms(0)), all(), ms(0));
-        told.commanded(ms(0));
+        commanded.commanded(ms(0));
         let now = sample(2, 503, ms(999));
-        for mut watch in [said, seen, told] {
+        for mut watch in [sampled, seen, commanded] {
             assert_eq!(watch.rest(&now, ms(999), Duration::ZERO), Rest::Moving);
             watch.apply(&sample(2, 503, ms(1000)), all(), ms(1000));
         }

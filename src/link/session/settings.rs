@@ -22,7 +22,7 @@ const READS: u8 = 3;
 /// Maximum other reads to flush a duplicate of the last reply.
 const CLEARINGS: u8 = 3;
 /// Maximum reads of the pose if it is unknown whether the hand rests.
-const LOOKS: u8 = 2;
+const REST_CHECKS: u8 = 2;
 /// Range compared before and after a SAVE on wires without a result frame: the two default groups, which are adjacent.
 const PARAMETERS: Span = Span::new(
     DEFAULT_SPEED_SET.address,
@@ -134,7 +134,7 @@ impl Session {
 
     /// Reason why the request must not be done now, if any. An unknown rest state is resolved by reading first.
     async fn refusal(&mut self, bus: &mut dyn Bus) -> Result<Option<NotSent>, WireEnd> {
-        let mut looks = LOOKS;
+        let mut rest_checks = REST_CHECKS;
         loop {
             self.give_way(bus).await?;
             let now = self.now();
@@ -143,8 +143,8 @@ impl Session {
                 (LinkState::Holding, _) => NotSent::Holding,
                 (_, Rest::Resting) => return Ok(None),
                 (_, Rest::Moving) => NotSent::Moving,
-                (_, Rest::Unknown) if looks > 0 => {
-                    looks -= 1;
+                (_, Rest::Unknown) if rest_checks > 0 => {
+                    rest_checks -= 1;
                     self.poll_motion(bus).await?;
                     continue;
                 }

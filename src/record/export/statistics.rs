@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 /// Maximum number of a column's values stored for the quantiles. When it is reached, every second one is dropped.
-const KEPT_MAX: usize = 65_536;
+const VALUES_MAX: usize = 65_536;
 /// Quantiles that newer policies require.
 const QUANTILES: [(&str, f64); 5] = [
     ("q01", 0.01),
@@ -92,7 +92,7 @@ impl Default for ColumnSummary {
 impl ColumnSummary {
     fn push(&mut self, value: f32) {
         if self.count.is_multiple_of(self.each) {
-            if self.kept.len() >= KEPT_MAX {
+            if self.kept.len() >= VALUES_MAX {
                 let mut odd = false;
                 self.kept.retain(|_| {
                     odd = !odd;
@@ -162,6 +162,6 @@ mod tests {
             let value = x[key][0].as_f64().unwrap();
             assert!((value - wanted).abs() < 5.0, "{key}: {value}");
         }
-        assert!(all.parts[0].1[0].kept.len() <= KEPT_MAX);
+        assert!(all.parts[0].1[0].kept.len() <= VALUES_MAX);
     }
 }

@@ -34,7 +34,7 @@ const POLL_ENTRIES: u64 = 256;
 /// Integers up to this are exact as floating-point numbers.
 const EXACT_MAX: f64 = 9_007_199_254_740_992.0;
 /// Maximum characters of a name or cell in an error.
-const TOLD_MAX: usize = 40;
+const TEXT_MAX: usize = 40;
 /// Maximum number of unknown columns that are named.
 const UNKNOWN_MAX: usize = 20;
 /// Temperature above the manual's range: the hand does not know it.
@@ -395,7 +395,7 @@ fn known() -> BTreeMap<String, CsvColumn> {
 /// A text shortened for an error.
 fn shortened(text: &str) -> String {
     let plain = text.chars().filter(|letter| !letter.is_control());
-    plain.take(TOLD_MAX).collect()
+    plain.take(TEXT_MAX).collect()
 }
 
 /// Values of a fingertip.

@@ -10,11 +10,11 @@ use tokio::time::{interval, timeout};
 use tokio_util::task::AbortOnDropHandle;
 
 /// Time within which an announcement arrives, even with two notices lost.
-const HEARD_TIMEOUT: Duration = Duration::from_millis(2000);
+const SILENCE_TIMEOUT: Duration = Duration::from_millis(2000);
 /// Interval at which silent announcers are removed.
 const POLL_INTERVAL: Duration = Duration::from_millis(100);
 /// Queue for hands that change at once.
-const KEPT: u16 = 512;
+const QUEUE_MAX: u16 = 512;
 
 /// Other hands of this side that follow the targets sent in this domain. Listens until dropped.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub struct OtherFollowers {
 impl OtherFollowers {
     /// Listens from now on. Must be called within a tokio runtime.
     pub fn open(node: &DdsNode, side: Side, clock: Clock) -> Self {
-        let messages = node.reader(&topic(), KEPT);
+        let messages = node.reader(&topic(), QUEUE_MAX);
         let (sender, seen) = watch::channel(None);
         let listener = FleetListener {
             node: node.clone(),
@@ -57,7 +57,7 @@ impl OtherFollowers {
 
     /// Returns such a hand if it was present before listening began; waits up to the announcement timeout.
     pub async fn was_there(&self) -> Option<FleetCard> {
-        timeout(HEARD_TIMEOUT, self.appears()).await.ok()
+        timeout(SILENCE_TIMEOUT, self.appears()).await.ok()
     }
 }
 

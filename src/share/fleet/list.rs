@@ -13,7 +13,7 @@ use tokio_util::task::AbortOnDropHandle;
 const LIST_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Queue for hands that change at once.
-const KEPT: u16 = 512;
+const QUEUE_MAX: u16 = 512;
 
 /// The list of announced hands. Listens until dropped.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub struct FleetList {
 impl FleetList {
     /// Listens from now on; `wake` is called when the list changed. Must be called within a tokio runtime.
     pub fn open(node: &DdsNode, clock: Clock, wake: Wake) -> Self {
-        let messages = node.reader(&topic(), KEPT);
+        let messages = node.reader(&topic(), QUEUE_MAX);
         let (sender, shown) = watch::channel(Vec::new());
         let interface = node.address();
         let listener = listen(messages, interface, clock, move |list| {

@@ -38,7 +38,7 @@ fn ms(ms: u64) -> Moment {
 
 #[test]
 fn a_gateway_is_told_only_to_those_who_reach_it() {
-    for (gateway, interface, told) in [
+    for (gateway, interface, announced) in [
         ("127.0.0.1:6001", LOOPBACK, "127.0.0.1:6001"),
         ("0.0.0.0:6001", LOOPBACK, "127.0.0.1:6001"),
         ("0.0.0.0:6001", ETHERNET, "203.0.113.5:6001"),
@@ -50,7 +50,7 @@ fn a_gateway_is_told_only_to_those_who_reach_it() {
         ("203.0.113.5:6001", LOOPBACK, ""),
     ] {
         let at = reachable(gateway.parse().unwrap(), interface);
-        let wanted: Option<SocketAddr> = told.parse().ok();
+        let wanted: Option<SocketAddr> = announced.parse().ok();
         assert_eq!(at, wanted, "{gateway} at {interface}");
         // Nor is it believed of another.
         let parsed = FleetHand::parse(&hand("egg", gateway).message(), interface);
@@ -60,8 +60,11 @@ fn a_gateway_is_told_only_to_those_who_reach_it() {
 
 #[test]
 fn a_notice_is_read_as_it_was_written_and_names_stay_on_their_line() {
-    let told = hand("egg", "127.0.0.1:6001");
-    assert_eq!(FleetHand::parse(&told.message(), LOOPBACK), Some(told));
+    let announced = hand("egg", "127.0.0.1:6001");
+    assert_eq!(
+        FleetHand::parse(&announced.message(), LOOPBACK),
+        Some(announced)
+    );
     let long = "手".repeat(100);
     let parsed = FleetHand::parse(&hand(&long, "").message(), LOOPBACK);
     assert_eq!(parsed.unwrap().card.name.chars().count(), 60);

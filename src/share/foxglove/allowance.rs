@@ -8,7 +8,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::time::Instant;
 
 /// Bytes per second. A viewer sends a kilobyte at the start, and next to nothing after that.
-pub const SAYS_MAX: usize = 64 * 1024;
+pub const RECEIVED_MAX: usize = 64 * 1024;
 const OVER: Duration = Duration::from_secs(1);
 
 /// Counts the bytes read.
@@ -42,7 +42,7 @@ impl<S: AsyncRead + Unpin> AsyncRead for Allowance<S> {
             self.received = 0;
         }
         self.received += into.filled().len() - before;
-        if self.received > SAYS_MAX {
+        if self.received > RECEIVED_MAX {
             return Poll::Ready(Err(io::Error::other("says more than a viewer may")));
         }
         Poll::Ready(Ok(()))

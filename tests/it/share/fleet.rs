@@ -58,7 +58,7 @@ async fn a_shared_hand_is_listed_as_it_changes_and_not_longer_than_it_is_there()
     let (here, there) = (node(51), node(51));
     let mut list = look(&here);
     let place = share(PollRates::default(), Duration::ZERO).await;
-    let teller = FleetAnnouncer::open(&there, &place.link, card("egg", &place));
+    let announcer = FleetAnnouncer::open(&there, &place.link, card("egg", &place));
     let hands = listed(&mut list, |hands| !hands.is_empty()).await;
     let expected = FleetHand {
         card: card("egg", &place),
@@ -72,11 +72,11 @@ async fn a_shared_hand_is_listed_as_it_changes_and_not_longer_than_it_is_there()
         at: None,
         ..card("bread", &place)
     };
-    teller.announce(without.clone());
+    announcer.announce(without.clone());
     listed(&mut list, |hands| hands[0].card == without).await;
     place.wires.cut();
     listed(&mut list, |hands| !hands[0].state.is_live()).await;
-    drop(teller);
+    drop(announcer);
     listed(&mut list, <[FleetHand]>::is_empty).await;
 }
 
@@ -118,7 +118,7 @@ async fn nonsense_on_the_topic_is_survived_and_listed_as_nothing() {
     let mut list = look(&here);
     let place = share(PollRates::default(), Duration::ZERO).await;
     let noise = there.writer(&handscope::share::fleet::topic());
-    let teller = FleetAnnouncer::open(&there, &place.link, card("egg", &place));
+    let announcer = FleetAnnouncer::open(&there, &place.link, card("egg", &place));
     listed(&mut list, |hands| hands.len() == 1).await;
     let mut seed = fastrand::Rng::with_seed(7);
     let good = FleetHand {
@@ -137,7 +137,7 @@ async fn nonsense_on_the_topic_is_survived_and_listed_as_nothing() {
         }
         let _is_sent = noise.send(message);
     }
-    teller.announce(card("bread", &place));
+    announcer.announce(card("bread", &place));
     let hands = listed(&mut list, |hands| {
         hands.iter().any(|hand| hand.card.name == "bread")
     })
@@ -162,7 +162,7 @@ async fn watch(hand: &FleetHand) -> (LinkHandle, Records) {
 async fn told(place: &Place) -> FleetHand {
     let (here, there) = (node(54), node(54));
     let mut list = look(&here);
-    let _teller = FleetAnnouncer::open(&there, &place.link, card("egg", place));
+    let _announcer = FleetAnnouncer::open(&there, &place.link, card("egg", place));
     let hands = listed(&mut list, |hands| hands.len() == 1).await;
     hands[0].clone()
 }

@@ -539,9 +539,9 @@ mod tests {
             if nth % 5 == 0 {
                 // Some readings are wrong.
                 let seen = if nth % 100 == 50 { 7 } else { value };
-                let said = read(&mut watch, seen, 105 + 20 * nth);
-                assert_eq!(said == SetpointCheck::Usual, seen == value, "{nth}");
-                assert!(!matches!(said, SetpointCheck::Foreign(_)), "{nth}");
+                let check = read(&mut watch, seen, 105 + 20 * nth);
+                assert_eq!(check == SetpointCheck::Usual, seen == value, "{nth}");
+                assert!(!matches!(check, SetpointCheck::Foreign(_)), "{nth}");
             }
         }
         // Another controller streams as well: every other reading shows its values.

@@ -248,17 +248,20 @@ fn what_is_not_ours_is_named_and_what_is_ours_in_another_form_too() {
         });
         skipped.collect::<Vec<_>>()
     };
-    let told = skipped(&rewrite);
-    assert_eq!(told.len(), 1);
+    let skipped_topics = skipped(&rewrite);
+    assert_eq!(skipped_topics.len(), 1);
     assert_eq!(
-        (told[0].topic.as_str(), told[0].why),
+        (skipped_topics[0].topic.as_str(), skipped_topics[0].why),
         ("/handscope/touch/ring", SkipReason::OtherSchema)
     );
-    assert!(told[0].is_ours() && told[0].messages > 10, "{told:?}");
+    assert!(
+        skipped_topics[0].is_ours() && skipped_topics[0].messages > 10,
+        "{skipped_topics:?}"
+    );
     rewrite.other = Some(("/handscope/state", "handscope_msgs/msg/State", "json"));
-    let told = skipped(&rewrite);
+    let skipped_topics = skipped(&rewrite);
     assert_eq!(
-        (told[0].encoding.as_str(), told[0].why),
+        (skipped_topics[0].encoding.as_str(), skipped_topics[0].why),
         ("json", SkipReason::OtherSchema)
     );
     // A stranger beside ours.
@@ -491,8 +494,8 @@ fn check_flipped(path: &Path, written: &[Atom], say: &str) {
         assert!(all.iter().all(|atom| rest.any(|one| one == atom)), "{say}");
     }
     if all.len() < written.len() {
-        let told = format!("{say}: {} of {}, {damage:?}", all.len(), written.len());
-        assert_ne!(damage, Damage::default(), "{told}");
+        let text = format!("{say}: {} of {}, {damage:?}", all.len(), written.len());
+        assert_ne!(damage, Damage::default(), "{text}");
     }
 }
 
@@ -587,17 +590,17 @@ fn the_log_of_a_file_is_believed_and_how_it_differs_from_the_messages_is_told() 
             assert_eq!(differing, 0, "{what}: {found:?}");
             assert_eq!(damage, Damage::default(), "{what}");
             let mut remarks = file.remarks().iter();
-            let told = remarks.clone().find_map(|remark| match remark {
+            let shift_s = remarks.clone().find_map(|remark| match remark {
                 Remark::LogMoved { nanos } => Some((nanos + 500_000_000).div_euclid(1_000_000_000)),
                 _ => None,
             });
             if let Some(moved_s) = moved_s {
-                assert_eq!(told.unwrap_or_default(), moved_s, "{what}");
+                assert_eq!(shift_s.unwrap_or_default(), moved_s, "{what}");
             } else {
-                assert!(told.unwrap() < -1_000_000_000, "{what}");
+                assert!(shift_s.unwrap() < -1_000_000_000, "{what}");
             }
-            let is_told = remarks.any(|remark| matches!(remark, Remark::Unlogged(_)));
-            assert_eq!(is_told, is_unlogged, "{what}");
+            let has_unlogged = remarks.any(|remark| matches!(remark, Remark::Unlogged(_)));
+            assert_eq!(has_unlogged, is_unlogged, "{what}");
         }
     }
 }

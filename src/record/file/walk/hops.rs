@@ -12,7 +12,7 @@ const CHUNK_HEAD: usize = 8 + 8 + 8 + 4 + 4 + 8;
 /// Maximum length of a compression's name, such as `zstd`.
 const NAME_MAX: usize = 8;
 /// Inspected bytes of a record: operation code, length, and a chunk's whole header.
-pub(super) const LOOKED_AT: usize = HEAD_LEN + CHUNK_HEAD + NAME_MAX;
+pub(super) const HEAD_READ: usize = HEAD_LEN + CHUNK_HEAD + NAME_MAX;
 /// Bytes read at once where records follow each other: the message indexes of a chunk, and the header of the next chunk.
 const AHEAD: usize = 4096;
 /// Bytes searched at once for the next chunk.
@@ -32,7 +32,7 @@ pub(super) fn one_by_one<F: Read + Seek>(
     let mut before = None;
     while at + HEAD <= len {
         let left = usize::try_from(len - at).unwrap_or(usize::MAX);
-        let wanted = left.min(LOOKED_AT);
+        let wanted = left.min(HEAD_READ);
         // The buffer is ahead of this position if a search has gone back.
         let from = at.checked_sub(ahead_at).map(usize::try_from);
         let mut from = from.and_then(Result::ok).unwrap_or(usize::MAX);
@@ -171,11 +171,11 @@ pub(super) fn next_place<F: Read + Seek>(
         let bytes = buffer.get_mut(..there).unwrap_or_default();
         read_at(file, at, bytes)?;
         let is_end = at + there as u64 >= len;
-        let places = if is_end { there } else { there - LOOKED_AT };
+        let places = if is_end { there } else { there - HEAD_READ };
         let codes = bytes.iter().enumerate().take(places);
         // Most bytes are ruled out by the operation code alone: a file may contain gigabytes of zeros.
         for (nth, _) in codes.filter(|(_, code)| matches!(**code, op::CHUNK | op::MESSAGE)) {
-            let head = bytes.get(nth..there.min(nth + LOOKED_AT));
+            let head = bytes.get(nth..there.min(nth + HEAD_READ));
             let place = at + nth as u64;
             if is_wanted(head.unwrap_or_default(), place) {
                 return Ok(place);

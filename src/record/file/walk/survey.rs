@@ -5,7 +5,7 @@ use super::found::{
     ByteRange, ChunkKind, ChunkPlace, Found, HEAD, HEAD_LEN, MAGIC, RECORD_MAX, UNPACKED_MAX,
     UNPACKED_TIMES, reader, u32_at, u64_at, whole,
 };
-use super::hops::{ChunkHead, LOOKED_AT, chunk_head, chunk_times, next_place, plausible};
+use super::hops::{ChunkHead, HEAD_READ, chunk_head, chunk_times, next_place, plausible};
 use super::messages::{ChunkRecord, long_records, records};
 use crate::record::file::channels::Definitions;
 use crate::record::file::clock::LogClock;
@@ -87,7 +87,7 @@ impl<F: Read + Seek> Surveyor<'_, F> {
     /// The first bytes of the record at this offset.
     fn head(&mut self, at: u64) -> io::Result<Vec<u8>> {
         let left = usize::try_from(self.len - at).unwrap_or(usize::MAX);
-        let mut head = vec![0; left.min(LOOKED_AT)];
+        let mut head = vec![0; left.min(HEAD_READ)];
         let here = self.file.stream_position()?;
         let step = i64::try_from(i128::from(at) - i128::from(here));
         self.file.seek_relative(step.map_err(io::Error::other)?)?;
