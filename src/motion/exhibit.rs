@@ -630,7 +630,7 @@ impl Program for ExhibitRun {
 
     fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         let read = sample.newest(fresh).unwrap_or_default();
-        self.grip.take(sample, fresh, read);
+        self.grip.apply(sample, fresh, read);
         if let Some(piece) = &mut self.playing {
             piece.read(sample, fresh, now);
         }
