@@ -1,5 +1,5 @@
-//! The FTP series tactile dexterous hand: what it is, its wires, and what is done with it, without a window. `handscope` hands on
-//! all of it, and its documentation has the map.
+//! The FTP series tactile dexterous hand: the device, its wires, and all operations on it, without a window. `handscope` re-exports
+//! these modules, and its documentation has the map.
 
 pub mod checkup;
 pub mod codec;

@@ -1,5 +1,4 @@
-//! The hand of unit tests: behind a real link handle, in place of a session, a memory, a flash and a script of what goes wrong. Speaks no
-//! protocol.
+//! The hand of unit tests: a real link handle, and in place of a session a memory, a flash and a script of failures. Uses no protocol.
 
 use crate::hand::{
     AngleReading, ArmEpoch, Faults, Force, ForceReading, Group, HandSample, Moment, PerDof,
@@ -22,10 +21,10 @@ use tokio::sync::{broadcast, mpsc, watch};
 
 /// Bytes of memory: more than any address of a persistent row.
 const MEMORY: usize = 4096;
-/// A request takes this long, so that no task spins.
+/// Duration of a request, so that no task spins.
 const REQUEST_DURATION: Duration = Duration::from_millis(5);
 
-/// One thing that a hand was asked or told.
+/// A request or an order that the hand received.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Asked {
     Read(Span),
@@ -42,28 +41,28 @@ pub(crate) enum Asked {
     ReadAt(PollRates),
 }
 
-/// What becomes of one request.
+/// Fate of a request.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Fate {
-    /// The hand does it and answers.
+    /// The hand executes it and replies.
     Answered,
-    /// The hand does it, and the answer is lost.
+    /// The hand executes it, and the reply is lost.
     AnswerLost,
-    /// The hand never hears it.
+    /// The hand never receives it.
     Unheard,
-    /// It ends so, and the hand does nothing.
+    /// The request fails with this error, and the hand does nothing.
     Fails(RequestError),
-    /// The link holds it back.
+    /// The link withholds it.
     NotSent(NotSent),
-    /// The hand takes this for every joint, or for the row, and answers as if nothing were.
+    /// The hand stores this value for every joint, or for the row, and replies as if it had obeyed.
     Takes(i16),
-    /// The hand does nothing and answers so.
+    /// The hand does nothing and replies with this verdict.
     Verdict(Verdict),
 }
 
 type Script = Box<dyn FnMut(&Asked) -> Fate + Send>;
 
-/// State of the hand, and what its session was told.
+/// State of the hand, and the requests that its session received.
 pub(crate) struct Facts {
     memory: Vec<u8>,
     flash: Vec<u8>,
@@ -141,17 +140,17 @@ impl FakeHand {
         self.facts.lock().unwrap()
     }
 
-    /// The session publishes another status.
+    /// Publishes a changed status, as the session does.
     pub(crate) fn change(&self, change: impl FnOnce(&mut LinkStatus)) {
         self.status.send_modify(change);
     }
 
-    /// From now on this decides what becomes of each request.
+    /// Sets the script that decides the fate of each request from now on.
     pub(crate) fn script(&self, script: impl FnMut(&Asked) -> Fate + Send + 'static) {
         self.facts().script = Box::new(script);
     }
 
-    /// What was asked since the last call.
+    /// Requests since the last call.
     pub(crate) fn asked(&self) -> Vec<Asked> {
         std::mem::take(&mut self.facts().asked)
     }
@@ -165,19 +164,19 @@ impl FakeHand {
         })
     }
 
-    /// What it holds in a row.
+    /// Value of a row in memory.
     pub(crate) fn holds(&self, id: ParamId) -> Option<Value> {
         let facts = self.facts();
         decoded(id, span_of(id), facts.bytes(&facts.memory, span_of(id)))
     }
 
-    /// What it would wake up with.
+    /// Value of a row in flash, which a power cycle restores.
     pub(crate) fn in_flash(&self, id: ParamId) -> Option<Value> {
         let facts = self.facts();
         decoded(id, span_of(id), facts.bytes(&facts.flash, span_of(id)))
     }
 
-    /// Puts a value into its memory, past everybody.
+    /// Puts a value directly into memory.
     pub(crate) fn put(&self, id: ParamId, value: Value) {
         let mut wanted = Params::default();
         wanted.put(id, value);
@@ -186,13 +185,13 @@ impl FakeHand {
         }
     }
 
-    /// Switches it off and on.
+    /// Switches the hand off and on.
     pub(crate) fn power_cycle(&self) {
         let mut facts = self.facts();
         facts.memory = facts.flash.clone();
     }
 
-    /// The user armed it.
+    /// Arms the hand, as the user does.
     pub(crate) fn arm_as(&self, epoch: u64) {
         self.change(|status| {
             status.state = LinkState::Armed;
@@ -200,21 +199,21 @@ impl FakeHand {
         });
     }
 
-    /// The session disarms it for this reason.
+    /// Disarms the hand for this reason, as the session does.
     pub(crate) fn disarm_for(&self, why: Disarmed) {
         self.wanted.send_modify(|wanted| wanted.book.end(why));
         self.disarmed();
         self.change(|status| status.disarmed = Some(why));
     }
 
-    /// It says this of itself now, on all joints.
+    /// Publishes a reading with these values, and returns it.
     pub(crate) fn says(&self, said: Said) -> HandSample {
         let sample = said.sample(self.clock.now());
         self.tells(sample);
         sample
     }
 
-    /// This was read of it.
+    /// Publishes a reading.
     pub(crate) fn tells(&self, sample: HandSample) {
         let usual = [
             Group::Angle,
@@ -297,7 +296,7 @@ impl FakeHand {
     async fn serve_all(self, mut requests: mpsc::Receiver<Request>) {
         while let Some(request) = requests.recv().await {
             tokio::time::sleep(REQUEST_DURATION).await;
-            // The task that asked may be gone.
+            // The task that sent it may be gone.
             let _heard = match request {
                 Request::Read(span, answer) => answer.send(self.read_now(span)).is_ok(),
                 Request::Set(setting, answer) => answer.send(self.set_now(setting)).is_ok(),
@@ -321,7 +320,7 @@ impl FakeHand {
             }
             std::mem::replace(&mut facts.script, Box::new(|_| Fate::Answered))
         };
-        // A script may look at the hand.
+        // A script may inspect the hand.
         let fate = script(&asked);
         self.facts().script = script;
         fate
@@ -463,7 +462,7 @@ impl FakeHand {
     }
 }
 
-/// What a hand says of itself, on all joints; each test spoils one thing.
+/// Readings of a hand, equal for all joints; each test changes one of them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Said {
     pub(crate) angle: i16,
@@ -474,7 +473,7 @@ pub(crate) struct Said {
     pub(crate) limits: Option<(Speed, Force)>,
 }
 
-/// A well hand, open and free.
+/// A healthy hand, open and free.
 pub(crate) const WELL: Said = Said {
     angle: 1000,
     grams: 3,

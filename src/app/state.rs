@@ -1,4 +1,4 @@
-//! Everything the window shows, as plain values. Changed only by the program; draws nothing, opens nothing.
+//! Everything the window shows, as plain values. Changed only by the program; draws and opens nothing.
 
 use crate::app::exhibit::ExhibitState;
 use crate::app::fleet::FleetState;
@@ -13,10 +13,10 @@ use crate::app::trials::TrialsState;
 use crate::hand::Moment;
 use crate::transport::PortFound;
 
-/// What would be lost if the window closed now.
+/// Unsaved work that closing the window would lose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LeaveQuestion {
-    /// A series of trials runs: it would end.
+    /// A running series of trials, which would end.
     pub series: bool,
     /// Staged values that were not applied.
     pub edits: usize,
@@ -25,43 +25,43 @@ pub struct LeaveQuestion {
 /// Everything the window shows.
 #[derive(Debug, Default)]
 pub struct State {
-    /// The time of this frame.
+    /// Time of this frame.
     pub now: Moment,
-    /// The hands. There is always one, connected or not.
+    /// Hands. There is always one, connected or not.
     pub hands: HandList,
-    /// What the user should read.
+    /// Notices for the user.
     pub notices: Notices,
     /// The user's own poses and sequences.
     pub poses: PoseState,
     /// Grasp trials: the plan, and the sessions.
     pub trials: TrialsState,
-    /// Serial ports found when last looked.
+    /// Serial ports found by the last search.
     pub ports: Vec<PortFound>,
     /// The newest scan for hands.
     pub scan: ScanState,
-    /// The hands that other Handscopes share.
+    /// Hands that other instances of Handscope share.
     pub fleet: FleetState,
     /// Recordings.
     pub recordings: RecordingsState,
-    /// What would be lost if the window closed now, once the user tried to.
+    /// Question shown after an attempt to close the window while work would be lost.
     pub leave: Option<LeaveQuestion>,
-    /// The exhibition that is shown in place of the window.
+    /// Exhibition shown in place of the window.
     pub exhibit: Option<ExhibitState>,
-    /// The time line of the recording that is replayed; `None` while hands are live.
+    /// Timeline of the replayed recording; `None` while hands are live.
     pub timeline: Option<Timeline>,
     /// A second recording, drawn over the replayed one.
     pub beside: Option<BesideRecording>,
-    /// What is kept from one start to the next.
+    /// Persistent settings.
     pub settings: Settings,
 }
 
 impl State {
-    /// The hand that is shown.
+    /// The shown hand.
     pub fn hand(&self) -> &Hand {
         self.hands.shown()
     }
 
-    /// The same, to be changed.
+    /// The shown hand, mutable.
     pub fn hand_mut(&mut self) -> &mut Hand {
         self.hands.shown_mut()
     }

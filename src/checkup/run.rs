@@ -1,4 +1,4 @@
-//! A running check-up: which step is next, when one is over, what ends it early. Sends nothing and reads no clock.
+//! A running check-up: the next step, the end of a step, and reasons for an early end. Sends nothing and reads no clock.
 
 use crate::checkup::measure::{JointReadings, Measured, StepRecord, StepResults, measured};
 use crate::checkup::steps::{CheckupPlan, CheckupStep, PRESS_TIMEOUT, REST, Way, slow, steps};
@@ -15,64 +15,64 @@ use std::collections::VecDeque;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-/// What ends it at once: an empty hand meets nothing, and warms little.
+/// Limits that end it at once: an empty hand meets no resistance, and warms little.
 pub const LIMITS: Limits = Limits {
     ceiling_g: 300,
     stop_c: 60,
     start_c: 55,
 };
-/// Each joint stops by itself this far above its zero, g.
+/// Threshold of each joint above its zero, g.
 const THRESHOLD_G: f64 = 150.0;
-/// No threshold is lower, whatever the zero, g: noise alone would stop a joint.
+/// Minimum threshold regardless of the zero, g: below it, noise alone would stop a joint.
 const LEAST_G: i64 = 20;
-/// A joint is not moved whose threshold cannot stand between these above its zero, g: it would stop at nothing, or press too hard.
+/// Permitted threshold above the zero, g. A joint outside this range is not moved: it would stop at nothing, or press too hard.
 const OWN_STOP_G: RangeInclusive<f64> = 60.0..=200.0;
-/// How long the hand may take to confirm a speed and a threshold.
+/// Maximum time for the hand to confirm a speed and a threshold.
 const CONFIRM_TIMEOUT: Duration = Duration::from_secs(3);
-/// A joint stands still that stayed so long within [`STILL`], and that had so long to begin.
+/// A joint is at rest if it stayed within [`STILL`] for this time, and [`START_DELAY`] has passed.
 const STILL_DURATION: Duration = Duration::from_millis(300);
 const START_DELAY: Duration = Duration::from_millis(1000);
 /// Units of ANGLE_ACT.
 const STILL: i16 = 1;
-/// A joint this near to its target has arrived.
+/// Tolerance at a target.
 const ARRIVED: i16 = 3;
-/// A joint this near to its open end did not begin to close.
+/// Tolerance at the open end within which a joint has not begun to close.
 const STUCK_TOLERANCE: i16 = 10;
-/// A joint may have been stopped by its own offset that rests so far below its threshold at most, g: more than the noise of a
-/// worn sensor.
+/// A joint that rests at most this far below its threshold may have been stopped by its own offset, g: more than the noise of a worn
+/// sensor.
 const OFFSET_STOPS_WITHIN_G: f64 = 40.0;
-/// The angle from which on a joint is in no other's way.
+/// Angle from which a joint obstructs no other.
 const OPEN_ENOUGH: i16 = 900;
-/// A fingertip is let go so long after its last pressed reading.
+/// A fingertip counts as released this long after its last pressed reading.
 const LET_GO: Duration = Duration::from_millis(500);
-/// No stroke takes longer.
+/// Maximum duration of a stroke.
 const STROKE_MAX: Duration = Duration::from_secs(20);
 
-/// Where it stands.
+/// Progress of a check-up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CheckupView {
-    /// Steps that are over.
+    /// Completed steps.
     pub done: usize,
-    /// Steps in all.
+    /// Total number of steps.
     pub total: usize,
-    /// The joint that moves alone now.
+    /// The joint that is moving alone.
     pub joint: Option<Dof>,
-    /// The fingertip that is to be pressed now; nothing moves, and the hand is not armed.
+    /// The fingertip that the user should press now; nothing moves, and the hand is disarmed.
     pub press: Option<Finger>,
-    /// About how long the rest takes from when this step began, if nothing ends it.
+    /// Estimated duration from the start of this step to the end, if nothing ends it early.
     pub left: Duration,
 }
 
 #[derive(Debug, Clone, Copy)]
 enum StepPhase {
-    /// Speed and threshold were sent at this time, and are to be read back.
+    /// Speed and threshold were sent at this time, and await readback.
     Confirming {
         since: Moment,
     },
     /// The targets were sent.
     Moving,
     Resting,
-    /// A fingertip is waited for, or was pressed last at this time.
+    /// Waiting for a press of a fingertip, or the time of its last pressed reading.
     Pressing {
         last: Option<Moment>,
     },
@@ -82,16 +82,16 @@ enum StepPhase {
 struct RunningStep {
     stage: StepPhase,
     record: StepRecord,
-    /// Where the joints go that move in it.
+    /// Targets of the joints that move in this step.
     targets: PerDof<Option<Angle>>,
-    /// The thresholds that were sent for it.
+    /// Thresholds that were sent for it.
     forces: PerDof<Option<Force>>,
-    /// Where all joints stand still, and since when.
+    /// Angles at which all joints rest, and the time since then.
     pose: Option<(Moment, PerDof<i16>)>,
 }
 
 impl RunningStep {
-    /// A joint that should be open now and is far from it: the next would meet it on its way.
+    /// Returns a joint that should be open now and is far from it: the next joint would collide with it.
     fn blocked(&self) -> Option<Dof> {
         let opens = |dof: &Dof| self.targets[*dof] == Some(Angle::MAX);
         let is_open = |dof: &Dof| {
@@ -103,7 +103,7 @@ impl RunningStep {
     }
 }
 
-/// A check-up in an arming that the user gave.
+/// A check-up under an arming by the user.
 #[derive(Debug, Clone)]
 pub struct Checkup {
     epoch: ArmEpoch,
@@ -111,7 +111,7 @@ pub struct Checkup {
     total: usize,
     running: Option<RunningStep>,
     zero_g: PerDof<Option<f64>>,
-    /// Joints that stopped with nothing in their way: their drives count what their sensors read at rest as force.
+    /// Joints that stopped without an obstacle: their drives count the resting value of the sensor as force.
     counts_zero: PerDof<bool>,
     figures: StepResults,
     free: FreeForce,
@@ -121,7 +121,7 @@ pub struct Checkup {
 }
 
 impl Checkup {
-    /// Nothing is sent before the first tick.
+    /// Starts a check-up. Nothing is sent before the first tick.
     pub fn start(epoch: ArmEpoch, plan: CheckupPlan) -> Self {
         let left = steps(plan);
         Self {
@@ -139,7 +139,7 @@ impl Checkup {
         }
     }
 
-    /// Where it stands.
+    /// Current progress.
     pub fn view(&self) -> CheckupView {
         let running = self.running.as_ref().map(|running| running.record.step);
         let (joint, press) = match running {
@@ -162,17 +162,17 @@ impl Checkup {
         }
     }
 
-    /// What was measured until now.
+    /// Measurements so far.
     pub fn measured(&self) -> Vec<Measured> {
         measured(&self.figures, self.plan.press)
     }
 
-    /// What the joints that closed read when they touched nothing.
+    /// Forces of the closing joints while they touched nothing.
     pub const fn free_force(&self) -> &FreeForce {
         &self.free
     }
 
-    /// The joints that were left alone, with their zeros: they could not be stopped gently.
+    /// Joints that were not moved because they could not be stopped gently, with their zeros.
     pub fn left_alone(&self) -> Vec<(Dof, f64)> {
         let known = |dof: Dof| Some((dof, self.zero_g[dof]?));
         let all = Dof::ALL.into_iter().filter_map(known);
@@ -202,7 +202,7 @@ impl Checkup {
         let stage = match step {
             CheckupStep::Rest => StepPhase::Resting,
             CheckupStep::Press(_) => StepPhase::Pressing { last: None },
-            // A joint that is left alone.
+            // A joint that may not move.
             CheckupStep::Open | CheckupStep::Stroke(..) | CheckupStep::Together(_)
                 if stands_still =>
             {
@@ -229,18 +229,18 @@ impl Checkup {
         }
     }
 
-    /// Whether the threshold of a joint stops it early enough, whatever its sensor reads at rest.
+    /// True if the threshold of a joint stops it early enough, given the resting value of its sensor.
     fn may_move(&self, dof: Dof) -> bool {
         let zero = self.zero_g[dof].unwrap_or_default();
         OWN_STOP_G.contains(&(f64::from(self.threshold(dof).get()) - zero))
     }
 
-    /// Above what its sensor reads at rest.
+    /// Threshold above the resting value of its sensor.
     fn threshold(&self, dof: Dof) -> Force {
         threshold(self.zero_g[dof].unwrap_or_default())
     }
 
-    /// Whether a closing joint stopped because its drive counts the sensor's offset: it met nothing, and reads about its threshold.
+    /// True if a closing joint stopped because its drive counts the sensor's offset: it met nothing, and reads about its threshold.
     // Manual 2.6.12: FORCE_SET is compared with FORCE_ACT; whether its offset counts is not stated. The lower threshold is gentle
     // either way.
     fn stopped_by_offset(&self, running: &RunningStep, dof: Dof) -> Option<bool> {
@@ -254,7 +254,7 @@ impl Checkup {
         Some(is_short && can_rise && reaches && met.is_none())
     }
 
-    /// Begins the step anew with thresholds above the zero, for joints that their own offset stopped.
+    /// Restarts the step with thresholds above the zero, for joints that their own offset stopped.
     fn raise(&mut self, now: Moment) -> Option<Setpoints> {
         let running = self.running.as_ref()?;
         let (step, (_, pose)) = (running.record.step, running.pose?);
@@ -265,7 +265,7 @@ impl Checkup {
         }
         self.counts_zero = PerDof::from_fn(|dof| self.counts_zero[dof] || stopped[dof]);
         self.left.push_front(step);
-        // Its figures are those of a whole stroke.
+        // The measurements of a step are those of a full stroke.
         let is_open = |dof: Dof| pose[dof] >= Angle::MAX.get() - STUCK_TOLERANCE;
         let moved = |dof: &Dof| running.targets[*dof].is_some();
         if !Dof::ALL.into_iter().filter(moved).all(is_open) {
@@ -322,7 +322,7 @@ impl Checkup {
         self.figures.add(&running.record);
     }
 
-    /// What a joint met that closes, where nothing should be.
+    /// Reason to end if a closing joint met an object, where there should be none.
     fn met(&self) -> Option<Abort> {
         let running = self.running.as_ref()?;
         let closes = running.record.step.closes();
@@ -337,7 +337,7 @@ impl Checkup {
         })
     }
 
-    /// True while fingertips are to be pressed: the hand must not be armed then, so that it cannot close on the user.
+    /// True while the user presses fingertips: the hand must be disarmed then, so that it cannot close on the user.
     pub fn is_pressing(&self) -> bool {
         matches!(
             self.running.as_ref().map(|own| own.stage),
@@ -360,7 +360,7 @@ impl Checkup {
         self.next(now)
     }
 
-    /// Takes a reading of the fingertip that is to be pressed.
+    /// Receives a reading of the fingertip that should be pressed.
     fn apply_press(&mut self, finger: Finger, sample: &HandSample, fresh: Groups) {
         let fresh = fresh.contains(Group::Tactile(finger));
         let Some(tip) = TipReading::of(sample, finger).filter(|_| fresh) else {
@@ -379,7 +379,7 @@ impl Checkup {
     }
 }
 
-/// So far above a zero.
+/// Threshold at its distance above a zero.
 fn threshold(zero_g: f64) -> Force {
     #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
     let grams = (zero_g + THRESHOLD_G).round() as i64;
@@ -387,17 +387,17 @@ fn threshold(zero_g: f64) -> Force {
 }
 
 impl Checkup {
-    /// True once nothing is sent any more.
+    /// True once nothing further is sent.
     pub const fn is_over(&self) -> bool {
         self.is_over
     }
 
-    /// Why it ended early, if it did. The hand is to be stopped then.
+    /// Reason for an early end; `None` if there is none. The hand must then be stopped.
     pub const fn aborted(&self) -> Option<Abort> {
         self.aborted
     }
 
-    /// Ends it early, if it is not over.
+    /// Ends the check-up early, unless it is over.
     pub fn abort(&mut self, why: Abort) {
         if !self.is_over {
             self.fail(why);
@@ -443,7 +443,8 @@ impl Checkup {
         }
     }
 
-    /// Advances the time. Returns what to send now, if anything. `stall` is the last time in which this program did not run.
+    /// Advances the time. Returns the setpoints to send now, if any. `stall` is the most recent interval in which this program did not
+    /// run.
     pub fn tick(
         &mut self,
         sample: &HandSample,

@@ -3,53 +3,53 @@
 use crate::hand::{Fault, Moment};
 use std::time::Duration;
 
-/// A page that was not drawn for this long shows no STOP: the hand is held.
+/// The hand is held if the page was not drawn for this long: it may show no STOP.
 pub const DRAWN_TIMEOUT: Duration = Duration::from_secs(1);
-/// A tile that is held this long arms again, where visitors may.
+/// A tile that is held this long arms again, if visitors may do that.
 pub const HOLD_DURATION: Duration = Duration::from_secs(2);
 
-/// Why the hand stands still until staff come, or a visitor holds a tile where that is allowed.
+/// Reason for a halt: the hand does not move until staff arm it, or a visitor holds a tile if that is allowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HaltReason {
-    /// Nobody armed it since the program started.
+    /// Staff have not armed it yet, or have disarmed it.
     NotArmed,
     /// No hand answers.
     NoHand,
-    /// It answers again, after it did not.
+    /// The hand answers again after a lost link.
     LinkLost,
-    /// What it told grew old, or stood still though motion was asked for.
+    /// Feedback is too old, or frozen while motion is commanded.
     NoFeedback,
-    /// Somebody pressed STOP.
+    /// STOP was pressed.
     Stopped,
-    /// A fault that only the user can end, or too many.
+    /// A fault that only the user can clear, or too many faults.
     Fault,
-    /// Another controller talks to the hand.
+    /// Another controller writes to the hand.
     OtherController,
-    /// This computer slept.
+    /// This computer was suspended.
     Slept,
-    /// The page was not drawn for a while: nobody could have seen or pressed STOP.
+    /// The page was not drawn for a while, so STOP could not be seen or pressed.
     NotShown,
 }
 
-/// What goes on.
+/// Stage of an exhibition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExhibitStage {
     /// Nothing moves, and nothing may.
     Halted(HaltReason),
-    /// Nobody is there; the hand is open, or opens.
+    /// No visitor; the hand is open, or opens.
     Idle,
-    /// Nobody is there, and the hand shows what it can do.
+    /// No visitor; the hand plays the attract loop.
     Attract,
-    /// Somebody plays, until then at most.
+    /// A visitor plays, until this time at most.
     Visit {
-        /// When the next one may.
+        /// End of the visit.
         until: Moment,
     },
-    /// A visitor's time is over; the next one may play then.
+    /// A visit ended; the next one may begin at this time.
     NextVisitor { at: Moment },
-    /// The hand rests open because it grew warm, about until then.
+    /// The hand cools down open, until about this time.
     Cooling {
-        /// About when.
+        /// Estimated end.
         until: Moment,
     },
     /// A temperature is unknown, so nothing is played.
@@ -58,16 +58,16 @@ pub enum ExhibitStage {
     Clearing,
 }
 
-/// What the page shows of it.
+/// State that the page shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ExhibitView {
-    /// What goes on.
+    /// Current stage.
     pub stage: ExhibitStage,
-    /// The tile that is played.
+    /// Tile that is played.
     pub tile: Option<usize>,
-    /// The tile that is held, and since when.
+    /// Tile that is held, and the time of the press.
     pub held: Option<(usize, Moment)>,
-    /// The hand goes slowly because it is warm.
+    /// The hand moves slowly because it is warm.
     pub is_slow: bool,
 }
 
@@ -82,35 +82,35 @@ impl Default for ExhibitView {
     }
 }
 
-/// What the user does.
+/// User input of the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExhibitWish {
-    /// Touches the page, anywhere.
+    /// Touches the page anywhere.
     Touch,
     /// Presses a tile.
     Press(usize),
-    /// Lets go.
+    /// Releases a tile.
     Release,
     /// Stops the hand.
     Stop,
     /// Staff, with the PIN: arms for the exhibition.
     Arm,
-    /// Staff, with the PIN: arms no more.
+    /// Staff, with the PIN: disarms the exhibition.
     Disarm,
 }
 
-/// What the day's report counts.
+/// Events that the day's report counts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ExhibitEvent {
-    /// Somebody began to play.
+    /// A visit began.
     Visit,
     /// A visitor started a piece of this name.
     Piece(String),
-    /// A drive reported this.
+    /// A drive reported this fault.
     Fault(Fault),
-    /// The hand had to rest for its heat.
+    /// The hand had to cool down.
     Rest,
-    /// Somebody pressed STOP.
+    /// STOP was pressed.
     Stop,
     LinkLost,
 }

@@ -1,5 +1,5 @@
-//! How a hand follows a source: from where it is, never far ahead and never fast, and not at all once the source is silent,
-//! frozen or let go. Pure: offers, poses and time in, orders out.
+//! Following a source: from the current position, with bounded lead and rate, and not at all once the source is silent, frozen or
+//! released. Pure: offers, poses and time in, orders out.
 
 use crate::hand::gap::Gap;
 use crate::hand::{Angle, Dof, Moment, PerDof};
@@ -8,41 +8,41 @@ use crate::inputs::pinch::{self, PinchAim, PinchStep, StepLimits};
 use crate::record::LinkState;
 use std::time::Duration;
 
-/// A source that says nothing new for this long is held …
+/// A source that sends nothing new for this long causes a hold …
 pub const HOLD_TIMEOUT: Duration = Duration::from_millis(200);
-/// … and after this it may move the hand no more.
+/// … and after this time it loses control of the hand.
 pub const END_TIMEOUT: Duration = Duration::from_secs(1);
-/// Targets that are the same to the last bit for this long, away from the ends of the range: tracking is frozen?
+/// Targets that are bit-identical for this long, away from the ends of the range, may mean that tracking is frozen.
 pub const FREEZE_TIMEOUT: Duration = Duration::from_millis(500);
-/// A hold follows the hand for this long, as it acts late; then it stays.
+/// The target of a hold follows the hand for this long, because the hand acts late; then it stays.
 const HOLD_FOLLOWS: Duration = Duration::from_millis(120);
-/// Arming is asked for again after this.
+/// Interval between arming requests.
 const REARM_DELAY: Duration = Duration::from_millis(500);
-/// A look that comes late moves no further than one in time.
+/// A late step moves no further than a timely one.
 const STEP_LONGEST: Duration = Duration::from_millis(40);
 
-/// True if who was heard last at `last` still speaks at `now`.
+/// True if the source heard at `last` is not silent at `now`.
 pub(crate) fn is_fresh(last: Moment, now: Moment) -> bool {
     now.since(last) < HOLD_TIMEOUT
 }
 
-/// How far ahead of a joint its target may be, and how fast it may go.
+/// Maximum lead and rate of targets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct FollowLimits {
-    /// Counts ahead at most, see [`Self::LEAD`].
+    /// Maximum lead, counts, see [`Self::LEAD`].
     pub lead: u16,
-    /// Counts a second at most, see [`Self::RATE`].
+    /// Maximum rate, counts per second, see [`Self::RATE`].
     pub rate: u16,
 }
 
 impl FollowLimits {
     /// Smallest and largest lead, counts.
     pub const LEAD: (u16, u16) = (20, 500);
-    /// Smallest and largest rate, counts a second: the hand's own is 1667 at most (manual 2.6.13).
+    /// Smallest and largest rate, counts per second: the hand's own maximum is 1667 (manual 2.6.13).
     pub const RATE: (u16, u16) = (50, 1700);
 
-    /// The nearest limits that make sense.
+    /// Returns the nearest valid limits.
     #[must_use]
     pub fn within(self) -> Self {
         Self {
@@ -61,42 +61,42 @@ impl Default for FollowLimits {
     }
 }
 
-/// What goes on.
+/// Phase of following.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FollowPhase {
-    /// Nothing moves yet: no target came, or the hand is not armed yet.
+    /// Nothing moves yet: there is no target, or the hand is not armed.
     Waiting,
     /// The hand follows.
     Following,
-    /// The hand follows, and the source repeats itself to the last bit.
+    /// The hand follows, and the source repeats the same bits.
     Frozen,
-    /// The source said nothing for a while: the hand is held.
+    /// The source is silent: the hand is held.
     Silent,
-    /// The dead-man is not held: the hand was stopped.
+    /// The dead-man switch is released: the hand was stopped.
     Released,
 }
 
-/// What is known of the hand.
+/// State of the hand in one step.
 #[derive(Debug, Clone, Copy)]
 pub struct FollowInput {
-    /// Where its link stands.
+    /// State of its link.
     pub state: LinkState,
-    /// Where the joints are; `None` where that is not known freshly.
+    /// Fresh angles of the joints; `None` where there is none.
     pub pose: PerDof<Option<Angle>>,
-    /// Whether the user here holds what has to be held, if that has to be.
+    /// True while the user at this machine holds the key; `None` if none is required.
     pub held: Option<bool>,
 }
 
-/// What is to be done at the hand.
+/// Action that following requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FollowOrder {
-    /// Let setpoints pass.
+    /// Arm the hand.
     Arm,
-    /// These joints go here; the others are left alone.
+    /// Move these joints to these targets; the others are unchanged.
     Aim(PerDof<Option<Angle>>),
-    /// Stop the hand; whoever holds the dead-man again goes on.
+    /// Stop the hand; it may continue once the dead-man switch is held again.
     Halt,
-    /// Stop the hand; the source may move it no more.
+    /// Stop the hand; the source loses control.
     End,
 }
 
@@ -107,19 +107,19 @@ pub struct Follow {
     began: Moment,
     phase: FollowPhase,
     newest: Option<Offer>,
-    /// Since when targets are the same to the last bit.
+    /// Time since which targets have been bit-identical.
     same_since: Moment,
-    /// Where each joint was sent, finer than counts; `None` enters from where the joint is.
+    /// Newest target of each joint, finer than counts; `None` starts from the joint's position.
     targets: PerDof<Option<f32>>,
     sent: PerDof<Option<Angle>>,
-    /// Thumb and index were open for the gap that is wanted, and go to it by their path.
+    /// Thumb and index were open for the requested gap, and now follow their path to it.
     is_pinching: bool,
     stepped: Moment,
     asked_to_arm: Option<Moment>,
 }
 
 impl Follow {
-    /// Begins with nothing offered.
+    /// Starts without an offer.
     pub fn new(limits: FollowLimits, now: Moment) -> Self {
         Self {
             limits: limits.within(),
@@ -135,22 +135,22 @@ impl Follow {
         }
     }
 
-    /// What goes on.
+    /// Current phase.
     pub const fn phase(&self) -> FollowPhase {
         self.phase
     }
 
-    /// Where the joints were sent last.
+    /// Newest target sent to each joint.
     pub const fn sent(&self) -> &PerDof<Option<Angle>> {
         &self.sent
     }
 
-    /// Other limits from now on.
+    /// Changes the limits.
     pub fn limit(&mut self, limits: FollowLimits) {
         self.limits = limits.within();
     }
 
-    /// Takes a newer target.
+    /// Receives a newer offer.
     pub fn offer(&mut self, offer: Offer) {
         let before = self.newest.replace(offer);
         let is_same = before.is_some_and(|before| {
@@ -161,12 +161,12 @@ impl Follow {
         }
         self.same_since = offer.at;
         if self.phase == FollowPhase::Frozen {
-            // Nobody knows where it went meanwhile: as on entering.
+            // The source may have moved meanwhile: start again as on entering.
             self.enter();
         }
     }
 
-    /// Time goes on.
+    /// Advances the time.
     pub fn tick(&mut self, seen: FollowInput, now: Moment) -> Option<FollowOrder> {
         let age = now.since(self.newest.map_or(self.began, |offer| offer.at));
         if age >= END_TIMEOUT {
@@ -200,7 +200,7 @@ impl Follow {
         if self.phase == FollowPhase::Silent {
             self.enter();
         }
-        // A gap is one number, which may rightly stay the same for long.
+        // A gap is one number, which may legitimately stay the same for a long time.
         let is_frozen = offer.mark.is_some()
             && offer.gap.is_none()
             && now.since(self.same_since) >= FREEZE_TIMEOUT
@@ -213,14 +213,14 @@ impl Follow {
         self.step(&offer, &seen.pose, now)
     }
 
-    /// From where the joints are, whatever they were told before.
+    /// Starts from the positions of the joints, discarding previous targets.
     fn enter(&mut self) {
         self.targets = PerDof::splat(None);
         self.sent = PerDof::splat(None);
         self.is_pinching = false;
     }
 
-    /// Stops what may move; what is held again begins anew.
+    /// Stops a hand that may move; once held again, following starts anew.
     fn halt(&mut self, phase: FollowPhase, state: LinkState) -> Option<FollowOrder> {
         self.enter();
         self.asked_to_arm = None;
@@ -228,7 +228,7 @@ impl Follow {
         (state == LinkState::Armed).then_some(FollowOrder::Halt)
     }
 
-    /// Where the hand is becomes its target.
+    /// Makes the current position of the hand its target.
     fn hold(&mut self, seen: FollowInput, age: Duration) -> Option<FollowOrder> {
         let steered = self.targets.map(|target| target.is_some());
         let follows = age < HOLD_TIMEOUT + HOLD_FOLLOWS;
@@ -256,7 +256,7 @@ impl Follow {
         };
         match offer.gap {
             Some(gap) => {
-                // What is locked or left alone has no aim.
+                // A locked or unchanged joint has no aim.
                 let moves = offer.aims.map(|aim| aim.is_some());
                 self.step_to_gap(PinchAim { gap, moves }, pose, reach);
             }
@@ -273,7 +273,7 @@ impl Follow {
         self.send(targets)
     }
 
-    /// Each joint by itself.
+    /// Steps each joint independently.
     fn step_each(
         &mut self,
         aims: &PerDof<Option<Angle>>,
@@ -282,7 +282,7 @@ impl Follow {
     ) {
         for dof in Dof::ALL {
             let Some((aim, at)) = aims[dof].zip(pose[dof]) else {
-                // One that is not known is sent nowhere; one that is not aimed at is left alone.
+                // A joint with unknown angle receives no target; a joint without an aim is unchanged.
                 self.targets[dof] = self.targets[dof].filter(|_| aims[dof].is_some());
                 continue;
             };
@@ -297,8 +297,8 @@ impl Follow {
         }
     }
 
-    /// Thumb and index together along the path on which their pads meet, once they are open for it. Where one of them is not known
-    /// or may not move, nothing goes on.
+    /// Steps thumb and index together along the path on which their pads meet, once they are open for it. If one of them is not known
+    /// or may not move, neither advances.
     fn step_to_gap(&mut self, aim: PinchAim, pose: &PerDof<Option<Angle>>, reach: StepLimits) {
         let PinchAim { gap, moves } = aim;
         if !Gap::JOINTS.into_iter().all(|dof| moves[dof]) {
@@ -326,7 +326,7 @@ impl Follow {
                 self.step_each(&aims, pose, reach);
             }
             PinchStep::Along(to) => {
-                // As each joint by itself: what begins begins where the joint is.
+                // As for single joints, a motion starts from the position of the joint.
                 let begins = Gap::JOINTS
                     .into_iter()
                     .any(|dof| self.targets[dof].is_none());
@@ -344,7 +344,7 @@ impl Follow {
         }
     }
 
-    /// Sends what is news to the joints.
+    /// Sends the targets that changed.
     fn send(&mut self, targets: PerDof<Option<Angle>>) -> Option<FollowOrder> {
         let news = PerDof::from_fn(|dof| targets[dof].filter(|to| self.sent[dof] != Some(*to)));
         for (dof, to) in news.iter() {
@@ -355,7 +355,7 @@ impl Follow {
     }
 }
 
-/// A hand that is told to be wide open or a fist may rightly be told so for long.
+/// True if a target is away from the ends of its range: a fully open hand or a fist may legitimately be commanded for a long time.
 fn is_away_from_ends(aims: &PerDof<Option<Angle>>) -> bool {
     let mut aims = aims.iter().filter_map(|(_, aim)| *aim);
     aims.any(|aim| aim != Angle::MIN && aim != Angle::MAX)

@@ -1,5 +1,4 @@
-//! What surrounds a check-up: the earlier ones of its hand, its recording, what it came to, and its files. The motion itself is a
-//! series.
+//! The surroundings of a check-up: earlier check-ups of the hand, its recording, report and files. The motion itself is in `series`.
 
 use crate::checkup::check::{checks, stopped_early};
 use crate::checkup::free_file;
@@ -21,28 +20,28 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tokio_util::task::AbortOnDrop;
 
-/// Where the files of a check-up are.
+/// Locations of the files of a check-up.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CheckupFiles {
-    /// The hand that is checked.
+    /// Endpoint of the hand.
     pub hand: Endpoint,
-    /// The file of its earlier check-ups; `None` for the built-in one, which is another each time.
+    /// File of its earlier check-ups; `None` for the built-in hand, which is a new one each time.
     pub kept: Option<PathBuf>,
-    /// The file of what its joints read when they touch nothing; `None` as with `kept`.
+    /// File of the forces that its joints read while they touch nothing; `None` as with `kept`.
     pub free_force: Option<PathBuf>,
-    /// The folder of its report; `None` = it is not written.
+    /// Folder of its report; `None` if no report is written.
     pub report: Option<PathBuf>,
-    /// The folder of recordings, from which its use is counted.
+    /// Folder of recordings, from which the usage is counted.
     pub recordings: Option<PathBuf>,
 }
 
 impl CheckupFiles {
-    /// The file in the folder of earlier check-ups where those of a hand are.
+    /// File of the earlier check-ups of a hand, in the folder for all hands; `None` for the built-in hand.
     pub fn kept_in(folder: &Path, hand: &Endpoint) -> Option<PathBuf> {
         (!hand.is_sim()).then(|| kept::file_of(folder, hand))
     }
 
-    /// The earlier check-ups, the oldest first.
+    /// Earlier check-ups, oldest first.
     ///
     /// # Errors
     /// As [`kept::read`].
@@ -50,10 +49,10 @@ impl CheckupFiles {
         self.kept.as_deref().map_or(Ok(Vec::new()), kept::read)
     }
 
-    /// The earlier check-ups, where one more can be kept: nothing is to move for what cannot be.
+    /// Earlier check-ups, after ensuring that another one can be stored: the hand must not move for a result that cannot be kept.
     ///
     /// # Errors
-    /// As [`kept::read`], or that the folder cannot be made.
+    /// As [`kept::read`], or the folder cannot be created.
     pub fn prepare(&self) -> io::Result<Vec<StoredCheckup>> {
         let earlier = self.earlier()?;
         let folder = self.kept.as_deref().and_then(Path::parent);
@@ -61,10 +60,10 @@ impl CheckupFiles {
         Ok(earlier)
     }
 
-    /// Begins to record what goes on at the hand, beside the report; `None` where that is not written.
+    /// Starts recording the hand, beside the report; `None` if no report is written.
     ///
     /// # Errors
-    /// What the system says if it gives no thread.
+    /// The system's error if it cannot start a thread.
     pub fn record(
         &self,
         observed: LinkObserver,
@@ -88,7 +87,7 @@ impl CheckupFiles {
         }))
     }
 
-    /// What the last check-up that was kept came to; `None` if there is none.
+    /// Report of the last stored check-up; `None` if there is none.
     ///
     /// # Errors
     /// As [`kept::read`].
@@ -120,33 +119,33 @@ impl CheckupFiles {
     }
 }
 
-/// The recording of a check-up under way. It ends when this is dropped.
+/// The recording of a running check-up. It ends when this is dropped.
 #[derive(Debug)]
 pub struct CheckupRecording {
     recorder: Recorder,
     _pump: AbortOnDrop,
 }
 
-/// A check-up that is over.
+/// A check-up that has ended.
 #[derive(Debug)]
 pub struct EndedCheckup {
-    /// What was measured, and how it ended.
+    /// Its measurements and its outcome.
     pub driven: Driven<Checkup>,
     /// Its recording.
     pub recording: Option<CheckupRecording>,
 }
 
-/// What was made of a check-up, and why its files were not written, if they were not.
+/// The report of a check-up, and the error if its files could not be written.
 #[derive(Debug)]
 pub struct ConcludedCheckup {
-    /// What it came to.
+    /// The report.
     pub report: CheckupReport,
-    /// The folder of its report, or why there is none; `None` where none was asked for.
+    /// Folder of its report, or the error; `None` if no report was requested.
     pub written: Option<io::Result<PathBuf>>,
 }
 
 impl CheckupFiles {
-    /// Judges a check-up that is over, keeps it, and writes its report. Waits for the disk.
+    /// Judges an ended check-up, stores it, and writes its report. Blocks on the disk.
     pub fn conclude(&self, ended: EndedCheckup) -> ConcludedCheckup {
         let at = stamp(since_1970());
         let Driven {
@@ -190,7 +189,7 @@ impl CheckupFiles {
         ConcludedCheckup { report, written }
     }
 
-    /// A grip that is told without it is less sure, and not wrong: that it was not kept is no failure.
+    /// Stores the free forces. Without them a grip is less certain but not wrong, so a failure is ignored.
     fn keep_free_force(&self, measured: &FreeForce) {
         if let Some(file) = &self.free_force {
             let mut known = free_file::read(file).unwrap_or_default();

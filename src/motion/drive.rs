@@ -1,5 +1,5 @@
-//! The loop that moves an armed hand by a program, with the rules that hold for all of them: whose control it is, link loss, faults,
-//! arming, another controller, stalls, and the stop that follows an early end.
+//! The loop that moves an armed hand by a program, with the rules that apply to all programs: control, link loss, faults, arming,
+//! another controller, stalls, and the stop that follows an early end.
 
 use crate::hand::{ArmEpoch, HandCommand, HandSample, Moment, Setpoints};
 use crate::link::{Clock, Lease, LeaseRefusal, LinkHandle, LinkStatus, PollRates, Records, Stop};
@@ -11,47 +11,47 @@ use std::pin::pin;
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// How often the time is checked while nothing is read, with an armed hand, …
+/// Maximum wait for a reading while the hand is armed, …
 const TICK: Duration = Duration::from_millis(5);
-/// … and with a hand that must not move.
+/// … and while it must not move.
 const IDLE_TICK: Duration = Duration::from_millis(50);
-/// A turn of the loop that takes this much longer than its tick is a stall.
+/// A turn of the loop that exceeds its tick by this much is a stall.
 const STALL_MARGIN: Duration = Duration::from_millis(45);
 
-/// An arming that the user gave, and what was read until then.
+/// An arming by the user, and the newest readings.
 #[derive(Debug, Clone, Copy)]
 pub struct Armed {
     /// The arming.
     pub epoch: ArmEpoch,
     /// The right to move the hand.
     pub lease: Lease,
-    /// What was read until now.
+    /// Newest readings.
     pub seen: HandSample,
     /// The program's clock.
     pub clock: Clock,
 }
 
-/// What a program starts with.
+/// State in which a program starts.
 #[derive(Debug, Clone, Copy)]
 pub struct DriveStart {
-    /// Who arms the hand.
+    /// Party that arms the hand.
     pub armed_by: ArmedBy,
     /// The right to move the hand; `None` for a program that waits until the user grants it.
     pub lease: Option<Lease>,
-    /// What was read until now.
+    /// Newest readings.
     pub seen: HandSample,
     /// The program's clock.
     pub clock: Clock,
 }
 
-/// Who arms the hand for a program.
+/// Party that arms the hand for a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ArmedBy {
-    /// The user did. The program ends with this arming.
+    /// The user armed. The program ends with this arming.
     User(ArmEpoch),
-    /// The program does, as often as it needs. It ends with its lease.
+    /// The program arms, as often as it needs. It ends with its lease.
     Program,
-    /// Nobody: the program disarmed the hand, which must not move.
+    /// No party: the program disarmed the hand, which must not move.
     Nobody,
 }
 
@@ -66,19 +66,19 @@ impl From<Armed> for DriveStart {
     }
 }
 
-/// A program that is over.
+/// A program that has ended.
 #[derive(Debug)]
 pub struct Driven<P: Program> {
-    /// The program, with what it learned.
+    /// The program, with its results.
     pub program: P,
-    /// How it ended.
+    /// Its outcome, or the reason for an early end.
     pub end: Ended<P::Outcome>,
-    /// What feedback says of the stop that followed, if one did.
+    /// Result of the stop that followed, as feedback shows it; `None` if the hand was not stopped.
     pub stop: Option<Stop>,
 }
 
 impl<P: Program> Driven<P> {
-    /// Why it ended early, and the stop.
+    /// Returns the reason for an early end, and the result of the stop.
     pub fn report(&self) -> EndReport {
         EndReport {
             aborted: self.end.err(),
@@ -87,17 +87,17 @@ impl<P: Program> Driven<P> {
     }
 }
 
-/// How a program ended, for those who report it.
+/// End of a program, for reports.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndReport {
-    /// Why it ended early, if it did.
+    /// Reason for an early end; `None` if the program ended by itself.
     pub aborted: Option<Abort>,
-    /// What feedback says of the stop that followed, if one did.
+    /// Result of the stop that followed, as feedback shows it; `None` if the hand was not stopped.
     pub stop: Option<Stop>,
 }
 
-/// Runs a program to its end. `report` sees it after each step, with what was sent in it, and says whether it could store or show
-/// what is new; if not, the program is aborted. If `inputs` ends, whoever ran the program moves the hand in another way.
+/// Runs a program to its end. `report` receives it after each step with the setpoints sent in that step, and returns false if it could
+/// not store or show the step; the program is then aborted. The end of `inputs` means that the caller moves the hand in another way.
 pub async fn drive<P: Program>(
     hand: &LinkHandle,
     start: impl Into<DriveStart>,
@@ -126,7 +126,7 @@ pub async fn drive<P: Program>(
         let tick = if is_armed { TICK } else { IDLE_TICK };
         let (mut input, record) = tokio::select! {
             biased;
-            // Whoever sends without a pause keeps no reading waiting.
+            // A source that sends without a pause delays no reading.
             input = inputs.next() => (Some(input), at.records.try_next()),
             record = timeout(tick, at.records.next()) => (None, record.ok().flatten()),
         };
@@ -137,7 +137,7 @@ pub async fn drive<P: Program>(
         let status = hand.status();
         let is_broken = at.broken(&status);
         if is_broken {
-            // The user may have ended it in the same moment, and the newest readings may tell the cause.
+            // The user may have ended it in the same moment, and the newest readings may show the cause.
             input = input.or_else(|| inputs.next().now_or_never());
             while let Some(record) = at.records.try_next() {
                 at.read(&mut program, Some(record), clock.now());
@@ -158,7 +158,7 @@ pub async fn drive<P: Program>(
         let mut sent = order.and_then(|order| at.obey(order, &status));
         if program.ended().is_none() && is_broken {
             program.abort(at.cause(&status, clock.now()), clock.now());
-            // A program that continues has no control until it is granted again.
+            // A program that continues has no control until control is granted again.
             at.lease = None;
         } else if program.ended().is_none() && sent.is_none() {
             order = program.tick(&seen);
@@ -192,7 +192,7 @@ struct Driving<'a> {
     sample: HandSample,
     armed_by: ArmedBy,
     lease: Option<Lease>,
-    /// What another controller was seen to write until the program disarmed.
+    /// Foreign setpoint that was already known when the program disarmed the hand.
     foreign: Option<SetpointConflict>,
     turns: Turns,
 }
@@ -213,10 +213,10 @@ impl Driving<'_> {
         }
     }
 
-    /// Does it; what was sent, if something was.
+    /// Executes an order; returns the setpoints that were sent, if any.
     fn obey(&mut self, order: Order, status: &LinkStatus) -> Option<Setpoints> {
         let (hand, lease) = (self.hand, self.lease);
-        // Under a lease that ended nothing is done, and the next step ends the program.
+        // Under an ended lease no order is executed, and the next step ends the program.
         let under = |act: &dyn Fn(Lease) -> Result<(), LeaseRefusal>| {
             lease.is_some_and(|lease| act(lease).is_ok())
         };
@@ -241,18 +241,18 @@ impl Driving<'_> {
                 tokio::spawn(async move { hand.write(HandCommand::ClearErrors).await });
                 true
             }
-            // The loop does it after the report.
+            // The loop stops the hand after the report.
             Order::Stop => true,
         };
         None
     }
 
-    /// Why control has ended, if it has.
+    /// Reason for which control has ended; `None` while it lasts.
     fn refusal(&self) -> Option<LeaseRefusal> {
         self.lease.and_then(|lease| self.hand.check(lease).err())
     }
 
-    /// Whether the program must not go on.
+    /// True if the conditions under which the program may run no longer hold.
     fn broken(&self, status: &LinkStatus) -> bool {
         let is_refused = || self.refusal().is_some();
         match self.armed_by {
@@ -268,7 +268,7 @@ impl Driving<'_> {
         }
     }
 
-    /// Why it must not.
+    /// Reason for which the program must end.
     fn cause(&self, status: &LinkStatus, now: Moment) -> Abort {
         let wrote = status.foreign_setpoint;
         if !status.state.is_live() {
@@ -291,7 +291,7 @@ impl Driving<'_> {
         if ended == Some(Disarmed::LinkLost) {
             return Abort::LinkLost;
         }
-        // While the hand is stopped for a fault its state says so of the stop alone.
+        // While the hand is stopped for a fault, its state reports only the stop.
         let by_fault = status.state == LinkState::Fault || ended == Some(Disarmed::Fault);
         if let Some(why) = fault(&self.sample).or(by_fault.then_some(Abort::Fault { joint: None }))
         {
@@ -312,7 +312,7 @@ impl Driving<'_> {
     }
 }
 
-/// The turns of the loop, and what lies between two that are far apart.
+/// The turns of the loop, and the newest stall between two of them.
 struct Turns {
     last: Moment,
     stall: Option<TaskStall>,
@@ -326,7 +326,7 @@ impl Turns {
         }
     }
 
-    /// One more turn, which was due after `tick`; the stall before it, if there was one.
+    /// Counts a turn that was due after `tick`; returns the stall before it, if there was one.
     fn turn(&mut self, now: Moment, tick: Duration) -> Option<TaskStall> {
         let lasted = now.since(self.last);
         self.last = now;
@@ -336,7 +336,7 @@ impl Turns {
     }
 }
 
-/// Tells the user what feedback says of a stop that followed an early end, after its reason.
+/// Text on the result of a stop that followed an early end, to be appended to the reason.
 pub fn stop_words(stop: Option<Stop>) -> String {
     match stop {
         None => String::new(),
@@ -349,7 +349,7 @@ pub fn stop_words(stop: Option<Stop>) -> String {
     }
 }
 
-/// Shown where a stop cannot be confirmed, as no feedback comes.
+/// Shown if a stop cannot be confirmed because there is no feedback.
 pub const STOP_LOST: &str =
     "the link is lost, so a stop cannot be confirmed: switch off the 24 V supply if the hand moves";
 

@@ -1,4 +1,4 @@
-//! An exhibition: the only program that moves the hand while it lasts. It plays the pieces of visitors and of the attract loop.
+//! An exhibition: the only program that moves the hand while it runs. It plays the pieces of visitors and of the attract loop.
 
 use crate::exhibit::heat::{HeatGovernor, HeatLevel};
 use crate::exhibit::plan::{ExhibitPiece, ExhibitPlan};
@@ -40,7 +40,7 @@ const COOLING_DURATION: Duration = Duration::from_secs(120);
 /// Settings and readings with which an exhibition starts.
 #[derive(Debug, Clone)]
 pub struct ExhibitStart {
-    /// Motions that visitors may start, and their limits.
+    /// Pieces that visitors may start, and their limits.
     pub plan: Arc<ExhibitPlan>,
     /// Joints that do not move.
     pub locked: PerDof<bool>,
@@ -150,7 +150,7 @@ pub(crate) struct ExhibitRun {
     motion: Playback,
     /// The piece that moves the hand.
     playing: Option<Playing>,
-    /// The piece is to be held.
+    /// The hand should hold, which ends the current piece.
     holds: bool,
     /// Time of an arming request that has no effect yet.
     asked: Option<Moment>,
@@ -158,9 +158,9 @@ pub(crate) struct ExhibitRun {
     epoch: Option<ArmEpoch>,
     /// The user permitted motion in this step.
     grants: bool,
-    /// The hand is to be stopped.
+    /// The hand should be stopped.
     stops: bool,
-    /// Faults are to be cleared.
+    /// Faults should be cleared.
     clears: bool,
     heat: HeatGovernor,
     level: HeatLevel,
@@ -353,7 +353,7 @@ impl ExhibitRun {
         self.motion = Playback::Waits(plan);
     }
 
-    /// The current piece is over.
+    /// Notes that the current piece ended.
     fn piece_ended(&mut self, now: Moment) {
         self.playing = None;
         if self.motion == Playback::Plays {
@@ -362,7 +362,7 @@ impl ExhibitRun {
         }
     }
 
-    /// The hand did not answer, even for a moment.
+    /// Handles a lost link, even a momentary one.
     fn link_lost(&mut self) {
         if std::mem::replace(&mut self.is_live, false) {
             self.events.push(ExhibitEvent::LinkLost);
@@ -510,7 +510,7 @@ impl ExhibitRun {
             Playback::Done { .. } if now.since(self.quiet_since) >= GONE_TIMEOUT => {
                 self.go_idle(now)
             }
-            // It has no end of its own at which it would be played more slowly.
+            // Such a piece has no end after which it would be played more slowly.
             Playback::Plays if reacts && self.level > self.played_at => self.play_tile(tile),
             // The hand was not armed in time.
             Playback::None => self.go_idle(now),
@@ -565,7 +565,7 @@ impl ExhibitRun {
         let is_late = |at| now.since(at) >= ARM_TIMEOUT;
         if self.asked.take_if(|at| is_late(*at)).is_some() {
             self.motion = Playback::None;
-            // It must not be armed later either.
+            // It must not be armed late either.
             return Some(Order::Rest);
         }
         let is_resting = matches!(self.phase, Phase::Idle | Phase::Cooling { .. });

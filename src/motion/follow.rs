@@ -1,5 +1,5 @@
-//! A hand that follows a source under a lease that the user granted: gamepad, stream, another hand. When it moves, and how far, is decided
-//! in `inputs`; here it is done.
+//! A hand that follows a source (gamepad, stream, another hand) under a lease that the user granted. `inputs` decides when and how far
+//! it moves; this program executes that.
 
 use crate::hand::gap::Gap;
 use crate::hand::{
@@ -18,19 +18,19 @@ use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 
-/// The delay that is told is that of so many targets.
+/// The reported delay covers this many targets.
 const DELAYS: usize = 512;
-/// How often the view is told while only its figures change.
+/// Interval of view updates while only figures change.
 const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
-/// What the user allows a source.
+/// Limits that the user sets for a source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FollowTerms {
-    /// How far and how fast.
+    /// Maximum lead and rate.
     pub limits: FollowLimits,
-    /// Joints that stay where they are.
+    /// Locked joints, which do not move.
     pub locked: PerDof<bool>,
-    /// What the user here has to hold.
+    /// Key that the user has to hold at this machine, if required.
     pub hold: HoldToRun,
 }
 
@@ -39,41 +39,41 @@ pub struct FollowTerms {
 pub struct FollowStart {
     /// The right to move the hand, granted by the user for this source.
     pub lease: Lease,
-    /// What the user allows, also while it goes on.
+    /// Limits set by the user; they may change while the program runs.
     pub terms: watch::Receiver<FollowTerms>,
     /// Speeds and forces to arm with.
     pub arm: ArmRequest,
-    /// What was read until now.
+    /// Newest readings.
     pub seen: HandSample,
     /// The program's clock.
     pub clock: Clock,
 }
 
-/// What is shown of it.
+/// State of following, for display.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FollowView {
     /// Phase of following, as the window shows it.
     pub phase: FollowPhase,
-    /// Where the joints were sent.
+    /// Newest target of each joint; `None` if none was sent.
     pub sent: PerDof<Option<Angle>>,
-    /// Counts that targets are ahead of their joints, at most.
+    /// Largest difference between target and actual angle over all joints, counts.
     pub lead: u16,
-    /// From a target's arrival to its first byte on the wire, 99 of 100.
+    /// Delay between the arrival of a target and its first byte on the wire, 99th percentile.
     pub delay_p99: Option<Duration>,
     /// The warmest drive, if one is warm.
     pub heat: Option<DriveHeat>,
 }
 
-/// How following ended that nothing aborted. The hand was stopped, and control was given back.
+/// Outcome of following that was not aborted. The hand was stopped, and control was given back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FollowEnd {
-    /// The source sent nothing for too long.
+    /// The source was silent for too long.
     Silent,
     /// The source was closed or unplugged.
     Gone,
 }
 
-/// Follows until the source or the lease ends.
+/// Follows a source until it ends or the lease ends.
 pub async fn follow(
     hand: &LinkHandle,
     start: FollowStart,
@@ -122,9 +122,9 @@ struct FollowRun {
     follow: Follow,
     view: Option<FollowView>,
     delays: Delays,
-    /// What the source asked for last.
+    /// Newest force and speed limits from the source.
     limits: OfferLimits,
-    /// What the hand was told of it, under which arming.
+    /// Limits that were sent to the hand, and the arming under which.
     limited: Option<(ArmEpoch, OfferLimits)>,
     end: Option<Ended<FollowEnd>>,
 }
@@ -140,14 +140,14 @@ impl Program for FollowRun {
             *aim = aim.filter(|_| !locked[dof]);
         }
         if offer.gap.is_some() && Gap::JOINTS.into_iter().any(|dof| locked[dof]) {
-            // Without one of them there is no path, and nothing is closed beside it.
+            // If one of these joints is locked there is no path, and no other joint closes beside it.
             offer.gap = None;
             offer.aims = PerDof::splat(None);
         }
         self.limits.merge(&offer.limits);
         self.follow.offer(offer);
         self.delays.offered = Some(offer.at);
-        // Should this program hang, the link stops the hand by itself.
+        // If this program hangs, the link stops the hand by itself.
         (offer.held == Some(true)).then(|| Order::RunUntil(offer.at.plus(HOLD_TIMEOUT)))
     }
 
@@ -199,7 +199,7 @@ impl Program for FollowRun {
 }
 
 impl FollowRun {
-    /// Sends targets, and limits that the hand was not told under this arming yet.
+    /// Sends targets, and limits that were not sent under this arming yet.
     fn set(&mut self, epoch: ArmEpoch, aims: &PerDof<Option<Angle>>) -> Option<Order> {
         let mut setpoints = Setpoints::none(epoch);
         setpoints.angle = aims.map(|aim| aim.map(Target::Go));
@@ -231,12 +231,12 @@ impl FollowRun {
     }
 }
 
-/// From a target's arrival to the wire.
+/// Delays between the arrival of targets and their transmission.
 #[derive(Debug, Default)]
 struct Delays {
-    /// When the newest target came in, until it was set.
+    /// Arrival of the newest target, until it is set.
     offered: Option<Moment>,
-    /// When the one came in that was set and is not on the wire yet.
+    /// Arrival of the target that was set and is not on the wire yet.
     set: Option<Moment>,
     all: VecDeque<Duration>,
 }
@@ -244,7 +244,7 @@ struct Delays {
 impl Delays {
     fn set(&mut self) {
         if let Some(offered) = self.offered.take() {
-            // One that a newer one replaced before it was sent does not count as sent.
+            // A target that a newer one replaced before transmission does not count as sent.
             self.set = Some(offered);
         }
     }

@@ -1,5 +1,5 @@
-//! A grip by size on a hand that the user armed: open, then close along the path on which the pads of thumb and index meet, to
-//! the gap or to what stands between them.
+//! A grip by size on a hand that the user armed: open, then close along the path on which the pads of thumb and index meet, to the gap
+//! or to the object between them.
 
 use crate::hand::gap::{Gap, PinchGap, held_gap, pinch_gap};
 use crate::hand::grip::{Grip, GripEstimator};
@@ -17,58 +17,58 @@ use futures::Stream;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// A part of the way is not judged before this: the hand acts late.
+/// Minimum time before a leg is judged: the hand acts late.
 const START_DELAY: Duration = Duration::from_millis(500);
-/// Setpoints that are read back sooner after they were written may be those of before.
+/// Setpoints read back sooner than this after a write may be the previous ones.
 const ACT_DELAY: Duration = Duration::from_millis(150);
-/// A part of the way that is done waits no longer than this, counted from its start, for what is read back.
+/// A completed leg waits at most this long, counted from its start, for its setpoints to be read back.
 const READ_BACK_TIMEOUT: Duration = Duration::from_millis(1500);
-/// A part of the way may take so much longer than its speed says.
+/// Time that a leg may take beyond the time its speed implies.
 const SPARE: Duration = Duration::from_secs(4);
 
-/// What a grip begins with.
+/// Settings with which a grip starts.
 #[derive(Debug, Clone)]
 pub struct GripStart {
-    /// The gap to close, or open, to.
+    /// Gap to close or open to.
     pub gap: Gap,
     /// Speed of the fastest joint.
     pub speed: Speed,
     /// Force threshold of all joints.
     pub force: Force,
-    /// What tells the grip.
+    /// Grip estimate from the readings so far.
     pub grip: GripEstimator,
 }
 
-/// How a grip ended that nothing aborted.
+/// Outcome of a grip that was not aborted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GripEnd {
-    /// Thumb and index hold something.
+    /// Thumb and index hold an object.
     Held,
-    /// At the gap, and nothing is held.
+    /// Thumb and index are at the gap and hold nothing.
     Reached,
-    /// Something stopped a joint before the gap, but it is not held by thumb and index. The hand was stopped.
+    /// A joint was stopped before the gap, but thumb and index hold nothing. The hand was stopped.
     Stopped,
-    /// Something stopped a joint before the hand was open for the grip. The hand was stopped.
+    /// A joint was stopped before the hand was open for the grip. The hand was stopped.
     NotOpened,
-    /// It took too long. The hand was stopped.
+    /// The time limit expired. The hand was stopped.
     Late,
 }
 
 /// The result of a grip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GripReport {
-    /// How it ended.
+    /// Its outcome, or the reason for an early end.
     pub end: Ended<GripEnd>,
-    /// What is between the pads then, by the model; `None` where they do not face each other, or angles are old.
+    /// Gap between the pads at the end, by the model; `None` if they do not face each other, or the angles are not known.
     pub gap: Option<PinchGap>,
-    /// What the hand gripped then.
+    /// Grip at the end.
     pub grip: Grip,
-    /// What feedback says of the stop that followed, if one did.
+    /// Result of the stop that followed, as feedback shows it; `None` if the hand was not stopped.
     pub stop: Option<Stop>,
 }
 
-/// Grips. At the end the hand is not armed any more. Of a grip that was [held](GripEnd::Held) or [reached](GripEnd::Reached) it keeps its
-/// targets: it goes on pressing what it holds, up to the force threshold.
+/// Grips. At the end the hand is disarmed. After a grip that was [held](GripEnd::Held) or [reached](GripEnd::Reached) it keeps its
+/// targets: it continues to press the object, up to the force threshold.
 pub async fn grip(
     hand: &LinkHandle,
     armed: Armed,
@@ -98,11 +98,11 @@ struct GripRun {
     start: GripStart,
     epoch: ArmEpoch,
     setpoints: SentSetpoints,
-    /// What is left of the way, the first of it sent; `None` until it is known where the hand is.
+    /// Remaining legs, the first of them sent; `None` until the position of the hand is known.
     legs: Option<VecDeque<WayPart>>,
-    /// When the part under way was sent.
+    /// Time at which the current leg was sent.
     sent: Moment,
-    /// Where the joints were in the last step, if that was known.
+    /// Angles in the last step; `None` if they were not known.
     angles: Option<PerDof<i16>>,
     end: Option<Ended<GripEnd>>,
 }
@@ -143,7 +143,7 @@ impl Program for GripRun {
             to.is_none_or(|to| angles[dof].abs_diff(to.get()) <= Angle::ARRIVED_TOLERANCE)
         });
         let is_last = self.legs.as_ref().is_some_and(|legs| legs.len() == 1);
-        // What another wrote meanwhile would be overwritten unseen.
+        // A leg sent now would overwrite the setpoints of another controller unseen.
         let is_unread = since >= READ_BACK_TIMEOUT && !self.setpoints.others.is_doubted();
         if arrived && !is_last {
             if self.setpoints.is_seen() || is_unread {
@@ -174,7 +174,7 @@ impl GripRun {
         (since > limit).then(|| self.end(GripEnd::Late))
     }
 
-    /// Ends it where the hand rests now.
+    /// Ends the grip at rest, judged by the current readings.
     fn at_rest(&mut self, sample: &HandSample, leg: WayPart, arrived: bool) -> Option<Order> {
         let angle = sample.angle.map(|angle| angle.value);
         let grip = self.start.grip.grip();
@@ -191,12 +191,12 @@ impl GripRun {
         self.end = Some(Ok(end));
         match end {
             GripEnd::Held | GripEnd::Reached => Order::Disarm,
-            // Nothing goes on pressing what is not held.
+            // The hand must not continue to press if it holds nothing.
             GripEnd::Stopped | GripEnd::NotOpened | GripEnd::Late => Order::Stop,
         }
     }
 
-    /// Sends the first part of what is left.
+    /// Sends the first remaining leg.
     fn send(&mut self, now: Moment) -> Option<Order> {
         let leg = self.legs.as_ref().and_then(|legs| legs.front())?;
         let mut setpoints = Setpoints::none(self.epoch);
@@ -213,12 +213,12 @@ impl GripRun {
     }
 }
 
-/// The setpoints of this grip, against what is read back of them: by the rule that the session itself judges by.
+/// Setpoints of this grip compared with those read back, by the rule that the session itself uses.
 #[derive(Debug, Default)]
 struct SentSetpoints {
     at: Option<Moment>,
     others: OtherController,
-    /// Angles and speeds were read back since the last of them were sent.
+    /// Angles and speeds were read back since the last setpoints were sent.
     is_read: [bool; 2],
 }
 
@@ -243,13 +243,13 @@ impl SentSetpoints {
         }
     }
 
-    /// Both groups were read since the joints were told something, with nothing strange.
+    /// True if both groups were read back since the last setpoints, without unexpected values.
     fn is_seen(&self) -> bool {
         self.is_read == [true; 2] && !self.others.is_doubted()
     }
 }
 
-/// How long a part of the way may take: the whole stroke at its speed, and some time to spare.
+/// Time limit of a leg: the full stroke at its speed, plus [`SPARE`].
 fn limit(leg: &WayPart) -> Duration {
     let fastest = leg.speeds.as_array().iter().max().copied();
     fastest.unwrap_or(Speed::MIN).stroke() + SPARE

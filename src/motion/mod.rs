@@ -1,5 +1,5 @@
-//! Everything that moves an armed hand over time. Each motion is a [`Program`](program::Program), a pure state machine: readings, time and
-//! user input in, orders out. [`drive`](drive::drive) is the one loop that runs them, and has the safety rules.
+//! Programs that move an armed hand over time. Each motion is a [`Program`](program::Program), a pure state machine: readings, time
+//! and user input in, orders out. [`drive`](drive::drive) is the one loop that runs them and owns the safety rules.
 #![warn(missing_docs)]
 
 pub mod checkup;

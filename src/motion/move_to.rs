@@ -1,5 +1,5 @@
-//! One motion of a hand that the user armed: to targets, on a way on which thumb and index do not meet, until it is there or
-//! something stops it.
+//! One motion of a hand that the user armed: to targets, along a path on which thumb and index do not collide, until it arrives or is
+//! stopped by an obstacle.
 
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{Angle, ArmEpoch, Groups, HandSample, Moment, Setpoints, Speed, Target};
@@ -12,45 +12,45 @@ use futures::stream::pending;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// A part of the way is not judged at rest before this: the hand acts late.
+/// Minimum time before a leg is judged at rest: the hand acts late.
 const START_DELAY: Duration = Duration::from_millis(500);
-/// A part of the way may take so much longer than its speed says.
+/// Time that a leg may take beyond the time its speed implies.
 const SPARE: Duration = Duration::from_secs(4);
 
-/// What a motion begins with.
+/// Settings with which a motion starts.
 #[derive(Debug, Clone)]
 pub struct MoveStart {
-    /// Where the joints go; `None` leaves one alone.
+    /// Target of each joint; `None` leaves a joint unchanged.
     pub targets: Targets,
-    /// Speeds and force thresholds of the joints that go.
+    /// Speeds and force thresholds of the moving joints.
     pub limits: ArmRequest,
-    /// Whether it is over only once the hand rests, so that it is known what it grips.
+    /// The motion ends only once the hand rests, so that the grip is known.
     pub settles: bool,
-    /// What is gripped, from what was read until now.
+    /// Grip estimate from the readings so far.
     pub grip: GripEstimator,
 }
 
-/// How a motion ended that nothing aborted. No more is sent: the hand stays armed and keeps its targets.
+/// Outcome of a motion that was not aborted. Nothing further is sent: the hand stays armed and keeps its targets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MoveEnd {
     /// Every joint is at its target.
     Reached,
     /// The hand rests, and a joint is not at its target: something, or its force threshold, stopped it.
     Stopped,
-    /// It took too long.
+    /// The time limit expired.
     Late,
 }
 
 /// The result of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MoveReport {
-    /// How it ended.
+    /// Its outcome, or the reason for an early end.
     pub end: Ended<MoveEnd>,
-    /// What the hand gripped then.
+    /// Grip at the end of the motion.
     pub grip: Grip,
 }
 
-/// Moves, until the joints are there or the hand rests elsewhere.
+/// Moves until the joints are at their targets or the hand rests elsewhere.
 pub async fn move_to(hand: &LinkHandle, armed: Armed, start: MoveStart) -> MoveReport {
     let program = Moving {
         epoch: armed.epoch,
@@ -70,9 +70,9 @@ pub async fn move_to(hand: &LinkHandle, armed: Armed, start: MoveStart) -> MoveR
 struct Moving {
     start: MoveStart,
     epoch: ArmEpoch,
-    /// What is left of the way, the first of it sent; `None` until it is known where the hand is.
+    /// Remaining legs, the first of them sent; `None` until the position of the hand is known.
     legs: Option<VecDeque<Targets>>,
-    /// When the part under way was sent.
+    /// Time at which the current leg was sent.
     sent: Moment,
     end: Option<Ended<MoveEnd>>,
 }
@@ -108,7 +108,7 @@ impl Program for Moving {
             to.is_none_or(|to| angles[dof].is_some_and(|at| is_there(to, at)))
         });
         let is_last = self.legs.as_ref().is_some_and(|legs| legs.len() == 1);
-        // What was read before it was sent says nothing of it.
+        // A reading from before the leg was sent says nothing about it.
         let is_known = angle.asked >= self.sent;
         if arrived && is_known && !is_last {
             self.legs.as_mut().and_then(VecDeque::pop_front);
@@ -134,7 +134,7 @@ impl Program for Moving {
 }
 
 impl Moving {
-    /// The first end stays.
+    /// Ends the motion if `is_over`. The first end is final.
     fn end_if(&mut self, is_over: bool, end: MoveEnd) {
         if is_over {
             self.end.get_or_insert(Ok(end));
@@ -148,7 +148,7 @@ impl Moving {
         speeds.min().unwrap_or(Speed::GENTLE)
     }
 
-    /// Sends the first part of what is left.
+    /// Sends the first remaining leg.
     fn send(&mut self, now: Moment) -> Option<Order> {
         let leg = self.legs.as_ref().and_then(|legs| legs.front())?;
         let mut setpoints = Setpoints::none(self.epoch);
@@ -164,7 +164,7 @@ impl Moving {
     }
 }
 
-/// How long a part of the way may take: the whole stroke at its speed, and some time to spare.
+/// Time limit of a leg: the full stroke at its speed, plus [`SPARE`].
 fn limit(speed: Speed) -> Duration {
     let stroke = f64::from(Angle::MAX.get());
     let longest = Duration::from_secs(600);

@@ -1,5 +1,5 @@
-//! A sequence of poses on a hand that the user armed: each pose with its speed and force, then its dwell. Whoever else moves
-//! the hand ends it.
+//! A sequence of poses on a hand that the user armed: each pose with its speed and force, then its dwell. The sequence ends when
+//! another party moves the hand.
 
 use crate::hand::gap::Gap;
 use crate::hand::grip::GripEstimator;
@@ -16,42 +16,42 @@ use crate::record::Abort;
 use futures::stream::poll_fn;
 use tokio::sync::mpsc;
 
-/// What a sequence begins with.
+/// Settings with which a sequence starts.
 #[derive(Debug, Clone)]
 pub struct PlayStart {
     /// Sequence to play.
     pub plan: PlayPlan,
     /// Plays to the end, or stops after each step.
     pub pace: PlayMode,
-    /// Joints that are left alone.
+    /// Locked joints, which receive no targets.
     pub locked: PerDof<bool>,
-    /// What is gripped, from what was read until now.
+    /// Grip estimate from the readings so far.
     pub grip: GripEstimator,
 }
 
-/// What the user may want while it runs.
+/// User input while a sequence runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PlayCommand {
-    /// Hold where the hand is, until resumed.
+    /// Hold the current position until resumed.
     Pause,
-    /// Goes on after a pause.
+    /// Continue after a pause.
     Resume(PlayMode),
-    /// End it and hold where the hand is.
+    /// End the sequence and hold the current position.
     End,
-    /// Leave these joints alone.
+    /// Lock these joints: they receive no further targets.
     Lock(PerDof<bool>),
 }
 
-/// What is told on the way.
+/// Progress of a sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlayStep {
     /// The position in the sequence changed.
     View(PlayView),
-    /// The hand was told this; joints that are `None` were left alone.
+    /// These setpoints were sent; joints with `None` are unchanged.
     Sent(Setpoints),
 }
 
-/// Plays.
+/// Plays a sequence to its end.
 pub async fn play(
     hand: &LinkHandle,
     armed: Armed,
@@ -110,7 +110,7 @@ impl Playing {
         }
     }
 
-    /// The arming in which it moves the hand.
+    /// Arming under which it moves the hand.
     pub(crate) const fn epoch(&self) -> ArmEpoch {
         self.epoch
     }
@@ -142,7 +142,7 @@ impl Program for Playing {
 
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
         let angles = seen.angles()?.value;
-        // A locked joint never arrives and is not waited for: it counts as where it should be.
+        // A locked joint never arrives and is not waited for: it counts as being at its target.
         let targets = self.player.targets();
         let at = PerDof::from_fn(|dof| {
             let target = targets[dof].filter(|_| self.locked[dof]).map(Angle::get);
@@ -183,14 +183,14 @@ impl Program for Playing {
 }
 
 impl Playing {
-    /// A grip by size is asked for, and a joint that pinches is locked.
+    /// True if the current step is a grip by size and one of its joints is locked.
     fn lacks_a_joint(&self) -> bool {
         let is_grip = self.player.cue().is_some_and(|cue| cue.gap.is_some());
         let lacks = Gap::JOINTS.into_iter().any(|dof| self.locked[dof]);
         is_grip && lacks && !self.player.is_over()
     }
 
-    /// Adds the fingers whose tip was touched or let go.
+    /// Adds setpoints for fingers whose tip was touched or released.
     fn react(&mut self, seen: &Seen<'_>, setpoints: &mut Setpoints) {
         let fresh_for = seen.status.fresh_for();
         let Some(reacting) = &mut self.reaction else {
@@ -220,7 +220,7 @@ impl Playing {
         free.filter_map(|(dof, to)| Some((dof, (*to)?))).collect()
     }
 
-    /// The targets of the free joints become where they are, if that is known freshly.
+    /// Sets the targets of the free joints to their measured angles, if those are fresh.
     fn hold_here(&self, seen: &Seen<'_>) -> Option<Order> {
         let pose = seen.angles()?.value.map(AngleReading::hold).all()?;
         let mut setpoints = Setpoints::none(self.epoch);

@@ -1,66 +1,66 @@
-//! What moves an armed hand over time, as a pure state machine: readings, time and user input in, orders out. `drive` runs it and owns
-//! the safety rules.
+//! The interface of a motion over time: a pure state machine with readings, time and user input in, orders out. `drive` runs it and
+//! owns the safety rules.
 
 use crate::hand::{AngleReading, Groups, HandSample, Moment, PerDof, Setpoints, Timed};
 use crate::link::{ArmRequest, LinkStatus, Owner, PollRates};
 use crate::record::{Abort, Disarmed};
 use crate::trials::limits::TaskStall;
 
-/// How a program ended: with its own outcome, or early.
+/// Result of a program: its own outcome, or the reason for an early end.
 pub type Ended<O> = Result<O, Abort>;
 
-/// What a program wants done at the hand now.
+/// Action that a program requests from the loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
     /// Send these targets and limits.
     Set(Setpoints),
-    /// Stop the hand before anything else, which disarms it.
+    /// Stop the hand before anything else; this disarms it.
     Stop,
-    /// Let no setpoint pass any longer. The program may continue with a hand that must not move.
+    /// Pass no further setpoints. The program may continue with a hand that must not move.
     Disarm,
-    /// Grant control to this owner: the user asked for it.
+    /// Grant control to this owner, at the user's request.
     Grant(Owner),
     /// Arm the hand within these limits. For programs that were granted control and arm by themselves.
     Arm(ArmRequest),
     /// Disarm a hand that has nothing to do. Control remains granted, and the program may arm again.
     Rest,
-    /// Clear the faults of the drives. Whether that succeeded shows in feedback.
+    /// Clear the faults of the drives. Feedback shows whether that succeeded.
     Clear,
     /// Stop and disarm. Control remains granted, and the program may arm again.
     Halt,
-    /// Halt at this moment by itself, unless that is put off before.
+    /// Halt automatically at this moment, unless a later order extends the deadline.
     RunUntil(Moment),
-    /// Stop, disarm and give back control for this reason.
+    /// Stop, disarm and return control, with this reason.
     GiveBack(Disarmed),
 }
 
-/// What the loop does after an early end (`handscope help safety` has the table). The session has disarmed the hand then, and held it
-/// where that is the rule for all. Whoever was granted control meanwhile is left alone.
+/// Reaction of the loop to an early end (`handscope help safety` has the table). By then the session has disarmed the hand, and held
+/// it where the common rules require that. An owner that was granted control meanwhile is not affected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AfterAbort {
-    /// Stop the hand, also one that is back from a lost link or that another controller moves, and wait for rest: nobody may be near.
+    /// Stop the hand, also after a reconnect or while another controller moves it, and wait for rest: the hand may be unattended.
     Stop,
-    /// Stop a hand whose link was lost, once it is back. Nothing is waited for.
+    /// Stop a hand whose link was lost, once it is back. The loop does not wait for that.
     StopAfterLinkLoss,
     /// Nothing: the user at the window decides.
     Nothing,
 }
 
-/// What is known of the hand in one step.
+/// State of the hand in one step.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen<'a> {
     /// Status of the link.
     pub status: &'a LinkStatus,
-    /// The newest of everything that was read.
+    /// Newest value of every reading.
     pub sample: &'a HandSample,
-    /// The last time in which the loop did not run.
+    /// Most recent interval in which the loop did not run.
     pub stall: Option<TaskStall>,
-    /// The time of this step.
+    /// Time of this step.
     pub now: Moment,
 }
 
 impl Seen<'_> {
-    /// The angles, if they are fresh enough to steer by.
+    /// Measured angles, if they are fresh enough to steer by.
     pub fn angles(&self) -> Option<Timed<PerDof<AngleReading>>> {
         let fresh_for = self.status.fresh_for();
         let angle = self.sample.angle;
@@ -68,34 +68,34 @@ impl Seen<'_> {
     }
 }
 
-/// A motion over time in an arming, or with control, that the user gave.
+/// A motion over time, under an arming or control that the user granted.
 pub trait Program {
-    /// What the user may send while it runs. A program that can only be ended has [`Abort`] here, and ends with it.
+    /// User input while the program runs. For a program that can only be ended this is [`Abort`], which ends it.
     type Input;
-    /// How it ends when nothing ends it early.
+    /// Outcome of a program that was not ended early.
     type Outcome: Copy;
-    /// How often it wants the hand to be read; `None` leaves that as it is.
+    /// Requested poll rates; `None` leaves them unchanged.
     const RATES: Option<PollRates> = None;
-    /// What the loop does after an early end.
+    /// Reaction of the loop to an early end.
     const AFTER_ABORT: AfterAbort = AfterAbort::Stop;
 
     /// Receives user input.
     fn input(&mut self, input: Self::Input, seen: &Seen<'_>) -> Option<Order>;
     /// Receives a reading.
     fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment);
-    /// Receives the end of its input. By itself that means that whoever ran the program moves the hand in another way.
+    /// Receives the end of the input stream. By default this means that the caller moves the hand in another way.
     fn input_ended(&mut self, seen: &Seen<'_>) -> Option<Order> {
         self.abort(Abort::TakenOver, seen.now);
         None
     }
-    /// Receives that a setpoint went out on the wire.
+    /// Receives the time at which a setpoint was sent on the wire.
     fn sent(&mut self, _at: Moment) {}
-    /// Receives how long the loop did not run.
+    /// Receives an interval in which the loop did not run.
     fn stalled(&mut self, _stall: TaskStall) {}
     /// Advances the time.
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order>;
-    /// Ends it early, or ends its control of the hand if it continues: then it moves nothing before [`Order::Grant`].
+    /// Ends the program early, or ends its control of the hand if it continues: then it moves nothing before [`Order::Grant`].
     fn abort(&mut self, why: Abort, now: Moment);
-    /// How it ended, once it has. After `Err` the loop stops the hand.
+    /// Result of the program; `None` while it runs. After `Err` the loop stops the hand.
     fn ended(&self) -> Option<Ended<Self::Outcome>>;
 }

@@ -13,26 +13,26 @@ use crate::trials::series::{SeriesView, TrialSeries};
 use crate::trials::summary::Trial;
 use futures::Stream;
 
-/// How often a series wants the hand to be read; no line is slower for it than it can be.
+/// Poll rates of a series. A line that cannot reach them is read as fast as it can be.
 pub const RATES: PollRates = PollRates {
     state_hz: 500.0,
     tactile_hz: 60.0,
     settings_hz: 5.0,
 };
 
-/// What a series reports.
+/// Progress of a series.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SeriesStep {
     /// The stage or the trial changed.
     View(SeriesView),
-    /// A trial is over.
+    /// A trial ended.
     Trial(Box<Trial>),
-    /// What a search makes of its trials: at its start, and after each.
+    /// Progress of a search: at its start, and after each trial.
     Search(Box<SearchProgress>),
 }
 
-/// Runs a series of trials to its end. `report` says whether it could store or show the step; if not, the series ends.
-/// At the end the hand is not armed any more.
+/// Runs a series of trials to its end. `report` returns false if it could not store or show the step; the series then ends. At the end
+/// the hand is disarmed.
 pub async fn trials(
     hand: &LinkHandle,
     armed: Armed,
@@ -100,7 +100,7 @@ impl Program for Checkup {
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
         let was_pressing = self.is_pressing();
         let set = Self::tick(self, seen.sample, seen.stall, seen.now);
-        // The user touches a fingertip only of a hand that cannot move.
+        // The user touches a fingertip only while the hand cannot move.
         let disarms = self.is_pressing() && !was_pressing;
         let is_done = self.is_over() && self.aborted().is_none();
         set.map(Order::Set)
@@ -116,7 +116,7 @@ impl Program for Checkup {
     }
 }
 
-/// Reports what is new: trials that are over, and where the series stands. False if something could not be stored or shown.
+/// Reports ended trials and the state of the series. False if a step could not be stored or shown.
 fn report_news(
     series: &mut TrialSeries,
     shown: &mut Option<SeriesView>,
@@ -134,13 +134,13 @@ fn report_news(
     is_kept
 }
 
-/// Reports where a search stands; true for a series that is none.
+/// Reports the progress of a search; true for a series that is not a search.
 fn report_search(series: &TrialSeries, report: &mut impl FnMut(SeriesStep) -> bool) -> bool {
     let progress = series.settings_search().map(SettingsSearch::progress);
     progress.is_none_or(|progress| report(SeriesStep::Search(Box::new(progress))))
 }
 
-/// The limits that a hand is armed with for a plan: gentle, and no stronger than its smallest threshold.
+/// Limits to arm with for a plan: gentle, and no stronger than its smallest threshold.
 pub fn arm_limits(plan: &TrialPlan) -> ArmRequest {
     let least = plan.grid.forces.iter().min().copied();
     let force = least.map_or(Force::GENTLE, |least| least.min(Force::GENTLE));

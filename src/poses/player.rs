@@ -1,4 +1,4 @@
-//! Plays poses one after the other: time and angles in, what to send out. Sends nothing and reads no clock.
+//! Plays poses in order: time and angles in, targets out. Sends nothing and reads no clock.
 
 use crate::hand::gap::Gap;
 use crate::hand::grip::{GripEstimate, GripState, GripThresholds};
@@ -12,36 +12,36 @@ use crate::record::Abort;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// A grip that is empty for so long is no finger that is just about to touch.
+/// Duration after which an empty grip counts as empty, and not as a finger just about to touch.
 const EMPTY_DURATION: Duration = Duration::from_millis(300);
-/// Until then, readings may show what the hand did before it was told something: it takes 66 ms, and is read every 25.
+/// Time until readings show the effect of a target: the hand takes 66 ms, and is read every 25 ms.
 const REACTION_TIME: Duration = Duration::from_millis(150);
 
-/// A grip by size that is taken alone may take so much longer than the stroke at its speed.
+/// Time that a grip by size played alone may take beyond the stroke at its speed.
 const SPARE: Duration = Duration::from_secs(4);
 
-/// One step, with all that it needs: a pose that is edited meanwhile does not change what runs.
+/// One step with all its data: an edit of the pose during playback has no effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cue {
-    /// Where each joint goes; `None` = left alone.
+    /// Target of each joint; `None` leaves a joint unchanged.
     pub targets: Targets,
-    /// The gap that these are the targets of, in a grip by size.
+    /// Gap to which these targets belong, in a grip by size.
     pub gap: Option<Gap>,
-    /// Speed on the way; of a grip by size that of the fastest joint.
+    /// Speed of the motion; in a grip by size, speed of the fastest joint.
     pub speed: Speed,
     /// Force threshold.
     pub force: Force,
     /// Time at the pose.
     pub dwell: Duration,
-    /// Time after which a pose, or a part of the way to it, that is not reached counts as reached.
+    /// Time after which a pose, or a leg of its path, counts as reached.
     pub limit: Duration,
-    /// The grip that it waits for before its dwell, if any.
+    /// Grip to wait for before the dwell, if any.
     pub until: Option<UntilHolding>,
-    /// What its grip is told by; `None` for the usual.
+    /// Thresholds of the grip estimate; `None` for the defaults.
     pub thresholds: Option<GripThresholds>,
 }
 
-/// The steps of a sequence as they are now.
+/// Steps of a sequence in its current version.
 pub fn cues(library: &PoseLibrary, sequence: SequenceId) -> Vec<Cue> {
     let steps = library.sequence(sequence).into_iter();
     let steps = steps.flat_map(|own| &own.steps);
@@ -49,7 +49,7 @@ pub fn cues(library: &PoseLibrary, sequence: SequenceId) -> Vec<Cue> {
 }
 
 impl Cue {
-    /// A pose taken alone, at its own speed.
+    /// A pose played alone, at its own speed.
     pub fn of(pose: &LibraryPose) -> Self {
         let limit = Millis::LIMIT.duration();
         Self {
@@ -58,14 +58,14 @@ impl Cue {
             speed: pose.speed,
             force: pose.force,
             dwell: Duration::ZERO,
-            // What opens first and is late then would not close.
+            // A grip that opens first and counts as reached too early would not close.
             limit: pose.gap.map_or(limit, |_| pose.speed.stroke() + SPARE),
             until: None,
             thresholds: pose.thresholds,
         }
     }
 
-    /// A grip by size, at this speed.
+    /// A grip by size at this speed.
     fn of_gap(gap: Gap, speed: Speed, force: Force) -> Self {
         let pose = LibraryPose::at(gap.angles());
         Self {
@@ -76,7 +76,7 @@ impl Cue {
         }
     }
 
-    /// The parts of its way from these angles on, one after the other.
+    /// Legs of its path from these angles, in order.
     pub(crate) fn parts(&self, from: &PerDof<Option<i16>>) -> Vec<WayPart> {
         if let Some(gap) = self.gap {
             let moves = self.targets.map(|target| target.is_some());
@@ -91,7 +91,7 @@ impl Cue {
         parts.collect()
     }
 
-    /// Lets go: the joints that it moves open. The thumb keeps its rotation, which the next try needs.
+    /// Opens the joints that the step moves. The thumb keeps its rotation, which the next attempt needs.
     fn opening(&self) -> Self {
         if self.gap.is_some() {
             let open = Gap::MAX.angles();
@@ -109,37 +109,37 @@ impl Cue {
     }
 }
 
-/// All that is needed to play an entry of the library: one that is edited meanwhile does not change what runs.
+/// An entry of the library with all data needed to play it: an edit during playback has no effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlayPlan {
     pub entry: EntryId,
-    /// The poses.
+    /// Poses in order.
     pub cues: Vec<Cue>,
-    /// Whether it begins again at its end.
+    /// True if it repeats from the start.
     pub looped: bool,
-    /// What touched fingers do once the hand is at its first pose.
+    /// Reaction of touched fingers once the hand is at its first pose.
     pub reaction: Option<ReactionCue>,
 }
 
 impl PlayPlan {
-    /// All that it may send; a step that tries again opens the joints of its own.
+    /// All cues that it may send. The opening before a retry moves only joints of its own step.
     pub fn cues(&self) -> impl Iterator<Item = &Cue> {
         let touched = self.reaction.iter().map(|reaction| &reaction.touched);
         self.cues.iter().chain(touched)
     }
 }
 
-/// What a touched finger does.
+/// Reaction of a touched finger.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReactionCue {
-    /// Where it goes, and how; back to the first pose once it is let go.
+    /// Cue of a touched finger; on release it returns to the first pose.
     pub touched: Cue,
-    /// From when on it counts as touched.
+    /// Force from which a finger counts as touched.
     pub threshold: TouchForce,
 }
 
 impl PoseLibrary {
-    /// What is needed for a step; `None` if its pose is not in this library.
+    /// Cue of a step; `None` if its pose is not in this library.
     fn cue(&self, step: &SequenceStep) -> Option<Cue> {
         let cue = match step.goal {
             StepGoal::Pose(pose) => Cue::of(self.pose(pose)?),
@@ -154,7 +154,7 @@ impl PoseLibrary {
         })
     }
 
-    /// What is needed to play an entry; `None` if it is not in this library.
+    /// Plan of an entry; `None` if it is not in this library.
     pub fn plan(&self, entry: EntryId) -> Option<PlayPlan> {
         let plan = |cues, looped, reaction| PlayPlan {
             entry,
@@ -179,37 +179,37 @@ impl PoseLibrary {
     }
 }
 
-/// How a sequence ended that nothing aborted. The hand stays armed.
+/// Outcome of a sequence that was not aborted. The hand stays armed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PlayEnd {
     /// Every step was played.
     Finished,
     /// The user ended it.
     Person,
-    /// A step waited for a grip that did not come in time; this was the grip then.
+    /// The grip that a step waited for did not occur in time; this was the grip then.
     NotHolding(GripState),
-    /// A joint is locked without which there is no grip by size.
+    /// A joint that the grip by size needs is locked.
     Locked,
 }
 
-/// Where a sequence stands.
+/// Phase of a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlayPhase {
-    /// On the way to a pose.
+    /// Moving to a pose.
     Moving { since: Moment },
     /// At a pose, until the hand holds something.
     Waiting { since: Moment },
-    /// It closed on nothing, and opens to close again.
+    /// The hand closed on nothing, and opens to close again.
     Opening { since: Moment },
     /// At a pose.
     Dwelling { since: Moment },
-    /// The user paused it, or the one step that was asked for is done.
+    /// Paused by the user, or the single requested step is done.
     Paused,
-    /// Over. Only the user starts it again.
+    /// Ended. Only the user starts it again.
     Ended(Result<PlayEnd, Abort>),
 }
 
-/// Whether a sequence goes on by itself.
+/// Playback mode of a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PlayMode {
     /// Step after step.
@@ -218,21 +218,21 @@ pub enum PlayMode {
     OneStep,
 }
 
-/// Where a sequence stands.
+/// Progress of a sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PlayView {
-    /// The step, 0 the first.
+    /// Index of the step, from 0.
     pub at: usize,
-    /// What it does.
+    /// Phase of the step.
     pub phase: PlayPhase,
     /// Steps that ran into their time limit.
     pub late: u32,
-    /// How often the step closed again.
+    /// Retries of the step.
     pub retries: u8,
 }
 
 impl PlayView {
-    /// The first step, at its begin.
+    /// The first step at its start.
     pub const fn first(now: Moment) -> Self {
         Self {
             at: 0,
@@ -250,16 +250,16 @@ pub struct Player {
     looped: bool,
     pace: PlayMode,
     view: PlayView,
-    /// What is left of the way to the current pose; the first was sent.
+    /// Remaining legs to the current pose; the first was sent.
     parts: VecDeque<WayPart>,
-    /// The next part of the way is to be sent.
+    /// The next leg has to be sent.
     due: bool,
-    /// The current pose was reached, or its time is up; what it waits for is there.
+    /// The current pose was reached or its time limit expired, and the grip it waits for is present.
     arrived: bool,
 }
 
 impl Player {
-    /// Begins with the first step. Without steps it is over at once.
+    /// Starts with the first step. Without steps it ends immediately.
     pub fn start(cues: Vec<Cue>, looped: bool, pace: PlayMode, now: Moment) -> Self {
         let mut view = PlayView::first(now);
         if cues.is_empty() {
@@ -276,7 +276,7 @@ impl Player {
         }
     }
 
-    /// Where it goes now.
+    /// Targets of the current step.
     pub fn targets(&self) -> PerDof<Option<Angle>> {
         self.goal().map_or(PerDof::splat(None), |cue| cue.targets)
     }
@@ -289,7 +289,7 @@ impl Player {
         })
     }
 
-    /// The step where it stands.
+    /// Current step.
     pub fn cue(&self) -> Option<&Cue> {
         self.cues.get(self.view.at)
     }
@@ -298,12 +298,12 @@ impl Player {
         self.cue()?.until
     }
 
-    /// Where it stands.
+    /// Current progress.
     pub const fn view(&self) -> PlayView {
         self.view
     }
 
-    /// True once nothing is sent any more.
+    /// True once nothing further is sent.
     pub const fn is_over(&self) -> bool {
         matches!(self.view.phase, PlayPhase::Ended(_))
     }
@@ -313,10 +313,10 @@ impl Player {
         matches!(self.view.phase, PlayPhase::Paused)
     }
 
-    /// Advances the time. Returns the part of the way to send now, if one is due.
+    /// Advances the time. Returns the leg to send now, if one is due.
     ///
-    /// `seen`: the fresh angle of each joint that takes part. A joint that is left alone by the cue is not looked at. `grasp` as it
-    /// is known at `now`.
+    /// `seen`: the fresh angle of each joint that takes part; joints without a target in the cue are ignored. `grasp` as it is known
+    /// at `now`.
     pub fn tick(
         &mut self,
         now: Moment,
@@ -348,7 +348,8 @@ impl Player {
         self.parts.front().copied()
     }
 
-    /// What closes on an object never arrives: the grip that the step waits for ends its way. One of before does not.
+    /// True if the grip that the step waits for has ended its motion: fingers that close on an object never reach their target. A grip
+    /// from before the step does not count.
     fn has_grasped(&self, since: Moment, grasp: &GripEstimate) -> bool {
         let is_new = grasp.since >= since.plus(REACTION_TIME);
         let is_held = grasp.state == GripState::Holding && is_new;
@@ -356,7 +357,7 @@ impl Player {
         is_held && self.until().is_some() && self.parts.front().is_some_and(closes)
     }
 
-    /// The step's pose counts as reached, with all that it waits for.
+    /// Marks the pose of the step as reached, including the grip it waits for.
     const fn arrive(&mut self, now: Moment) {
         self.arrived = true;
         self.view.phase = PlayPhase::Dwelling { since: now };
@@ -377,7 +378,7 @@ impl Player {
             return;
         }
         if is_there && self.parts.len() > 1 {
-            // Each part of the way has as much time as a straight one.
+            // Each leg has the full time limit.
             if let PlayPhase::Moving { since } | PlayPhase::Opening { since } = &mut self.view.phase
             {
                 *since = now;
@@ -446,7 +447,7 @@ impl Player {
         self.arrived = false;
     }
 
-    /// Waits for the user. True if it ran.
+    /// Pauses until the user resumes. True if it was running.
     pub const fn pause(&mut self) -> bool {
         let ran = matches!(
             self.view.phase,
@@ -461,7 +462,7 @@ impl Player {
         ran
     }
 
-    /// Goes on where it was paused: to the same pose if it was not reached, else to the next one.
+    /// Resumes: to the same pose if it was not reached, else to the next one.
     pub fn resume(&mut self, pace: PlayMode, now: Moment) {
         if !self.is_paused() {
             return;
@@ -474,7 +475,7 @@ impl Player {
         }
     }
 
-    /// Ends it, for good. The first reason stays.
+    /// Ends playback. The first reason is final.
     pub const fn end(&mut self, how: Result<PlayEnd, Abort>) {
         if !self.is_over() {
             self.view.phase = PlayPhase::Ended(how);

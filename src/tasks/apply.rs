@@ -1,4 +1,4 @@
-//! Writing rows that a hand keeps: read first, then each group written at rest and read back.
+//! Writing persistent rows of a hand: all rows are read first, then each group is written at rest and read back.
 
 use crate::hand::Setting;
 use crate::hand::overshoot::OvershootMap;
@@ -15,43 +15,43 @@ use crate::tasks::{Consent, ParamStep, Risks, TaskError, read};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What is to be written, and how.
+/// Rows to apply, with their conditions.
 #[derive(Debug, Clone)]
 pub struct Apply {
-    /// The rows and their new values.
+    /// Rows and their new values.
     pub wanted: Params,
-    /// What the user agreed to.
+    /// The user's consent.
     pub consent: Consent,
-    /// Where a backup goes before anything is written; none is made without.
+    /// Location of the backup that precedes the first write; `None` makes no backup.
     pub backups: Option<Backups>,
-    /// What follows if not every row was applied.
+    /// Reaction if not every row was applied.
     pub otherwise: Otherwise,
-    /// What trials measured of the hand.
+    /// Overshoot of the hand, as measured by trials.
     pub overshoot: Arc<OvershootMap>,
 }
 
-/// What follows if not every row was applied.
+/// Reaction if not every row was applied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Otherwise {
-    /// Rows that were already written stay as they are.
+    /// Rows that were already written remain as they are.
     Stay,
-    /// The hand gets back what it held.
+    /// The hand gets its previous values back.
     Undo,
 }
 
 /// Outcome of applying parameters, row by row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Applied {
-    /// What the hand held before.
+    /// Parameters before the first write.
     pub before: Params,
-    /// The backup, if one was asked for and something had to be written.
+    /// Backup, if one was requested and a row had to be written.
     pub backup: Option<PathBuf>,
-    /// The rows that had to be written, or were as wanted already; with what the hand holds at the end, also after it was to get
-    /// back what it held.
+    /// Rows that had to be written, or already had the requested value; with the values that the hand holds at the end, also after an
+    /// undo.
     pub rows: Vec<RowOutcome>,
-    /// Whether the hand holds again what it held, if it was to get it back.
+    /// True if the hand holds its previous values again; `None` if there was no undo.
     pub undone: Option<bool>,
-    /// Why the rest was not written, if the link could not take it.
+    /// Reason for which the remaining rows were not written, if the link refused a request.
     pub broken_off: Option<RequestError>,
 }
 
@@ -63,10 +63,10 @@ impl Applied {
     }
 }
 
-/// Applies rows. Rows that the hand holds already are not written.
+/// Applies rows. Rows that already have the requested value are not written.
 ///
 /// # Errors
-/// [`TaskError`]: then nothing was written.
+/// [`TaskError`]: nothing was written.
 pub async fn apply(
     hand: &LinkHandle,
     task: &Apply,
@@ -109,8 +109,7 @@ pub async fn apply(
     Ok(applied)
 }
 
-/// Writes all settings of a plan. What did not go out because the user armed meanwhile does not go out for the next group
-/// either.
+/// Writes all settings of a plan. After a setting that was not sent because the user armed meanwhile, no further group is sent.
 async fn write(
     hand: &LinkHandle,
     plan: &WritePlan,
@@ -130,7 +129,7 @@ async fn write(
     (rows, None)
 }
 
-/// Writes one group. If it is not known what the hand holds then, it is read once more, on a link that came back.
+/// Writes one group. If its values are not known afterwards, the group is read once more, also after a reconnect.
 async fn write_one(hand: &LinkHandle, setting: Setting) -> Result<Written, RequestError> {
     let not_sent = |written: &Written| match written.verdict {
         Verdict::NotSent(why) => Some(why),
@@ -153,7 +152,8 @@ async fn write_one(hand: &LinkHandle, setting: Setting) -> Result<Written, Reque
     })
 }
 
-/// Puts back what changed or may have; true if the hand holds what it held before. What it holds then stands in the rows.
+/// Restores rows that changed or may have changed, and updates `rows` with the values read back; true if the hand holds its previous
+/// values.
 async fn undo(hand: &LinkHandle, rows: &mut [RowOutcome]) -> bool {
     let wanted = changes::undo_of(rows);
     if wanted.is_empty() {

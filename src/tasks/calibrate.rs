@@ -1,4 +1,4 @@
-//! The calibration of the force sensors: what must be so before, the request, and the offsets before and after (manual 2.6.6).
+//! The calibration of the force sensors: its conditions, the request, and the offsets afterwards (manual 2.6.6).
 
 use crate::hand::{Dof, Finger, ForceReading, HandSample, Moment, PerDof};
 use crate::link::{Clock, LinkHandle, LinkStatus, RequestError};
@@ -7,24 +7,24 @@ use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::time::{Instant, timeout_at};
 
-/// An angle from here on counts as open: what drivers of this family ask for before a calibration.
+/// An angle from here on counts as open: the condition that drivers of this family require before a calibration.
 pub const OPEN_FROM: i16 = 950;
-/// A force beyond this is more than any offset of a hand at rest, g.
+/// A larger force than any offset of a hand at rest, g.
 pub const FREE_BELOW_G: u16 = 400;
-/// A fingertip that feels more than this is touched, N.
+/// A fingertip counts as touched above this force, N.
 pub const TOUCH_N: f32 = 0.3;
-/// How long the force has to be steady.
+/// Time for which the force has to be steady.
 const STEADY_DURATION: Duration = Duration::from_secs(2);
-/// By how much it may change in that time, g.
+/// Maximum change in that time, g.
 const STEADY_G: i16 = 20;
-/// Samples that are looked at: two seconds of the fastest wire.
+/// Maximum number of stored samples: two seconds of the fastest wire.
 const SAMPLES_MAX: usize = 512;
-/// Samples older than this do not count.
+/// Older samples are ignored.
 const MAX_AGE: Duration = Duration::from_millis(500);
-/// How long the new offset is measured after the end.
+/// Time for which the new offset is measured after the end.
 const MEASURE_DURATION: Duration = Duration::from_millis(1500);
 
-/// What it takes at most. Manual: 2.6.6 names no time; hands in use were seen to take 2 to 6 s.
+/// Maximum duration. Manual: 2.6.6 names no time; hands in use took 2 to 6 s.
 pub const TAKES: Duration = Duration::from_secs(8);
 
 /// Condition for calibrating the force sensors.
@@ -34,18 +34,18 @@ pub enum CalibrationCondition {
     Open,
     /// No joint moves.
     Still,
-    /// No force, and no fingertip feels anything.
+    /// No force, and no fingertip is touched.
     Untouched,
     /// The force does not change.
     Steady,
-    /// No drive has a fault.
+    /// No drive reports a fault.
     NoFault,
-    /// Nothing is armed, by this program; no stop is under way.
+    /// This program has armed nothing, and no stop is under way.
     Disarmed,
 }
 
 impl CalibrationCondition {
-    /// All, in the order in which the user sees to them.
+    /// All, in the order in which the user meets them.
     pub const ALL: [Self; 6] = [
         Self::Disarmed,
         Self::NoFault,
@@ -59,14 +59,14 @@ impl CalibrationCondition {
 /// Forces by joint, g.
 pub type Offsets = PerDof<i16>;
 
-/// The checks before a calibration: they look at some seconds of force.
+/// Evaluates the conditions of a calibration, from some seconds of force readings.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Checks {
     forces: VecDeque<(Moment, Offsets)>,
 }
 
 impl Checks {
-    /// Takes in the newest force.
+    /// Adds the newest force.
     pub fn watch(&mut self, sample: &HandSample) {
         let Some(force) = sample.force else { return };
         if self.forces.back().is_some_and(|last| last.0 >= force.asked) {
@@ -85,7 +85,7 @@ impl Checks {
         }
     }
 
-    /// Whether something is so; `None` = not known.
+    /// True if the condition is met; `None` if that is not known.
     pub fn check(
         &self,
         check: CalibrationCondition,
@@ -137,13 +137,13 @@ impl Checks {
         }))
     }
 
-    /// True if all of it is so.
+    /// True if all conditions are met.
     pub fn is_ready(&self, sample: &HandSample, link: &LinkStatus, now: Moment) -> bool {
         let is_so = |check| self.check(check, sample, link, now) == Some(true);
         CalibrationCondition::ALL.into_iter().all(is_so)
     }
 
-    /// The mean of the forces that were looked at.
+    /// Mean of the stored forces; `None` without any.
     pub fn mean(&self) -> Option<Offsets> {
         let count = i64::try_from(self.forces.len())
             .ok()
@@ -155,10 +155,10 @@ impl Checks {
     }
 }
 
-/// What is told on the way.
+/// Progress of a calibration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CalibrateStep {
-    /// The request goes out; the line is left to the hand.
+    /// The request is being sent, and nothing else uses the line.
     Calibrating,
     /// The new offsets are measured.
     Measuring,
@@ -167,13 +167,13 @@ pub enum CalibrateStep {
 /// Outcome of a calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CalibrateReport {
-    /// How it ended, or why it was not sent.
+    /// Its result, or the reason for which it was not sent.
     pub end: Result<Calibrated, RequestError>,
-    /// The offsets after it, as far as they were measured.
+    /// Offsets after the calibration; `None` if they were not measured.
     pub after: Option<Offsets>,
 }
 
-/// Calibrates, and measures the new offsets where it ended well.
+/// Calibrates, and measures the new offsets if the calibration succeeded.
 pub async fn calibrate(
     hand: &LinkHandle,
     clock: Clock,
@@ -200,7 +200,7 @@ pub async fn calibrate(
     CalibrateReport { end, after }
 }
 
-/// Whether no fingertip feels anything; `None` where one was never read.
+/// True if no fingertip is touched; `None` if one was never read.
 fn is_untouched(sample: &HandSample) -> Option<bool> {
     let mut is_free = true;
     for finger in Finger::ALL {

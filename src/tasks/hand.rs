@@ -1,4 +1,4 @@
-//! A hand as tasks see it, how one is reached, and the waits that tasks share.
+//! Reaching a hand, and the waits that tasks share.
 
 use crate::link::{LinkHandle, RequestError};
 use crate::record::{LinkState, NotSent, Rest};
@@ -6,22 +6,22 @@ use crate::transport::Endpoint;
 use std::time::Duration;
 use tokio::time::{Instant, sleep};
 
-/// A hand that is there answers within this, also on a port that was given up a moment ago.
+/// A connected hand answers within this time, also on a port that was released a moment ago.
 pub const REACH_TIMEOUT: Duration = Duration::from_secs(3);
-/// A hand that still moves, or saved just now, is waited for this long.
+/// Maximum wait for a hand that still moves, or that saved just now.
 const REST_TIMEOUT: Duration = Duration::from_secs(8);
-/// So often it is asked again.
+/// Interval between attempts.
 pub(crate) const RETRY_DELAY: Duration = Duration::from_millis(200);
-/// How often a wait looks.
+/// Polling interval of a wait.
 const POLL_INTERVAL: Duration = Duration::from_millis(10);
 
-/// Goes where a hand may be. A port has room for one link, so the one of before is given up.
+/// Connects to a hand at an endpoint. A port has room for one link, so the previous link is closed.
 pub trait Reach: Send {
-    /// The hand that answers at a place; `None` if none does within [`REACH_TIMEOUT`].
+    /// The hand that answers at an endpoint; `None` if none does within [`REACH_TIMEOUT`].
     fn reach(&mut self, place: &Endpoint) -> impl Future<Output = Option<LinkHandle>> + Send;
 }
 
-/// Waits until the hand answers; false if it does not in time.
+/// Waits until the hand answers; false after `within`.
 pub async fn answers(hand: &LinkHandle, within: Duration) -> bool {
     let until = Instant::now() + within;
     while !hand.status().state.is_live() {
@@ -33,7 +33,7 @@ pub async fn answers(hand: &LinkHandle, within: Duration) -> bool {
     true
 }
 
-/// Waits for a while until a hand that answers is known to rest and nobody moves it; false if it does not come to that.
+/// Waits until a live hand is known to rest and is neither armed nor holding; false after [`REST_TIMEOUT`].
 pub(crate) async fn rests(hand: &LinkHandle) -> bool {
     let until = Instant::now() + REST_TIMEOUT;
     loop {
@@ -49,10 +49,10 @@ pub(crate) async fn rests(hand: &LinkHandle) -> bool {
     }
 }
 
-/// Asks, and asks again for a while where the hand still moves or an earlier SAVE is too near.
+/// Sends a request, and repeats it for a while if the hand still moves or an earlier SAVE is too recent.
 ///
 /// # Errors
-/// As the link says.
+/// As returned by the link.
 pub(crate) async fn once_at_rest<T, F: Future<Output = Result<T, RequestError>>>(
     ask: impl Fn() -> F,
     not_sent: fn(&T) -> Option<NotSent>,

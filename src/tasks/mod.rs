@@ -25,7 +25,7 @@ use crate::system::SystemError;
 /// Why a task ended before it wrote anything to the hand.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TaskError {
-    /// A row that has to be known could not be read.
+    /// A required row could not be read.
     #[error("cannot read {}: {why}", id.name())]
     NotRead {
         /// First parameter that could not be read.
@@ -33,68 +33,68 @@ pub enum TaskError {
         /// Why the read failed.
         why: RequestError,
     },
-    /// No hand was reached at its place.
+    /// No hand answered at its address.
     #[error("the hand does not answer")]
     NotReached,
-    /// It would make joints hit harder than before, or change what the hand is found by, and that was not confirmed.
+    /// The task would make joints hit harder than before, or change the address of the hand, and this was not confirmed.
     #[error("not confirmed")]
     NotMeant(Risks),
-    /// The backup, or the note that goes before a SAVE, could not be written.
+    /// The backup, or the note that precedes a SAVE, could not be written.
     #[error("cannot make a backup, nothing was written to the hand: {0}")]
     NoBackup(BackupError),
-    /// The link could not take the request.
+    /// The link could not accept the request.
     #[error(transparent)]
     NotAsked(#[from] RequestError),
 }
 
-/// Why there is no backup.
+/// Reason for a missing backup.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum BackupError {
-    /// This program keeps no files, so it has no place for any.
+    /// This program stores no files, so it has no folder for them.
     #[error("there is no folder for backups")]
     NoFolder,
-    /// The system did not write it.
+    /// The system could not write it.
     #[error(transparent)]
     System(#[from] SystemError),
 }
 
-/// What the tasks tell that read, apply and save parameters.
+/// Progress of the tasks that read, apply and save parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ParamStep {
     /// A group was read.
     Read(Span, Vec<u8>),
-    /// What the user agreed to.
+    /// The user agreed to these risks.
     Meant(Risks),
-    /// Rows are written from now on.
+    /// Rows are being written.
     Writing,
     /// A row was written, or was not.
     Row(RowOutcome),
-    /// The backup is written, and a SAVE of another program waited for.
+    /// The backup is being written, and a SAVE of another program may be waited for.
     BackingUp,
-    /// SAVE goes out; its result is awaited.
+    /// SAVE is being sent, and its result awaited.
     Saving,
 }
 
-/// What the user should mean before a task does it.
+/// Risks that the user should confirm before a task continues.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Risks {
     /// Joints that will hit harder than before.
     pub dangers: Vec<Danger>,
-    /// Rows by which the hand is found, with their new values.
+    /// Rows that change the address of the hand, with their new values.
     pub places: Params,
 }
 
-/// What the user agreed to.
+/// Scope of the user's consent.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Consent {
     /// To every risk of the task.
     Given,
-    /// To these joints' hitting harder, and to nothing else.
+    /// To these joints hitting harder, and to nothing else.
     To(Vec<Danger>),
 }
 
 impl Consent {
-    /// Fails if there is a risk that nobody agreed to.
+    /// Fails if the user did not agree to every risk.
     pub fn check(&self, risks: &Risks) -> Result<(), TaskError> {
         let is_meant = match self {
             Self::Given => true,

@@ -1,5 +1,5 @@
-//! A change of what a hand is found by, so that nobody is left with a hand they cannot reach: backup, look whether the new place
-//! is free, write, look at both places, let the user keep it or take it back, and save it if they want.
+//! A change of the address of a hand (id, serial speed or IP address) that cannot leave it unreachable: backup, check that the new
+//! address is free, write, search at both addresses, let the user keep or revert the change, and save it on request.
 
 use crate::hand::{Moment, Refusal};
 use crate::link::RequestError;
@@ -17,86 +17,86 @@ use std::path::PathBuf;
 use std::time::Duration;
 use tokio::time::timeout;
 
-/// The user has this long to say that the hand is where it should be.
+/// Time within which the user has to confirm that the hand works at its new address.
 pub const CONFIRM_TIMEOUT: Duration = Duration::from_secs(15);
-/// Rounds of looking for a hand: one that changes its speed may need a moment.
+/// Rounds of the search for a hand: one that changes its serial speed may need a moment.
 const ROUNDS: u8 = 3;
 
-/// What is to be changed.
+/// The requested change.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlaceChange {
-    /// Parameter that holds the place: id, serial speed or address.
+    /// Parameter that holds the address: id, serial speed or IP address.
     pub id: ParamId,
     /// Value before the change.
     pub before: Value,
-    /// What it is to hold.
+    /// Requested value.
     pub wanted: Value,
-    /// Where the hand is found before and after.
+    /// Endpoints of the hand before and after.
     pub places: PlacePair,
-    /// Whether this wire finds the hand by it, and the change may act at once.
+    /// True if this wire addresses the hand by the parameter, and the change may act at once.
     pub is_followed: bool,
 }
 
-/// What the user decides. Neither is waited for before the hand was found again.
+/// The user's decisions. Neither is awaited before the hand is found again.
 pub struct Decisions {
-    /// Whether the change stays; false takes it back.
+    /// True keeps the change, false reverts it.
     pub keeps: BoxFuture<'static, bool>,
-    /// Whether a change that stays goes into flash.
+    /// True saves a kept change to flash.
     pub saves: BoxFuture<'static, bool>,
 }
 
-/// What is told on the way.
+/// Progress of a change of address.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlaceStep {
-    /// Its parameters are read and kept in a file.
+    /// The parameters are being read and backed up.
     BackingUp,
-    /// What the hand holds, once it is kept.
+    /// The backup was written to this path, with these parameters.
     BackedUp(PathBuf, Params),
-    /// The hand, or another one, is looked for there.
+    /// The hand, or another one, is searched for at this address.
     Looking(WhichPlace),
-    /// The value is written there.
+    /// The value is written to the hand at this address.
     Writing(WhichPlace),
-    /// There, or held and waiting for power: the user says whether it stays, within [`CONFIRM_TIMEOUT`].
+    /// The hand is at this address, or holds the value until it is power-cycled: the user confirms within [`CONFIRM_TIMEOUT`].
     Keeping(WhichPlace),
-    /// The old value is being written back.
+    /// The previous value is being written back.
     Returning,
-    /// Kept: the user says whether it goes into flash.
+    /// Kept: the user decides whether it is saved to flash.
     Offering(WhichPlace),
     /// SAVE is under way.
     Saving(WhichPlace),
 }
 
-/// Where the hand is after the change.
+/// Outcome of the change, with the address of the hand.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PlaceEnd {
     /// The hand was not reached for the write, or was not known to rest. Nothing was written.
     NotWritten,
-    /// Another hand answers at the new place. Nothing was written.
+    /// Another hand answers at the new address. Nothing was written.
     Occupied,
-    /// The hand said no, or did not take it, and is where it was.
+    /// The hand refused or ignored the value, and is at its previous address.
     NotTaken {
-        /// Why, if the hand said no.
+        /// Reason, if the hand refused it.
         reason: Option<Refusal>,
     },
-    /// It was taken back: the hand is as it was before.
+    /// The change was reverted: the hand is as it was before.
     Back,
-    /// It could not be taken back: the hand is there and holds the new value.
+    /// The change could not be reverted: the hand is at this address and holds the new value.
     NotBack(WhichPlace),
-    /// Kept; with what is known of flash, if SAVE was asked for.
+    /// Kept; with the result of SAVE, if that was requested.
     Kept {
-        /// Where the hand answers now.
+        /// Address at which the hand answers now.
         at: WhichPlace,
         /// Result of SAVE; `None` if it was not sent.
         saved: Option<Saved>,
     },
-    /// Kept, and SAVE went out where it was; since then no hand answers at either place.
+    /// Kept, and SAVE was sent to the previous address; since then no hand answers at either address.
     Unseen(Saved),
-    /// No hand answers at either place.
+    /// No hand answers at either address.
     Nowhere,
 }
 
 impl PlaceEnd {
-    /// Where the hand is; `None` = nobody knows.
+    /// Address of the hand; `None` if it is not known.
     pub const fn place(&self) -> Option<WhichPlace> {
         match self {
             Self::NotWritten | Self::Occupied | Self::NotTaken { .. } | Self::Back => {
@@ -111,20 +111,20 @@ impl PlaceEnd {
 /// Outcome of a change of id, serial speed or address.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlaceReport {
-    /// What the hand held before.
+    /// Backup of the previous parameters.
     pub backup: PathBuf,
-    /// Where the write sent the hand; `None` if there was none.
+    /// Effect of the write; `None` if nothing was written.
     pub moved: Option<Moved>,
-    /// Where the hand is after the change.
+    /// Outcome, with the address of the hand.
     pub end: PlaceEnd,
-    /// Why the files of the hand could not be kept up, if they could not.
+    /// Error if the files of the hand could not be updated.
     pub not_noted: Option<String>,
 }
 
-/// Changes it.
+/// Changes the address of a hand.
 ///
 /// # Errors
-/// [`TaskError`]: then nothing was written.
+/// [`TaskError`]: nothing was written.
 pub async fn change_place<R: Reach>(
     reach: &mut R,
     change: &PlaceChange,
@@ -137,7 +137,7 @@ pub async fn change_place<R: Reach>(
     let hand = hand.ok_or(TaskError::NotReached)?;
     let params = read::rows(&hand, |_, _| ()).await.with(|_| true)?;
     drop(hand);
-    // What the user was shown may be older: what the hand holds now is what it gets back.
+    // The value shown to the user may be outdated: a revert restores the value read now.
     let change = &PlaceChange {
         before: params.get(change.id).unwrap_or(change.before),
         ..change.clone()
@@ -180,13 +180,13 @@ struct ChangeRun<'a, R, T> {
     change: &'a PlaceChange,
     backups: &'a Backups,
     notify: &'a mut T,
-    /// What the hand held where it was looked for last, if it answered.
+    /// Value read in the last search; `None` if the hand did not answer.
     seen: Option<Value>,
     not_noted: Option<String>,
 }
 
 impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
-    /// What a hand that answers there holds in the row; `None` if nobody does.
+    /// Value of the row in the hand that answers at this address; `None` if none answers.
     async fn holds(&mut self, at: WhichPlace) -> Option<Value> {
         (self.notify)(PlaceStep::Looking(at));
         self.seen = None;
@@ -197,12 +197,12 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         self.seen
     }
 
-    /// Writes a value where the hand is and looks where it answers then; `None` if nothing could be written.
+    /// Writes a value to the hand and searches for it afterwards; `None` if nothing could be written.
     async fn go(&mut self, from: WhichPlace, value: Value) -> Option<Moved> {
-        // Back at its old place, a value is only put back.
+        // At the previous address, the previous value is only restored.
         let is_back_there = from == WhichPlace::Old && value == self.change.before;
         let follows = self.change.is_followed && !is_back_there;
-        // A new id may be another hand's; a hand of another serial speed cannot be heard here.
+        // A new id may belong to another hand; a hand with another serial speed cannot be heard here.
         let may_be_taken = follows && self.change.id == ParamId::HandId;
         if may_be_taken && self.holds(from.other()).await.is_some() {
             return Some(Moved::Occupied);
@@ -238,7 +238,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         Some(Moved::Nowhere)
     }
 
-    /// The hand answers: the user keeps the change, or it is taken back.
+    /// The hand answers: the user keeps the change, or it is reverted.
     async fn decide(&mut self, at: WhichPlace, params: Params, decisions: Decisions) -> PlaceEnd {
         (self.notify)(PlaceStep::Keeping(at));
         let keeps = timeout(CONFIRM_TIMEOUT, decisions.keeps).await;
@@ -257,7 +257,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         }
     }
 
-    /// What is known of the hand at one place is found at another too.
+    /// Copies the stored files of the hand to its other endpoint.
     async fn adopt(&mut self, to: WhichPlace, from: WhichPlace) {
         let places = &self.change.places;
         let former = self.backups.beside(places.endpoint(from));
@@ -267,7 +267,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         }
     }
 
-    /// Finds the hand and gives it back what it held.
+    /// Finds the hand and restores its previous value.
     async fn revert(&mut self, last: WhichPlace) -> PlaceEnd {
         let mut end = PlaceEnd::Nowhere;
         for _round in 0..ROUNDS {
@@ -290,7 +290,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     async fn bring_back(&mut self, from: WhichPlace) -> PlaceEnd {
         match self.go(from, self.change.before).await {
             None => PlaceEnd::NotWritten,
-            // At a place of its own, or held where it is: both is as before.
+            // At its own address, or with the value held where it is: both restore the previous state.
             Some(Moved::There | Moved::Waits) => PlaceEnd::Back,
             Some(Moved::Occupied | Moved::Stayed | Moved::Refused { .. }) => {
                 PlaceEnd::NotBack(from)
@@ -320,11 +320,11 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         if let Some(why) = not_noted {
             self.not_noted.get_or_insert(why.to_string());
         }
-        // Once it is switched off and on the hand may be at the other place.
+        // After a power cycle the hand may be at the other address.
         if !(at == WhichPlace::New && saved == Saved::Confirmed) {
             self.adopt(at.other(), at).await;
         }
-        // Some hands let a new id or speed act at SAVE.
+        // On some hands a new id or speed takes effect at SAVE.
         let acts = matches!(
             saved,
             Saved::Confirmed | Saved::ReadBack | Saved::Unknown { .. }
@@ -349,7 +349,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     }
 }
 
-/// When a change that waits for the user is taken back, if the question was asked at this moment.
+/// Deadline of the user's confirmation, for a question asked at this moment; then the change is reverted.
 pub fn taken_back_at(asked: Moment) -> Moment {
     asked.plus(CONFIRM_TIMEOUT)
 }

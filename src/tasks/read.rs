@@ -1,4 +1,4 @@
-//! Reading what a hand keeps. Writes nothing.
+//! Reading the persistent parameters of a hand. Writes nothing.
 
 use crate::hand::Span;
 use crate::link::{LinkHandle, RequestError};
@@ -9,25 +9,25 @@ use crate::tasks::hand::{REACH_TIMEOUT, RETRY_DELAY, answers};
 use std::time::Duration;
 use tokio::time::sleep;
 
-/// Tries to read a group: an answer is lost, and a lost link comes back.
+/// Attempts to read a group: a reply may get lost, and a lost link may return.
 const TRIES: u32 = 4;
-/// How often the time is waited out in which an earlier answer may still come: once after each that was lost.
+/// Maximum waits for a late reply to an earlier request: one after each lost reply.
 const WAITS: u32 = TRIES;
 
-/// Parameters that were read, and why others were not.
+/// Parameters that were read, and the errors for the others.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ReadRows {
-    /// The rows that could be read.
+    /// Rows that could be read.
     pub params: Params,
-    /// Why others could not, group by group.
+    /// Errors of the groups that could not be read.
     pub troubles: Vec<RequestError>,
 }
 
 impl ReadRows {
-    /// All rows that are needed.
+    /// Returns the parameters if all needed rows were read.
     ///
     /// # Errors
-    /// [`TaskError::NotRead`] with the first that is missing.
+    /// [`TaskError::NotRead`] with the first missing row.
     pub fn with(self, is_needed: impl Fn(ParamId) -> bool) -> Result<Params, TaskError> {
         let missing = |id: &ParamId| is_needed(*id) && self.params.get(*id).is_none();
         let Some(id) = ParamId::all().into_iter().find(missing) else {
@@ -41,7 +41,7 @@ impl ReadRows {
     }
 }
 
-/// Reads all rows, group by group; `on_read` is told each group as it comes.
+/// Reads all rows, group by group; `on_read` receives each group as it arrives.
 pub async fn rows(hand: &LinkHandle, mut on_read: impl FnMut(Span, &[u8])) -> ReadRows {
     let mut rows = ReadRows::default();
     for span in SPANS {
@@ -56,10 +56,10 @@ pub async fn rows(hand: &LinkHandle, mut on_read: impl FnMut(Span, &[u8])) -> Re
     rows
 }
 
-/// Reads some memory, and tries again where that may help.
+/// Reads a span of memory, with retries where they may help.
 ///
 /// # Errors
-/// As the link says, at the last try.
+/// The link's error at the last attempt.
 pub async fn group(hand: &LinkHandle, span: Span) -> Result<Vec<u8>, RequestError> {
     let (mut tries, mut waits) = (TRIES, WAITS);
     loop {
@@ -68,7 +68,7 @@ pub async fn group(hand: &LinkHandle, span: Span) -> Result<Vec<u8>, RequestErro
             Err(error @ (RequestError::Refused { .. } | RequestError::TooLong { .. })) => {
                 return Err(error);
             }
-            // Nothing was asked, so this is no try.
+            // Nothing was sent, so this does not count as an attempt.
             Err(RequestError::Ambiguous { wait_s, .. }) if waits > 0 => {
                 waits -= 1;
                 sleep(Duration::from_secs(wait_s)).await;

@@ -1,4 +1,4 @@
-//! Back to the factory's parameters, with a backup first, and where the hand answers then (manual 2.6.5).
+//! Return to the factory parameters, with a backup first, and a search for the hand's address afterwards (manual 2.6.5).
 
 use crate::hand::Refusal;
 use crate::link::RequestError;
@@ -16,61 +16,61 @@ use crate::tasks::{TaskError, read};
 use crate::transport::Endpoint;
 use std::path::PathBuf;
 
-/// Rounds of looking for the hand: one that starts again needs a few seconds.
+/// Rounds of the search for the hand: a restart takes a few seconds.
 const ROUNDS: u8 = 3;
 
-/// What is told on the way.
+/// Progress of a reset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ResetStep {
-    /// Its parameters are read and kept in a file.
+    /// The parameters are being read and backed up.
     BackingUp,
-    /// RESET_PARA goes out.
+    /// RESET_PARA is being sent.
     Sending,
-    /// The hand is looked for there; the new place is the factory's.
+    /// The hand is searched for at this address; the new address is the factory's.
     Looking(WhichPlace),
 }
 
-/// How the reset ended, and where the hand is now.
+/// Outcome of a reset, with the address of the hand.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ResetEnd {
-    /// It was not sent, and why, if the link says so.
+    /// It was not sent, with the link's reason.
     NotSent(Option<NotSent>),
-    /// The hand said no.
+    /// The hand refused it.
     Refused {
         /// The hand's reason.
         reason: Refusal,
     },
-    /// A hand answers there.
+    /// A hand answers at one of the addresses.
     Found {
-        /// Place at which it answers.
+        /// Address at which it answers.
         at: WhichPlace,
-        /// What it holds, as far as it could be read.
+        /// Its parameters, as far as they could be read.
         params: Params,
-        /// Rows that were read and are not as at delivery.
+        /// Rows that were read and differ from the factory values.
         left: Vec<ParamId>,
-        /// What that shows of the reset.
+        /// Evidence that these parameters give of the reset.
         proof: ResetProof,
     },
-    /// No hand answers at either place.
+    /// No hand answers at either address.
     Nowhere,
 }
 
-/// What the parameters of a hand show of a reset. The manual prints no factory value for speeds and forces, so of those only
-/// a change shows it.
+/// Evidence of a reset in the parameters of a hand. The manual prints no factory value for speeds and forces, so for those only a
+/// change is evidence.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ResetProof {
-    /// Read back: the rows whose factory value is known hold it, and the hand does not hold what it held before.
+    /// Read back: the rows whose factory value is known hold it, and the parameters differ from those before.
     Done,
-    /// The hand holds other values than the factory's in some rows: it ignored the reset, as a whole or in part.
+    /// Some rows hold values other than the factory's: the hand ignored the reset, in whole or in part.
     Ignored,
-    /// The hand holds what it held before, and that may have been the factory's parameters: it may have ignored the reset.
+    /// The parameters are unchanged, and may have been the factory's before: the hand may have ignored the reset.
     Unchanged,
-    /// Not every row could be read, so it is not known.
+    /// Not every row could be read, so the result is not known.
     NotRead(RequestError),
 }
 
 impl ResetProof {
-    /// The stable name for JSON.
+    /// Stable name in JSON.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Done => "done",
@@ -84,17 +84,17 @@ impl ResetProof {
 /// Outcome of a return to the factory parameters.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ResetReport {
-    /// What the hand held before.
+    /// Backup of the previous parameters.
     pub backup: PathBuf,
-    /// Whether the hand acknowledged it.
+    /// True if the hand acknowledged the reset.
     pub is_acknowledged: bool,
-    /// How the reset ended, and where the hand is now.
+    /// Outcome, with the address of the hand.
     pub end: ResetEnd,
-    /// Why the files of the hand could not be kept up, if they could not.
+    /// Error if the files of the hand could not be updated.
     pub not_noted: Option<SystemError>,
 }
 
-/// Where a hand is found before and after a reset.
+/// Endpoints of a hand before and after a reset.
 pub fn places(hand: &Endpoint) -> PlacePair {
     PlacePair {
         old: hand.clone(),
@@ -102,10 +102,10 @@ pub fn places(hand: &Endpoint) -> PlacePair {
     }
 }
 
-/// Resets.
+/// Resets the hand to its factory parameters.
 ///
 /// # Errors
-/// [`TaskError`]: then nothing was written.
+/// [`TaskError`]: nothing was written.
 pub async fn reset<R: Reach>(
     reach: &mut R,
     places: &PlacePair,
@@ -133,9 +133,9 @@ pub async fn reset<R: Reach>(
     match sent {
         Ok(Reset::NotSent(why)) => report.end = ResetEnd::NotSent(Some(why)),
         Ok(Reset::Refused { reason }) => report.end = ResetEnd::Refused { reason },
-        // Without an answer it may have acted.
+        // Without a reply the hand may have acted.
         Ok(Reset::Acknowledged | Reset::Unanswered) | Err(RequestError::LinkLost) => {
-            // Whatever the answer was: what is in flash now is not what was saved.
+            // Regardless of the reply, flash no longer holds what was saved.
             let noting = backups.clone();
             let forgotten = on_thread(move || noting.forget_saved()).await;
             report.end = find(reach, places, &before, &mut notify).await;
@@ -147,7 +147,7 @@ pub async fn reset<R: Reach>(
     Ok(report)
 }
 
-/// Looks at the factory's place first, then where the hand was.
+/// Searches at the factory's address first, then at the previous one.
 async fn find<R: Reach>(
     reach: &mut R,
     places: &PlacePair,
@@ -176,7 +176,7 @@ async fn find<R: Reach>(
     answered.unwrap_or(ResetEnd::Nowhere)
 }
 
-/// What the rows show that a hand holds at this place.
+/// Interprets the rows that were read from a hand at this address.
 fn found(rows: ReadRows, before: &Params, places: &PlacePair, at: WhichPlace) -> ResetEnd {
     let ReadRows { params, troubles } = rows;
     let differing = params.differences(&Params::factory()).into_iter();
@@ -184,7 +184,7 @@ fn found(rows: ReadRows, before: &Params, places: &PlacePair, at: WhichPlace) ->
         .filter(|row| row.ours.is_some())
         .map(|row| row.id)
         .collect();
-    // Some of these act, and are shown, only after the next power-up.
+    // Some of these take effect, and can be read, only after the next power-up.
     let is_there = *places.endpoint(at) != places.old;
     let may_stay = |id: &ParamId| *id == ParamId::IpAddress || id.is_place() && is_there;
     let proof = match troubles.into_iter().next_back() {
@@ -201,7 +201,7 @@ fn found(rows: ReadRows, before: &Params, places: &PlacePair, at: WhichPlace) ->
     }
 }
 
-/// What is known of the hand is found at its new place too.
+/// Copies the stored files of the hand to its new endpoint.
 async fn adopt(backups: &Backups, places: &PlacePair, end: &ResetEnd) -> std::io::Result<()> {
     let ResetEnd::Found { at, .. } = end else {
         return Ok(());

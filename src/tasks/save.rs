@@ -1,5 +1,4 @@
-//! SAVE: the hand's parameters into its flash, with a backup first and notes of what went out and what came of it
-//! (manual 2.6.4).
+//! SAVE: writes the hand's parameters to its flash, with a backup first and notes of the attempt and its result (manual 2.6.4).
 
 use crate::hand::overshoot::OvershootMap;
 use crate::link::{LinkHandle, RequestError};
@@ -18,19 +17,19 @@ use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 use tokio::time::sleep;
 
-/// The result of a SAVE may come this late; another program must not take it for the result of its own.
+/// The result of a SAVE may arrive this late; another program must not mistake it for the result of its own.
 const APART: Duration = Duration::from_secs(6);
 
-/// What is needed for it.
+/// Requirements of a SAVE.
 #[derive(Debug, Clone)]
 pub struct Save {
-    /// Where backup and notes go.
+    /// Location of backup and notes.
     pub backups: Backups,
-    /// What the hand would wake up with so far: only what hits harder than this has to be meant.
+    /// Parameters with which the hand would start so far: only joints that would hit harder than with these need consent.
     pub before: Params,
-    /// What the user agreed to.
+    /// The user's consent.
     pub consent: Consent,
-    /// What trials measured of the hand.
+    /// Overshoot of the hand, as measured by trials.
     pub overshoot: Arc<OvershootMap>,
 }
 
@@ -41,16 +40,16 @@ pub struct SaveReport {
     pub params: Params,
     /// Path of the backup.
     pub backup: PathBuf,
-    /// What is known of flash.
+    /// Result of SAVE: state of flash, as far as it is known.
     pub saved: Saved,
-    /// Why this could not be noted.
+    /// Error if the result could not be noted.
     pub not_noted: Option<SystemError>,
 }
 
-/// Saves.
+/// Saves the parameters to flash.
 ///
 /// # Errors
-/// [`TaskError`]: then no SAVE went out.
+/// [`TaskError`]: no SAVE was sent.
 pub async fn save(
     hand: &LinkHandle,
     task: &Save,
@@ -81,7 +80,7 @@ pub async fn save(
     })
 }
 
-/// Keeps what a hand holds.
+/// Writes a backup of the parameters of a hand.
 pub(crate) async fn back_up(
     backups: &Backups,
     params: &Params,
@@ -93,7 +92,7 @@ pub(crate) async fn back_up(
         .map_err(no_backup)
 }
 
-/// Notes the attempt, sends SAVE, and notes the result; why that could not be noted, if it could not.
+/// Notes the attempt, sends SAVE, and notes the result; also returns the error if the result could not be noted.
 pub(crate) async fn save_noted(
     hand: &LinkHandle,
     backups: &Backups,
@@ -119,7 +118,7 @@ pub(crate) async fn save_noted(
     let (noting, noted) = (backups.clone(), result.clone().ok());
     let not_noted = on_thread(move || match noted {
         Some(saved) => noting.note_result(&saved),
-        // What was not sent must not be noted as of unknown result.
+        // An attempt that was not sent must not be noted as having an unknown result.
         None => noting.note_not_done(),
     });
     let not_noted = not_noted.await.err();

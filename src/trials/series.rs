@@ -1,4 +1,4 @@
-//! A series of trials: which is next, the rest between two, and what ends the series. Sends nothing and reads no clock.
+//! A series of trials: the next trial, the rest between two, and the end of the series. Sends nothing and reads no clock.
 
 use crate::hand::{Angle, ArmEpoch, Groups, HandSample, Moment, PerDof, Setpoints, Speed};
 use crate::record::Abort;
@@ -13,19 +13,19 @@ use std::time::Duration;
 
 /// Longest wait for a hand that is too warm to start.
 pub const COOLING_MAX: Duration = Duration::from_secs(900);
-/// Speed at which the contact is looked for.
+/// Speed of the probe that measures the contact.
 const PROBE_SPEED: Speed = Speed::SLOWEST_MEASURED;
-/// So often a trial is repeated whose readings stopped at its peak.
+/// Maximum repeats of a trial whose readings stopped at its peak.
 const REPEATS_MAX: usize = 3;
 
 #[derive(Debug, Clone, Copy)]
 struct GridTrial {
-    /// Which of the trials of its setting, from 1; `None` = it finds the contact.
+    /// Number among the trials of its setting, from 1; `None` for the probe that measures the contact.
     repeat: Option<usize>,
     setting: TrialSetting,
 }
 
-/// A trial with the plan that it is run by.
+/// A trial with its plan.
 #[derive(Debug, Clone)]
 struct PlannedTrial {
     /// As of a [`GridTrial`].
@@ -34,18 +34,18 @@ struct PlannedTrial {
     plan: TrialPlan,
 }
 
-/// The arming, and the time.
+/// The arming, and the time of the start.
 struct SeriesBegin {
     epoch: ArmEpoch,
     now: Moment,
 }
 
-/// Where the trials come from.
+/// Source of the trials.
 #[derive(Debug, Clone)]
 enum TrialSource {
     /// Speeds and thresholds of the plan, in order.
     Grid(VecDeque<GridTrial>),
-    /// Each from what those before it measured.
+    /// Each trial depends on the measurements of the previous ones.
     Search(Box<SettingsSearch>),
 }
 
@@ -56,18 +56,18 @@ enum SeriesPhase {
     Over,
 }
 
-/// Where a series stands.
+/// Progress of a series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeriesView {
-    /// Trials that began.
+    /// Trials that have begun.
     pub number: usize,
-    /// Trials in all.
+    /// Total number of trials.
     pub total: usize,
-    /// What is tried; `None` between two trials.
+    /// Current setting; `None` between two trials.
     pub setting: Option<TrialSetting>,
-    /// Whether it looks for the contact.
+    /// True while the contact is being measured.
     pub is_probing: bool,
-    /// What the hand does.
+    /// Stage of the hand.
     pub stage: Stage,
 }
 
@@ -81,7 +81,7 @@ pub struct TrialSeries {
     phase: SeriesPhase,
     contact: PerDof<Option<Angle>>,
     number: usize,
-    /// The longest time in the running trial in which this program did not run.
+    /// Longest interval in the running trial in which this program did not run.
     stall: Option<Duration>,
     /// Repeats of the last trial.
     repeats: usize,
@@ -90,10 +90,10 @@ pub struct TrialSeries {
 }
 
 impl TrialSeries {
-    /// Starts a series in an arming that the user gave. Nothing is sent before the first [`Self::tick`].
+    /// Starts a series under an arming by the user. Nothing is sent before the first [`Self::tick`].
     ///
     /// # Errors
-    /// [`PlanError`]: the plan makes no sense, and nothing begins.
+    /// [`PlanError`]: the plan is invalid, and nothing starts.
     pub fn start(plan: TrialPlan, epoch: ArmEpoch, now: Moment) -> Result<Self, PlanError> {
         plan.check()?;
         let queue = cells(&plan);
@@ -103,7 +103,7 @@ impl TrialSeries {
         })
     }
 
-    /// Starts a search in an arming that the user gave. Its goal was checked when the search was made.
+    /// Starts a search under an arming by the user. Its goal was checked when the search was created.
     pub fn search(search: SettingsSearch, epoch: ArmEpoch, now: Moment) -> Self {
         let plan = search.plan();
         let total = search.progress().closes_left;
@@ -130,7 +130,7 @@ impl TrialSeries {
         }
     }
 
-    /// Where it stands.
+    /// Current progress.
     pub fn view(&self) -> SeriesView {
         let (setting, is_probing, stage) = match &self.phase {
             SeriesPhase::Waiting { .. } => (None, false, Stage::Resting),
@@ -164,7 +164,7 @@ impl TrialSeries {
             return None;
         }
         let limit = self.plan.limits.start_c;
-        // Temperatures that are not known yet are waited for; the trial itself does not begin without them.
+        // Waits until temperatures are known; a trial does not begin without them.
         let (dof, celsius) = warmest(sample)?;
         if celsius >= limit {
             if now.since(until) >= COOLING_MAX {
@@ -187,7 +187,7 @@ impl TrialSeries {
         self.tick(sample, stall, now)
     }
 
-    /// The next trial, with the contact that its approach needs.
+    /// Returns the next trial, with the contact that its approach needs.
     fn pop(&mut self) -> Option<PlannedTrial> {
         let search = match &mut self.source {
             TrialSource::Grid(queue) => {
@@ -216,7 +216,7 @@ impl TrialSeries {
         })
     }
 
-    /// The search that it is, if it is one.
+    /// The search, if this series is one.
     pub fn settings_search(&self) -> Option<&SettingsSearch> {
         match &self.source {
             TrialSource::Grid(_) => None,
@@ -224,7 +224,7 @@ impl TrialSeries {
         }
     }
 
-    /// A trial ended normally.
+    /// Handles the normal end of a trial.
     fn next(&mut self, now: Moment) {
         let Some(mut trial) = self.close_trial() else {
             return;
@@ -256,7 +256,7 @@ impl TrialSeries {
         };
     }
 
-    /// Whether a trial is no evidence, as its readings stopped at its peak: of a grid it is tried again, and a search does so by
+    /// True if a trial is no evidence because its readings stopped at its peak. A grid repeats such a trial; a search does so by
     /// itself.
     fn again(&mut self, trial: &TrialSummary) -> bool {
         let has_gap = trial.has_gap();
@@ -276,7 +276,7 @@ impl TrialSeries {
         true
     }
 
-    /// Takes the contact angles of a probe; the reason to end if one is missing.
+    /// Stores the contact angles of a probe; returns the reason to end if one is missing.
     fn learn_contact(&mut self, trial: &TrialSummary) -> Option<Abort> {
         if !trial.is_probe() {
             return None;
@@ -285,7 +285,7 @@ impl TrialSeries {
             let Some(angle) = joint.contact_angle else {
                 continue;
             };
-            // Between 0 and 1000 as all angles are.
+            // Between 0 and 1000, as all angles are.
             #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
             let angle = angle.round() as i64;
             self.contact[joint.dof] = Some(Angle::nearest(angle));
@@ -322,7 +322,7 @@ impl TrialSeries {
         Some(Trial { summary, recording })
     }
 
-    /// How a trial of a search came near: each has its own way, and the plan of the series cannot say it.
+    /// Approach of a trial in a search: it differs per trial, so the plan of the series cannot record it.
     fn approach_of(&self, plan: &TrialPlan) -> toml::Table {
         let is_search = matches!(self.source, TrialSource::Search(_));
         let keys = toml::Table::try_from(plan.approach).ok();
@@ -339,17 +339,17 @@ impl TrialSeries {
         self.phase = SeriesPhase::Over;
     }
 
-    /// True once nothing is sent any more.
+    /// True once nothing further is sent.
     pub const fn is_over(&self) -> bool {
         matches!(self.phase, SeriesPhase::Over)
     }
 
-    /// Why it ended early, if it did. The hand is to be stopped then.
+    /// Reason for an early end; `None` if there is none. The hand must then be stopped.
     pub const fn aborted(&self) -> Option<Abort> {
         self.aborted
     }
 
-    /// Ends it early, if it is not over.
+    /// Ends the series early, unless it is over.
     pub fn abort(&mut self, why: Abort, now: Moment) {
         if self.is_over() {
             return;
@@ -360,7 +360,7 @@ impl TrialSeries {
         self.fail(why);
     }
 
-    /// The program that runs it did not run for a while.
+    /// Records an interval in which the program did not run.
     pub fn stalled(&mut self, stall: TaskStall) {
         self.stall = self.stall.max(Some(stall.lasted));
     }
@@ -372,7 +372,8 @@ impl TrialSeries {
         }
     }
 
-    /// Advances the time. Returns what to send now, if anything. `stall` is the last time in which this program did not run.
+    /// Advances the time. Returns the setpoints to send now, if any. `stall` is the most recent interval in which this program did not
+    /// run.
     pub fn tick(
         &mut self,
         sample: &HandSample,
@@ -398,7 +399,7 @@ impl TrialSeries {
     }
 }
 
-/// The trials in order; where the contact has to be measured, a slow one at the smallest threshold goes first.
+/// Trials in order. If the contact has to be measured, a slow trial at the smallest threshold comes first.
 fn cells(plan: &TrialPlan) -> VecDeque<GridTrial> {
     let least = plan.grid.forces.iter().min();
     let probe = least.filter(|_| plan.measures_contact());

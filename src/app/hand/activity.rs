@@ -1,30 +1,30 @@
-//! What goes on at a hand, and so who may move it now. The only place where that is decided.
+//! Activity of a hand, which decides who may move it. The only place for that decision.
 
 use crate::link::{LinkStatus, Owner};
 
-/// What goes on at a hand. Of several things it is the first of these.
+/// Activity of a hand. If several apply, the first of these.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Activity {
-    /// It was told to hold, and is left as soon as it rests.
+    /// The hand was stopped, and its link closes as soon as it rests.
     Leaving,
-    /// A card is open: its place is changed, its parameters are reset, or its force sensors are calibrated.
+    /// A card is open: a change of address, a reset or a calibration of the force sensors.
     Procedure,
     /// A series of trials or a check-up runs.
     Series,
-    /// It follows another than this window, which the user let.
+    /// The hand follows another party, to which the user granted control.
     Following(Owner),
-    /// An entry of the library is played. The user takes the hand from it by moving it.
+    /// An entry of the library is playing. The user takes over by moving the hand.
     Playing,
     Idle,
 }
 
 impl Activity {
-    /// Whether the user at this window may move an armed hand: joints, poses, sequences, gestures.
+    /// True if the user at this window may move an armed hand: joints, poses, sequences, gestures.
     pub const fn lets_person_move(self) -> bool {
         matches!(self, Self::Playing | Self::Idle)
     }
 
-    /// Whether the user may arm the hand. One that follows is taken back by that.
+    /// True if the user may arm the hand. Arming takes back a hand that follows.
     pub const fn lets_arm(self) -> bool {
         matches!(
             self,
@@ -32,12 +32,12 @@ impl Activity {
         )
     }
 
-    /// Whether the user may let another than this window move it.
+    /// True if the user may grant control to another party.
     pub const fn lets_grant(self) -> bool {
         matches!(self, Self::Following(_) | Self::Playing | Self::Idle)
     }
 
-    /// Whether nothing has the hand to itself, so that what it keeps may be read beside.
+    /// True if no activity needs the hand exclusively, so that its persistent parameters may be read meanwhile.
     pub const fn lets_read_beside(self) -> bool {
         matches!(
             self,
@@ -45,7 +45,7 @@ impl Activity {
         )
     }
 
-    /// Whether an exhibition may begin.
+    /// True if an exhibition may begin.
     pub const fn lets_exhibit(self) -> bool {
         matches!(self, Self::Following(_) | Self::Playing | Self::Idle)
     }
@@ -79,15 +79,15 @@ mod tests {
     }
 }
 
-/// Who moves the hand, as the events of a recording tell.
+/// Party that moves the hand of a recording, according to its events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct RecordedMover {
-    /// The trial, and how many there are, in the arming of then.
+    /// Number of the current trial and of all trials, under the current arming.
     pub(crate) trial: Option<(usize, usize)>,
 }
 
 impl RecordedMover {
-    /// A trial began, as its words say: `2 of 4`, and then the joints.
+    /// Starts a trial according to its text: `2 of 4`, then the joints.
     pub(crate) fn begin_trial(&mut self, words: &str) {
         let numbers = words.split(", ").next();
         let numbers = numbers.and_then(|numbers| numbers.split_once(" of "));
@@ -95,7 +95,7 @@ impl RecordedMover {
             numbers.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
     }
 
-    /// The link's status changed: no series goes on without arming.
+    /// Applies a status of the link: no series continues without arming.
     pub(crate) fn take_status(&mut self, link: &LinkStatus) {
         self.trial = self.trial.filter(|_| link.armed.is_some());
     }

@@ -1,4 +1,4 @@
-//! One connection with a hand: its link, what that says of itself, and what was asked of it. A new one takes its place whole.
+//! One connection with a hand: its link, the link's state, and pending requests. A new connection replaces it as a whole.
 
 use crate::app::env::Env;
 use crate::app::notices::RequestKind;
@@ -13,41 +13,41 @@ use crate::transport::Endpoint;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Records taken in one frame: a tenth of a second of the fastest link and far more than a frame brings. The rest waits
-/// for the next frame, so that a window that was held up catches up without a jerk.
+/// Maximum number of records per frame: a tenth of a second of the fastest link, far more than a frame brings. The rest waits for the
+/// next frame, so that a delayed window catches up smoothly.
 const RECORDS_PER_FRAME: usize = 256;
-/// Requests whose end is still awaited; the link itself lets fewer wait.
+/// Maximum number of pending requests; the link itself allows fewer.
 const REQUESTS_MAX: usize = 32;
 
-/// An armed hand that is asked nothing for so long is told of.
+/// The user is notified of an armed hand that has received no command for this long.
 const IDLE_TIMEOUT: Duration = Duration::from_secs(300);
 
 /// One connection with a hand.
 #[derive(Debug, Default)]
 pub struct Connection {
-    /// The hand that is wanted; `None` after a disconnect.
+    /// Endpoint of the requested hand; `None` after a disconnect.
     pub endpoint: Option<Endpoint>,
-    /// Where the link stands. A stop or a disarming counts here at once, although the link's own word for it comes a moment later.
+    /// Status of the link. A stop or a disarming applies here at once, although the link reports it a moment later.
     pub status: LinkStatus,
-    /// What the link measured of itself.
+    /// Statistics of the link.
     pub stats: LinkStats,
-    /// What went over the wire, as far as it was looked at.
+    /// Wire traffic, as far as it was read.
     pub traffic: Traffic,
     pub(crate) open: Option<OpenLink>,
     requests: Vec<Pending>,
-    /// No arming from before this moment counts, whatever the link still says.
+    /// No arming from before this moment counts, regardless of the link's status.
     disarmed_at: Option<Moment>,
-    /// Something was sent that may move the hand.
+    /// A command was sent that may move the hand.
     pub(crate) commanded: bool,
-    /// Angles received before this belong to a link that is gone.
+    /// Angles received before this belong to an earlier link.
     pub(crate) seen_from: Option<Moment>,
     pub(crate) was_live: bool,
-    /// When the hand was armed, or asked for something since.
+    /// Time of the arming or of the last command since.
     pub(crate) asked_at: Moment,
 }
 
 impl Connection {
-    /// With no hand.
+    /// A connection without a hand.
     pub(crate) fn none(now: Moment) -> Self {
         Self {
             status: LinkStatus {
@@ -78,33 +78,33 @@ impl Connection {
         }
     }
 
-    /// The hand's name in files and lists; empty without one.
+    /// Name of the hand in files and lists; empty without a hand.
     pub fn name(&self) -> String {
         let endpoint = self.endpoint.as_ref();
         endpoint.map(ToString::to_string).unwrap_or_default()
     }
 
-    /// Whether it is the built-in hand.
+    /// True for the built-in hand.
     pub fn is_simulated(&self) -> bool {
         self.endpoint.as_ref().is_some_and(Endpoint::is_sim)
     }
 
-    /// Whether the hand answers.
+    /// True while the hand answers.
     pub const fn is_live(&self) -> bool {
         self.status.state.is_live()
     }
 
-    /// Whether setpoints pass.
+    /// True while setpoints pass.
     pub fn is_armed(&self) -> bool {
         self.status.state == LinkState::Armed
     }
 
-    /// Whether the hand was stopped or disarmed from this window since then.
+    /// True if the hand was stopped or disarmed from this window since `then`.
     pub fn is_disarmed_since(&self, then: Moment) -> bool {
         self.disarmed_at.is_some_and(|at| at >= then)
     }
 
-    /// How long an armed hand was asked nothing, once that is long.
+    /// Time without a command to an armed hand; `None` below five minutes.
     pub fn idle(&self, now: Moment) -> Option<Duration> {
         let idle = now.since(self.asked_at);
         (self.is_armed() && idle >= IDLE_TIMEOUT).then_some(idle)
@@ -114,54 +114,53 @@ impl Connection {
         self.open.as_ref().map(|open| &open.link)
     }
 
-    /// True if closing or leaving now could leave a hand in motion that this program set in motion: also where feedback is too old
-    /// to tell.
+    /// True if closing now could leave the hand in a motion that this program started; also true if feedback is too old to decide.
     pub(crate) fn may_move(&self) -> bool {
         let may_still_move = self.commanded && self.status.rest != Rest::Resting;
         let holding = self.status.state == LinkState::Holding;
         self.is_live() && (self.is_armed() || holding || may_still_move)
     }
 
-    /// True once nothing more can be done for a hand that was told to hold at this moment: it rests, or is gone.
+    /// True once a hand that was stopped at this moment rests or has disconnected.
     pub(crate) fn is_held(&self, told: Moment) -> bool {
         let rests = matches!(self.status.hold, Hold::Confirmed { rest, .. } if rest >= told);
         !self.is_live() || rests
     }
 
-    /// Who moves the hand from outside this window, if somebody may.
+    /// Party outside this window that has control of the hand, if any.
     pub fn outside_owner(&self) -> Option<Owner> {
         let holder = self.status.holder.filter(|_| self.is_live())?;
         holder.owner.is_outside().then_some(holder.owner)
     }
 
-    /// Ends whoever moves the hand from outside, for this reason; the hand is stopped.
+    /// Ends the control of a party outside this window, for this reason; the hand is stopped.
     pub(crate) fn end_outside(&self, why: Disarmed) {
         let Some(link) = self.link() else { return };
         if let Some(holder) = link.status().holder
             && holder.owner.is_outside()
         {
-            // One that ended meanwhile has stopped already.
+            // A lease that ended meanwhile has already stopped the hand.
             let _done = link.give_back(holder.lease, why);
         }
     }
 
-    /// The user at this window moves the hand from now on.
+    /// Gives control to the user at this window.
     pub(crate) fn take_over(&mut self) {
         if let Some(open) = &mut self.open {
             let _lease = open.take_lease();
         }
     }
 
-    /// Asks the link to let setpoints of the user at this window pass.
+    /// Asks the link to pass setpoints of the user at this window.
     pub(crate) fn arm(&mut self, request: ArmRequest) {
         if let Some(open) = &mut self.open {
             let lease = open.take_lease();
-            // Just granted: it holds.
+            // The lease was just granted, so it is valid.
             let _asked = open.link.arm(lease, request);
         }
     }
 
-    /// Sends, if the hand is armed and the right to move it holds.
+    /// Sends setpoints, if the hand is armed and the lease is valid.
     pub(crate) fn send(&mut self, setpoints: &Setpoints) {
         if let Some(open) = &self.open {
             let set = open.lease.map(|lease| open.link.set(lease, setpoints));
@@ -169,7 +168,7 @@ impl Connection {
         }
     }
 
-    /// Holds now. Whatever was armed is not any more, at once. False without a live link: then the stop waits for the hand for a while.
+    /// Stops (holds) the hand; any arming ends at once. False without a live link: then the stop stays pending for a while.
     pub(crate) fn stop(&mut self, now: Moment) -> bool {
         let _acts_unawaited = self.link().map(LinkHandle::stop);
         let is_sent = self.is_live();
@@ -177,7 +176,7 @@ impl Connection {
         is_sent
     }
 
-    /// Lets no setpoint pass any more. The hand keeps what it was told.
+    /// Passes no further setpoints. The hand keeps its targets.
     pub(crate) fn disarm(&mut self, now: Moment) {
         if let Some(link) = self.link() {
             link.disarm();
@@ -193,7 +192,7 @@ impl Connection {
         self.status.armed = None;
     }
 
-    /// What has to be held now. A gamepad has a button of its own for that, and an exhibition is for strangers.
+    /// Key that has to be held now. A gamepad has its own button for that, and an exhibition is operated by visitors.
     pub(crate) fn holds(&self, held: HoldToRun) -> HoldToRun {
         match self.status.holder.map(|holder| holder.owner) {
             Some(Owner::Gamepad | Owner::Exhibition) => HoldToRun::Off,
@@ -207,10 +206,10 @@ impl Connection {
         }
     }
 
-    /// Writes a command; what became of it is told by [`Self::ended_requests`].
+    /// Writes a command; [`Self::ended_requests`] returns its result.
     ///
     /// # Errors
-    /// [`RequestError::NotConnected`], if no hand is there to take it.
+    /// [`RequestError::NotConnected`], if no hand is connected.
     pub(crate) fn ask(
         &mut self,
         what: RequestKind,
@@ -236,7 +235,7 @@ impl Connection {
         Ok(())
     }
 
-    /// The requests that ended since the last call, and how.
+    /// Requests that ended since the last call, with their results.
     pub(crate) fn ended_requests(&mut self) -> Vec<(RequestKind, Result<(), RequestError>)> {
         let mut ended = Vec::new();
         self.requests.retain_mut(|asked| {
@@ -247,7 +246,7 @@ impl Connection {
         ended
     }
 
-    /// The records since the last call, and the link's status of now; `None` without a link.
+    /// Records since the last call, and the link's current status; `None` without a link.
     pub(crate) fn heard(&mut self) -> Option<(Vec<Record>, LinkStatus)> {
         let open = self.open.as_mut()?;
         let status = open.link.status();
@@ -258,7 +257,7 @@ impl Connection {
         Some((records, status))
     }
 
-    /// Puts this status in place of the one before, which it gives. No arming from before the last disarming counts.
+    /// Replaces the status, and returns the previous one. No arming from before the last disarming counts.
     pub(crate) fn take_status(&mut self, mut status: LinkStatus) -> LinkStatus {
         let outdated = self.disarmed_at.is_some_and(|at| status.since <= at);
         if outdated && (status.state == LinkState::Armed || status.armed.is_some()) {
@@ -268,7 +267,7 @@ impl Connection {
         std::mem::replace(&mut self.status, status)
     }
 
-    /// The angles that were read through this link, if it is live.
+    /// Angles that were read through this link, if it is live.
     pub(crate) fn angles<'a>(&self, sample: &'a HandSample) -> Option<&'a PerDof<AngleReading>> {
         let angle = sample.angle.as_ref().filter(|_| self.is_live())?;
         let is_of_now = self.seen_from.is_none_or(|from| angle.received > from);
@@ -280,12 +279,12 @@ impl Connection {
 pub(crate) struct OpenLink {
     pub(crate) link: LinkHandle,
     pub(crate) records: Records,
-    /// The right to move the hand that the user at this window, or their task, had last.
+    /// Newest lease of the user at this window, or of a task that the user started.
     pub(crate) lease: Option<Lease>,
 }
 
 impl OpenLink {
-    /// With this link and what is heard of it.
+    /// Wraps a link and its records.
     pub(crate) fn new((link, records): (LinkHandle, Records)) -> Self {
         Self {
             lease: None,
@@ -294,14 +293,14 @@ impl OpenLink {
         }
     }
 
-    /// The right of the user at this window to move the hand; granted anew if another has it, or none.
+    /// Lease of the user at this window; granted anew if the user does not hold control.
     pub(crate) fn take_lease(&mut self) -> Lease {
         let held = self.link.status().holder;
         let held = held.filter(|holder| holder.owner == Owner::Person);
         self.granted(held.map(|holder| holder.lease), Owner::Person)
     }
 
-    /// The right of a task that this person starts. What they set meanwhile passes too.
+    /// Lease for a task that the user starts. Setpoints of the user pass under it too.
     pub(crate) fn lend_lease(&mut self) -> Lease {
         self.granted(None, Owner::Task)
     }
@@ -313,15 +312,15 @@ impl OpenLink {
     }
 }
 
-/// A hand that is being left: it was told to hold.
+/// A hand that was stopped and is being disconnected.
 #[derive(Debug)]
 pub(crate) struct Leaving {
-    /// Where to go then; `None` = nowhere.
+    /// Endpoint to open afterwards; `None` for none.
     pub(crate) to: Option<Endpoint>,
     pub(crate) told: Moment,
 }
 
-/// A request whose end is awaited.
+/// A pending request.
 #[derive(Debug)]
 pub(crate) struct Pending {
     pub(crate) what: RequestKind,

@@ -1,4 +1,4 @@
-//! What the user sets for the joints: changes in, setpoints out. Knows no link and no clock.
+//! The user's settings of the joints: changes in, setpoints out. Knows no link and no clock.
 
 use crate::app::hand::held_key::HeldKey;
 use crate::hand::{
@@ -8,62 +8,62 @@ use crate::hand::{
 use crate::link::ArmRequest;
 use crate::record::Record;
 
-/// One joint as the user sets it.
+/// The user's settings of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct JointControl {
-    /// Where the slider stands: the actual angle while not armed, the user's target while armed. `None` = not known.
+    /// Position of the slider: the actual angle while disarmed, the user's target while armed. `None` if it is not known.
     pub target: Option<Angle>,
-    /// Force threshold: what the hand was found with, gentle at most, until the user sets another; sent at arming and when
-    /// changed while armed. `None` = not known.
+    /// Force threshold: the value found in the hand, gentle at most, until the user sets another; sent at arming and when changed
+    /// while armed. `None` if it is not known.
     pub force: Option<Force>,
-    /// Speed, in the same way.
+    /// Speed, likewise.
     pub speed: Option<Speed>,
-    /// Leave this joint alone.
+    /// The joint is locked: it receives no setpoints.
     pub locked: bool,
 }
 
 /// A change that the user makes to one joint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum JointChange {
-    /// Where it should go. Nothing while the user may not move it.
+    /// Target. Ignored while the user may not move the hand.
     Target(Angle),
-    /// Force threshold; kept, and sent while the user may move it.
+    /// Force threshold; stored, and sent while the user may move the hand.
     Force(Force),
-    /// Speed; kept, and sent while the user may move it.
+    /// Speed; stored, and sent while the user may move the hand.
     Speed(Speed),
-    /// Leave it alone, or not any more.
+    /// Locks or unlocks the joint.
     Lock(bool),
 }
 
-/// What the hand holds of one joint, each `None` where it is what was set, or not known.
+/// Actual settings of one joint; each `None` if it equals the user's setting, or is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct HeldOtherwise {
     /// Its speed.
     pub speed: Option<Speed>,
     /// Its force threshold.
     pub force: Option<Force>,
-    /// Its target, where the joint was sent elsewhere in this arming.
+    /// Its target, if the joint was sent elsewhere under this arming.
     pub target: Option<Angle>,
 }
 
-/// The six joints as the user sets them.
+/// The user's settings of the six joints.
 #[derive(Debug, Default)]
 pub struct Controls {
     pub joints: PerDof<JointControl>,
     /// The stored gesture that was started last, unless it failed.
     pub gesture: Option<Gesture>,
-    /// What the user holds to let the hand move.
+    /// Hold-to-run key.
     pub(crate) held: HeldKey,
-    /// Sliders that show where the joint was sent; the others show the actual angle.
+    /// Sliders that show the commanded target; the others show the actual angle.
     steered: PerDof<bool>,
-    /// Where the joint was sent in this arming; `None` = nowhere, or it was left alone since.
+    /// Target of each joint under this arming; `None` if none was sent, or the joint was locked since.
     sent: PerDof<Option<Angle>>,
-    /// Joints that have the speed and force of what is played, or was.
+    /// Joints that have the speed and force of a played entry.
     overridden: PerDof<bool>,
 }
 
 impl Controls {
-    /// The same for the next connection with this hand: nobody holds a key, and no slider was moved.
+    /// Settings for the next connection with this hand: no key is held, and no slider was moved.
     pub(crate) fn at_next_connection(self) -> Self {
         Self {
             joints: self.joints,
@@ -71,8 +71,8 @@ impl Controls {
         }
     }
 
-    /// Takes what the hand was found with for what the user wants, where they set nothing themselves; but nothing faster or
-    /// firmer than gentle, as a hand comes with the most there is.
+    /// Adopts the values found in the hand where the user has set none, limited to gentle: a hand is delivered with its maximum
+    /// values.
     pub(crate) fn adopt(&mut self, found: &HandSample) {
         for (dof, joint) in self.joints.iter_mut() {
             let speed = found.speed_set.and_then(|all| all.value[dof]);
@@ -82,17 +82,18 @@ impl Controls {
         }
     }
 
-    /// Joints that are left alone.
+    /// Locked joints.
     pub fn locked(&self) -> PerDof<bool> {
         self.joints.map(|joint| joint.locked)
     }
 
-    /// Whether each slider follows its joint.
+    /// True if every slider follows its joint.
     pub(crate) fn all_follow(&self) -> bool {
         self.steered.iter().all(|(_, steered)| !steered)
     }
 
-    /// In a recording there are no wishes: all stands as the hand held it, and a target from when it was sent on.
+    /// Applies a record of a replay, which has no user settings: speeds and forces are those of the hand, and a target applies from
+    /// the time it was sent.
     pub(crate) fn take_recorded(&mut self, record: &Record) {
         match record {
             Record::Reading { sample, fresh } => {
@@ -117,7 +118,7 @@ impl Controls {
         }
     }
 
-    /// The limits that the user set, and gentle ones where they know of none.
+    /// The user's limits, gentle where there are none.
     pub(crate) fn limits(&self) -> ArmRequest {
         ArmRequest {
             speed: self
@@ -129,7 +130,7 @@ impl Controls {
         }
     }
 
-    /// The limits that arming sets: the user's, for good. A locked joint keeps what it holds.
+    /// Limits that arming sets; they become the user's settings. A locked joint keeps its actual values.
     pub(crate) fn arm_request(&mut self, holds: &HandSample) -> ArmRequest {
         let mut request = self.limits();
         for (dof, joint) in self.joints.iter_mut() {
@@ -146,14 +147,14 @@ impl Controls {
         request
     }
 
-    /// What is played from now on sends these joints with its own speed and force.
+    /// Marks joints that a played entry sends with its own speed and force.
     pub(crate) fn override_limits(&mut self, targets: &PerDof<Option<Angle>>) {
         for (dof, to) in targets.iter() {
             self.overridden[dof] |= to.is_some();
         }
     }
 
-    /// Adds the user's own speed and force to what is sent, for the free joints of these that have others from what was played.
+    /// Adds the user's speed and force for those of these joints that are unlocked and have the values of a played entry.
     pub(crate) fn restore_limits(&mut self, sent: &mut Setpoints, of: impl Fn(Dof) -> bool) {
         for (dof, joint) in self.joints.iter().filter(|(_, joint)| !joint.locked) {
             if of(dof) && std::mem::take(&mut self.overridden[dof]) {
@@ -162,7 +163,7 @@ impl Controls {
         }
     }
 
-    /// What a hand holds of a joint, where that is not what was set.
+    /// Actual settings of a joint that differ from the user's.
     pub(crate) fn held_otherwise(&self, dof: Dof, held: &HandSample) -> HeldOtherwise {
         let joint = self.joints[dof];
         let speed = held.speed_set.and_then(|all| all.value[dof]);
@@ -175,12 +176,12 @@ impl Controls {
         }
     }
 
-    /// The threshold that stops a joint: what the hand holds, else what the user wants.
+    /// Force threshold that stops a joint: the actual one, else the user's.
     pub fn stops_at(&self, dof: Dof, held: HeldOtherwise) -> Option<Force> {
         held.force.or(self.joints[dof].force)
     }
 
-    /// Takes a change. `epoch` is the arming in which the user may move the hand; gives what is to be sent in it.
+    /// Applies a change. `epoch` is the arming under which the user may move the hand; returns the setpoints to send under it.
     pub(crate) fn take(
         &mut self,
         dof: Dof,
@@ -210,7 +211,7 @@ impl Controls {
             JointChange::Target(angle) => setpoints.angle[dof] = Some(Target::Go(angle)),
             JointChange::Force(force) => setpoints.force[dof] = Some(force),
             JointChange::Speed(speed) => setpoints.speed[dof] = Some(speed),
-            // What was changed meanwhile goes out when it is free again.
+            // Changes made while it was locked are sent when it is unlocked.
             JointChange::Lock(_) if was_locked => {
                 (setpoints.force[dof], setpoints.speed[dof]) = (joint.force, joint.speed);
             }
@@ -219,7 +220,7 @@ impl Controls {
         Some(setpoints)
     }
 
-    /// Of these setpoints those of joints that have a target and are not locked; `None` if there are none.
+    /// Setpoints of the joints that have a target and are not locked; `None` if there are none.
     pub(crate) fn free(&self, wanted: &Setpoints) -> Option<Setpoints> {
         let mut free = Setpoints::none(wanted.epoch);
         for (dof, joint) in self.joints.iter() {
@@ -232,7 +233,7 @@ impl Controls {
         (!free.is_empty()).then_some(free)
     }
 
-    /// The sliders of joints that are not locked stand where these were sent.
+    /// Moves the sliders of unlocked joints to these targets.
     pub(crate) fn show(&mut self, sent: &Setpoints) {
         for (dof, joint) in self.joints.iter_mut() {
             if let Some(Target::Go(to)) = sent.angle[dof].filter(|_| !joint.locked) {
@@ -242,7 +243,7 @@ impl Controls {
         }
     }
 
-    /// The sliders stand where another than this window sent the joints.
+    /// Moves the sliders to targets that a party outside this window sent.
     pub(crate) fn show_angles(&mut self, sent: PerDof<Option<Angle>>) {
         for (dof, to) in sent.iter() {
             if to.is_some() {
@@ -252,18 +253,18 @@ impl Controls {
         }
     }
 
-    /// The hand is armed: sliders stay where they stand until they are moved.
+    /// Notes that the hand was armed: sliders keep their positions until they are moved.
     pub(crate) fn stand(&mut self) {
         let stands = |joint: JointControl| !joint.locked && joint.target.is_some();
         self.steered = self.joints.map(stands);
     }
 
-    /// All sliders follow their joints, whatever was sent.
+    /// Makes all sliders follow their joints, discarding targets.
     pub(crate) fn let_go(&mut self) {
         (self.steered, self.sent) = (PerDof::default(), PerDof::default());
     }
 
-    /// Sliders that no user holds stand at the actual angle, so that arming and taking over never jump.
+    /// Moves sliders that the user has not moved to the actual angle, so that arming and taking over never jump.
     pub(crate) fn follow(&mut self, actual: Option<&PerDof<AngleReading>>, is_armed: bool) {
         if !is_armed {
             self.let_go();

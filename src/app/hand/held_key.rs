@@ -1,16 +1,17 @@
-//! Hold to run: motion passes only while the user holds a key. Let go, out of focus or in a window that hangs, the hand is stopped.
+//! Hold to run: motion passes only while the user holds a key. When the key is released, the window loses focus or the window hangs,
+//! the hand is stopped.
 
 use crate::hand::Moment;
 use crate::link::HoldToRun;
 use std::time::Duration;
 
-/// A key that was held is believed for so long: a window that draws slowly does not stop the hand, one that hangs does.
+/// A held key stays valid for this long: a window that draws slowly does not stop the hand, a window that hangs does.
 const HOLD_DURATION: Duration = Duration::from_millis(250);
 
-/// What the user does with the key.
+/// State of the key, as the window reports it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum HoldKey {
-    /// It was pressed just now: the user's wish to arm.
+    /// It was just pressed: the user requests arming.
     Pressed,
     /// It is still held.
     Held,
@@ -18,32 +19,32 @@ pub enum HoldKey {
     LetGo,
 }
 
-/// What the user holds.
+/// State of the hold-to-run key.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct HeldKey {
     is_needed: bool,
     until: Moment,
-    /// It was pressed, and nothing was armed for that yet.
+    /// The key was pressed, and this press has not armed yet.
     is_pressed: bool,
 }
 
 impl HeldKey {
-    /// True if it has to be held, and is not.
+    /// True if the key is required and not held.
     pub(crate) fn is_let_go(&self, now: Moment) -> bool {
         self.is_needed && self.until <= now
     }
 
-    /// True while it is believed to be held.
+    /// True while the key counts as held.
     pub(crate) fn is_held(&self, now: Moment) -> bool {
         self.until > now
     }
 
-    /// Whether it has to be held at all.
+    /// Sets whether the key is required.
     pub(crate) const fn need(&mut self, is_needed: bool) {
         self.is_needed = is_needed;
     }
 
-    /// What the user does with it; true while somebody who pressed it waits to be armed.
+    /// Applies the state of the key; true while a press waits for arming.
     pub(crate) fn take(&mut self, key: HoldKey, now: Moment) -> bool {
         let until = now.plus(HOLD_DURATION);
         (self.until, self.is_pressed) = match key {
@@ -54,7 +55,7 @@ impl HeldKey {
         self.is_needed && self.is_pressed
     }
 
-    /// What the link is told of it.
+    /// State of the key for the link.
     pub(crate) const fn hold_to_run(&self) -> HoldToRun {
         match (self.is_needed, self.until) {
             (false, _) => HoldToRun::Off,
@@ -63,7 +64,7 @@ impl HeldKey {
         }
     }
 
-    /// Only who presses again arms.
+    /// Discards the press: only a new press arms.
     pub(crate) const fn forget_press(&mut self) {
         self.is_pressed = false;
     }

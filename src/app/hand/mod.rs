@@ -1,4 +1,4 @@
-//! The parts of one hand. Each owns its state and knows nothing of the others; the list of hands has them composed.
+//! The parts of one hand. Each owns its state and is independent of the others; `hands` composes them.
 
 pub mod activity;
 pub mod connection;

@@ -1,4 +1,4 @@
-//! A sequence that runs, or ran last, and what the user does with one.
+//! The current or last sequence, and the user's commands to it.
 
 use crate::app::env::running::Running;
 use crate::hand::Setpoints;
@@ -10,21 +10,21 @@ use crate::poses::player::{PlayEnd, PlayPhase, PlayView};
 use crate::record::Abort;
 use tokio::sync::mpsc;
 
-/// A sequence, a reaction, or a pose whose way has several parts, that runs or ran last.
+/// The current or last sequence, reaction, or pose with a path of several legs.
 #[derive(Debug)]
 pub struct SequenceRun {
     pub entry: EntryId,
-    /// Where it stands.
+    /// Current progress.
     pub view: PlayView,
     /// `None` once the user moves the hand in another way.
     pub(crate) commands: Option<mpsc::Sender<PlayCommand>>,
     pub(crate) task: Option<Running<PlayStep, Ended<PlayEnd>>>,
-    /// What the grip of each step is told by; none once the user moves the hand in another way.
+    /// Thresholds of the grip estimate for each step; empty once the user moves the hand in another way.
     pub(crate) thresholds: Vec<Option<GripThresholds>>,
 }
 
 impl SequenceRun {
-    /// True while it may send something.
+    /// True while it may send setpoints.
     pub const fn is_running(&self) -> bool {
         !matches!(self.view.phase, PlayPhase::Ended(_))
     }
@@ -34,7 +34,7 @@ impl SequenceRun {
         matches!(self.view.phase, PlayPhase::Paused)
     }
 
-    /// What the grip is told by, as long as its step is what was asked for.
+    /// Thresholds of the grip estimate for the current step; the defaults after an early end.
     pub(crate) fn thresholds(&self) -> GripThresholds {
         let is_asked = match self.view.phase {
             PlayPhase::Ended(end) => end == Ok(PlayEnd::Finished),
@@ -46,12 +46,12 @@ impl SequenceRun {
 
     pub(crate) fn command(&self, command: PlayCommand) {
         if let Some(commands) = &self.commands {
-            // One that cannot be taken any more has ended.
+            // A closed channel means that it has ended.
             let _taken = commands.try_send(command);
         }
     }
 
-    /// It does not move the hand any more.
+    /// Marks that it has lost control of the hand.
     pub(crate) fn leave(&mut self) {
         self.thresholds.clear();
         if self.is_running() {
@@ -60,7 +60,7 @@ impl SequenceRun {
         }
     }
 
-    /// Takes in what its task did; gives what was sent. Nothing of one that does not move the hand any more.
+    /// Applies the progress of its task and returns the setpoints sent; none after it lost control of the hand.
     pub(crate) fn news(&mut self) -> Vec<Setpoints> {
         let Some(task) = &mut self.task else {
             return Vec::new();

@@ -1,4 +1,4 @@
-//! What a changed status of a link means: marks in the history, and what the user is told.
+//! Changes of a link's status: marks in the history, and notices for the user.
 
 use crate::app::hand::connection::Connection;
 use crate::app::notices::{HandNotices, NoticeKind};
@@ -8,19 +8,19 @@ use crate::link::{LinkStatus, LinkTrouble};
 use crate::record::{Disarmed, Hold};
 use crate::transport::Endpoint;
 
-/// An adapter may keep what it got for so long without harm.
+/// An adapter may delay replies for this long without harm, ms.
 const TIMER_MS_MAX: u16 = 2;
 
-/// What others have to know of a changed status.
+/// Changes of a status that concern other parts.
 #[derive(Debug, Default)]
 pub(crate) struct StatusNews {
-    /// The link was lost: when the hand comes back it may be another one, or have been switched off.
+    /// The link was lost: a hand that answers later may be another one, or have been switched off.
     pub(crate) is_lost: bool,
     /// Setpoints pass from now on.
     pub(crate) is_armed: bool,
 }
 
-/// History and messages of one hand, to which changes of its status go.
+/// Receivers of status changes: history and notices of one hand.
 pub(crate) struct StatusReport<'a, 'n> {
     pub(crate) history: &'a mut History,
     pub(crate) notices: &'a mut HandNotices<'n>,
@@ -28,7 +28,7 @@ pub(crate) struct StatusReport<'a, 'n> {
 }
 
 impl StatusReport<'_, '_> {
-    /// Compares the new status with the one before; adds marks and messages for what changed.
+    /// Compares the new status with the previous one; adds marks and notices for changes.
     pub(crate) fn status(&mut self, connection: &mut Connection, status: LinkStatus) -> StatusNews {
         let before = connection.take_status(status);
         let mut news = self.reached(connection, &before);
@@ -88,7 +88,7 @@ impl StatusReport<'_, '_> {
         connection.was_live = true;
     }
 
-    /// An adapter that keeps replies back is told of once a connection.
+    /// Notifies the user, once per connection, of an adapter that delays replies.
     fn latency(&mut self, connection: &Connection, before: &LinkStatus) {
         let link = &connection.status;
         let told = |link: &LinkStatus| link.latency_timer_ms.filter(|ms| *ms > TIMER_MS_MAX);
@@ -123,7 +123,7 @@ impl StatusReport<'_, '_> {
     fn arming(&mut self, link: &LinkStatus, before: &LinkStatus) -> bool {
         let is_armed = link.armed.is_some() && link.armed != before.armed;
         if is_armed {
-            // It said that the hand is not armed.
+            // That notice says that the hand is not armed.
             self.notices
                 .withdraw(|what| *what == NoticeKind::Reconnected);
             self.history.mark(self.now, MarkKind::Armed);

@@ -1,5 +1,5 @@
-//! What the joints of the hand in a slot read when they touch nothing: read when it is opened, and kept when a close taught more, off
-//! the window's thread.
+//! Forces that the joints of a slot's hand read while they touch nothing: read when the hand is opened, and stored when a close
+//! improved them, off the window's thread.
 
 use crate::app::ctx::Ctx;
 use crate::app::notices::NoticeKind;
@@ -10,24 +10,24 @@ use crate::transport::Endpoint;
 use std::io;
 use std::path::PathBuf;
 
-/// What is known of one hand.
+/// Free forces of one hand.
 #[derive(Debug, Default)]
 pub(crate) struct HandFreeForce {
     of: Option<Endpoint>,
-    /// `None` before its file was read.
+    /// `None` until its file was read.
     known: Option<FreeForce>,
-    /// How much the estimator had learnt when it was kept.
+    /// Value of `learned` of the estimator at the last store.
     kept: u64,
     under_way: Option<BackgroundJob<io::Result<FreeForce>>>,
 }
 
 impl HandFreeForce {
-    /// A check-up measured more than is known here: it is read again.
+    /// Reads the file again, because a check-up measured free forces.
     pub(crate) fn read_again(&mut self) {
         self.of = None;
     }
 
-    /// Lets it be of this hand, the estimator know it, and its file hold what was learnt.
+    /// Follows the hand of the slot, passes its free forces to the estimator, and stores improved ones.
     pub(crate) fn tick(
         &mut self,
         hand: Option<&Endpoint>,
@@ -61,7 +61,7 @@ impl HandFreeForce {
             return;
         };
         if grip.learned() == 0 && *grip.free_force() != known {
-            // A new connection to the same hand.
+            // A new connection with the same hand.
             self.kept = 0;
             grip.set_free_force(known);
         } else if grip.learned() > self.kept {

@@ -1,41 +1,41 @@
-//! What a hand grips, as far as it is believed, and whether and how thumb and index can go to a gap.
+//! The grip of a hand as far as feedback is trusted, and motions of thumb and index to a gap.
 
 use crate::app::hands::hand::Hand;
 use crate::hand::gap::{self, Gap, PinchGap};
 use crate::hand::grip::Grip;
 use crate::hand::{AngleReading, Dof, Moment, PerDof, Target};
 
-/// What the hand grips now; unknown while feedback does not follow what the hand was told.
+/// Current grip; unknown while feedback does not follow the commands.
 pub fn grip_now(hand: &Hand, now: Moment) -> Grip {
     let is_believed = hand.connection.status.is_believed();
     hand.readings.grip.known(is_believed, now)
 }
 
-/// What is between the pads of thumb and index while they alone hold something, by the model.
+/// Gap between the pads of thumb and index, by the model, while only these two hold an object.
 pub fn held_gap(hand: &Hand, now: Moment) -> Option<PinchGap> {
     let angle = hand.readings.sample.angle?;
     gap::held_gap(&grip_now(hand, now), &angle.value)
 }
 
-/// Whether a joint that pinches is locked.
+/// True if a joint of the pinch is locked.
 pub fn locks_pinch(hand: &Hand) -> bool {
     let mut pinching = Gap::JOINTS.into_iter();
     pinching.any(|dof| hand.controls.joints[dof].locked)
 }
 
-/// Whether thumb and index can go to any gap from where they are.
+/// True if thumb and index can move to any gap from their current position.
 pub fn is_open_for_pinch(hand: &Hand) -> bool {
     counts(hand).is_some_and(|counts| gap::is_open_for_pinch(&counts))
 }
 
-/// The angles, where all are known.
+/// Measured angles; `None` unless all are known.
 pub fn counts(hand: &Hand) -> Option<PerDof<f32>> {
     let angle = hand.readings.sample.angle?;
     let counts = angle.value.map(AngleReading::documented).all()?;
     Some(counts.map(f32::from))
 }
 
-/// Thumb and index straight to a gap, at speeds with which they arrive together.
+/// Moves thumb and index straight to a gap, at speeds with which they arrive together.
 pub(crate) fn pinch_to(hand: &mut Hand, to: Gap) {
     let Some(counts) = counts(hand) else {
         return;

@@ -1,4 +1,4 @@
-//! One hand, composed: the parts own their state and know nothing of each other; what takes several of them is here.
+//! One hand as a composition: the parts own their state and are independent of each other; operations on several parts are here.
 
 use crate::app::checkup::HandCheckup;
 use crate::app::ctx::Ctx;
@@ -35,18 +35,18 @@ use crate::trials::TrialPlan;
 use std::time::Duration;
 use tokio::sync::mpsc;
 
-/// A hand that was told to hold gets this long to show that it rests, before its link is closed anyway: the time after
-/// which the link itself gives the alarm, and a little.
+/// Maximum wait for a stopped hand to show rest before its link is closed regardless: the time after which the link itself raises the
+/// alarm, plus a margin.
 pub(crate) const REST_TIMEOUT: Duration = Duration::from_millis(600);
-/// Commands to a sequence that may wait: the user cannot press faster than a task takes them.
+/// Maximum number of queued commands to a sequence: the user cannot press faster than a task receives them.
 const COMMANDS_MAX: usize = 16;
 
 /// Everything about one hand.
 #[derive(Debug, Default)]
 pub struct Hand {
-    /// Which of several, and what it is called.
+    /// Slot and name.
     pub label: HandLabel,
-    /// Left or right, as the user says: no register does.
+    /// Left or right, as the user set it: no register contains it.
     pub side: Side,
     pub connection: Connection,
     pub readings: Readings,
@@ -54,30 +54,30 @@ pub struct Hand {
     pub controls: Controls,
     /// The program that moves the hand.
     pub running: RunningMotion,
-    /// What trials measured of it.
+    /// Overshoot of the hand, as measured by trials.
     pub overshoot: HandOvershoot,
-    /// What its joints read when they touch nothing.
+    /// Forces that its joints read while they touch nothing.
     pub(crate) free_force: HandFreeForce,
-    /// The last check-up.
+    /// Last check-up.
     pub checkup: HandCheckup,
-    /// The open procedure: change of id or address, reset, calibration.
+    /// Open procedure: change of address, reset or calibration.
     pub procedures: Procedures,
-    /// What besides the window may move the hand, and who uses it.
+    /// Inputs from outside the window that may move the hand, and their clients.
     pub inputs: HandInputs,
-    /// What the hand keeps, and what of it is to be changed.
+    /// Persistent parameters, with staged changes.
     pub params: ParamsState,
     /// The recording being made of it.
     pub recording: Option<HandRecording>,
-    /// Who moves it, of a hand that is replayed.
+    /// Party that moves the hand, in a replay.
     pub(crate) recorded: Option<RecordedMover>,
-    /// The hand is being left: it was told to hold.
+    /// Set while the hand was stopped and is being disconnected.
     pub(crate) leaving: Option<Leaving>,
-    /// Its slot goes as soon as it is left.
+    /// Its slot is removed as soon as the hand is disconnected.
     pub(crate) is_removed: bool,
 }
 
 impl Hand {
-    /// What goes on, and so who may move it.
+    /// Current activity, which decides who may move the hand.
     pub fn activity(&self) -> Activity {
         if self.leaving.is_some() {
             Activity::Leaving
@@ -94,7 +94,7 @@ impl Hand {
         }
     }
 
-    /// Why a plan of trials cannot begin now, if it makes sense at all; without one, a check-up, which moves every joint.
+    /// Reason why a valid plan of trials cannot start now; without a plan, a check-up, which moves every joint.
     pub fn series_refusal(&self, plan: Option<&TrialPlan>) -> Option<StartRefusal> {
         if self.runs_series() {
             return Some(StartRefusal::Runs);
@@ -121,14 +121,14 @@ impl Hand {
         follows.then_some(mirror.leader)
     }
 
-    /// What a live hand holds of a joint, where that is not what was set.
+    /// Actual settings of a joint of a live hand that differ from the user's.
     pub fn held_otherwise(&self, dof: Dof) -> HeldOtherwise {
         if !self.connection.is_live() {
             return HeldOtherwise::default();
         }
         let held = self.controls.held_otherwise(dof, &self.readings.sample);
         HeldOtherwise {
-            // Where another than this window sends it is old by the time it is read back.
+            // A target from outside this window is outdated by the time it is read back.
             target: held
                 .target
                 .filter(|_| self.connection.outside_owner().is_none()),
@@ -136,12 +136,12 @@ impl Hand {
         }
     }
 
-    /// The pose that the hand has, if all six angles are known, live and fresh.
+    /// Current pose, if all six angles are known, live and fresh.
     pub fn pose_now(&self, now: Moment) -> Option<PerDof<Angle>> {
         self.readings.pose_now(self.connection.is_live(), now)
     }
 
-    /// Takes its name and side from what is kept of it.
+    /// Applies name and side from the settings.
     pub(crate) fn apply_settings(&mut self, settings: &Settings) {
         let endpoint = self.connection.endpoint.as_ref();
         self.side = settings.side_of(endpoint);
@@ -155,7 +155,7 @@ impl Hand {
         }
     }
 
-    /// Leaves the hand. One that may be moving is told to hold first and gets time to.
+    /// Disconnects the hand. A hand that may be moving is stopped first and gets time to come to rest.
     pub(crate) fn leave(&mut self, to: Option<Endpoint>, ctx: &mut Ctx<'_>) {
         if let Some(leaving) = &mut self.leaving {
             leaving.to = to;
@@ -168,7 +168,7 @@ impl Hand {
         }
     }
 
-    /// Goes on once a hand that was told to hold rests, or had its time.
+    /// Continues a disconnect once the stopped hand rests, or its time has expired.
     pub(crate) fn go_on_leaving(&mut self, ctx: &mut Ctx<'_>) {
         let is_due = |leaving: &mut Leaving| {
             let told = leaving.told;
@@ -179,12 +179,12 @@ impl Hand {
         }
     }
 
-    /// Opens another hand, or none, at once. Nothing of the old one is taken for the new one's; what is done under a card goes along.
+    /// Opens another hand, or none, at once. No state of the old hand is attributed to the new one; an open procedure continues.
     pub(crate) fn go(&mut self, to: Option<Endpoint>, ctx: &mut Ctx<'_>) {
         self.measured.leave(&self.connection.name(), ctx.now);
-        // The old link goes first: a serial port has room for one.
+        // The old link closes first: a serial port has room for one.
         self.connection = Connection::none(ctx.now);
-        // An id that was changed under a card makes no other hand.
+        // A change of id during a procedure does not make another hand.
         let is_moved = self.procedures.card.is_some();
         if to != self.connection.endpoint && !is_moved && !self.label.name.is_empty() {
             ctx.notices.name_former(&self.label);
@@ -230,7 +230,7 @@ impl Hand {
         self.follow();
     }
 
-    /// Takes in what happened on the link.
+    /// Applies news of the link.
     pub(crate) fn take_news(&mut self, notices: &mut HandNotices<'_>, now: Moment) {
         if let Some((records, status)) = self.connection.heard() {
             for record in &records {
@@ -241,7 +241,7 @@ impl Hand {
         self.follow();
     }
 
-    /// Takes in one record. A reading is dated by itself, not by the frame that takes it in: a replay tells the same.
+    /// Applies a record. A reading has its own time, independent of the frame, so that a replay gives the same result.
     pub(crate) fn take(&mut self, record: &Record, notices: &mut HandNotices<'_>, now: Moment) {
         match record {
             Record::Reading { sample, fresh } => {
@@ -269,7 +269,7 @@ impl Hand {
         }
     }
 
-    /// Takes in the status of the link.
+    /// Applies a status of the link.
     pub(crate) fn take_status(
         &mut self,
         status: LinkStatus,
@@ -291,7 +291,7 @@ impl Hand {
         }
     }
 
-    /// Sliders that no user holds stand at the actual angle.
+    /// Moves sliders that the user has not moved to the actual angle.
     pub(crate) fn follow(&mut self) {
         let angles = self.connection.angles(&self.readings.sample);
         self.controls.follow(angles, self.connection.is_armed());
@@ -302,7 +302,7 @@ impl Hand {
         }
     }
 
-    /// Why the hand cannot be armed now; `None` if it can or already is. The link asks the same again.
+    /// Reason why the hand cannot be armed now; `None` if it can or already is. The link checks again.
     pub fn arm_refusal(&self, now: Moment) -> Option<ArmRefusal> {
         let connection = &self.connection;
         let saves = connection.is_live() && self.params.is_saving();
@@ -313,7 +313,7 @@ impl Hand {
         busy.or_else(refusal).or(let_go)
     }
 
-    /// Asks the link to let setpoints pass, if the pose is known and nothing speaks against it.
+    /// Asks the link to arm, if the pose is known and no other reason prevents it.
     pub(crate) fn arm(&mut self, ctx: &mut Ctx<'_>) {
         if self.connection.is_armed() || !self.activity().lets_arm() {
             return;
@@ -327,7 +327,7 @@ impl Hand {
         }
     }
 
-    /// Arms the hand for a series, which begins once that holds. Whatever refuses, stops or disarms ends the wish.
+    /// Arms the hand for a series, which starts once the arming holds. A refusal, stop or disarming cancels the request.
     pub(crate) fn arm_for_series(&mut self, asked: AskedSeries, ctx: &mut Ctx<'_>) {
         let refusal = match &asked {
             AskedSeries::Trials(plan) => self.series_refusal(Some(&plan.trials())),
@@ -343,8 +343,8 @@ impl Hand {
         }
     }
 
-    /// Holds now. Works in every state; whatever was armed is not any more, at once. Without a live link it says that
-    /// nothing could be sent.
+    /// Stops (holds) the hand, in every state; any arming ends at once. Without a live link the user is notified that the stop could
+    /// not be sent.
     pub(crate) fn stop(&mut self, ctx: &mut Ctx<'_>) {
         if !self.connection.stop(ctx.now) {
             ctx.notify(NoticeKind::StopNotSent);
@@ -355,7 +355,7 @@ impl Hand {
         self.follow();
     }
 
-    /// Lets no setpoint pass any more. The hand keeps what it was told.
+    /// Passes no further setpoints. The hand keeps its targets.
     pub(crate) fn disarm(&mut self, now: Moment) {
         self.connection.disarm(now);
         self.running.forget_arming();
@@ -363,7 +363,7 @@ impl Hand {
         self.follow();
     }
 
-    /// What is done with the key that lets the hand move. Who presses is armed as soon as a stop before is confirmed.
+    /// Applies the state of the hold-to-run key. A press arms the hand as soon as an earlier stop is confirmed.
     pub(crate) fn hold_key(&mut self, key: HoldKey, ctx: &mut Ctx<'_>) {
         let wants_to_arm = self.controls.held.take(key, ctx.now);
         self.connection
@@ -372,26 +372,26 @@ impl Hand {
             return;
         }
         self.controls.held.forget_press();
-        // Who was let move the hand from outside arms by itself.
+        // A party outside this window that was granted control arms by itself.
         if self.connection.outside_owner().is_none() {
             self.arm(ctx);
         }
     }
 
-    /// Whether the key has to be held may have been changed, and time goes on.
+    /// Updates whether the key is required, and its state over time.
     pub(crate) fn need_key(&mut self, is_needed: bool) {
         self.controls.held.need(is_needed);
         self.connection
             .hold_to_run(self.controls.held.hold_to_run());
     }
 
-    /// The arming in which the user at this window may move the hand now.
+    /// Arming under which the user at this window may move the hand now.
     pub(crate) fn own_epoch(&self) -> Option<ArmEpoch> {
         let may_move = self.connection.is_armed() && self.activity().lets_person_move();
         self.connection.status.armed.filter(|_| may_move)
     }
 
-    /// Changes what the user set for a joint. Speed and force are kept where they cannot be sent.
+    /// Changes the user's setting of a joint. Speed and force are stored if they cannot be sent.
     pub(crate) fn change_joint(&mut self, dof: Dof, change: JointChange) {
         let wanted = self.controls.take(dof, change, self.own_epoch());
         if let JointChange::Lock(_) = change {
@@ -411,7 +411,7 @@ impl Hand {
         }
     }
 
-    /// What was played is over: the user's own speed and force are in force again for these joints.
+    /// Restores the user's speed and force for these joints after an entry was played.
     pub(crate) fn restore_limits(&mut self, of: impl Fn(Dof) -> bool) {
         let Some(epoch) = self.own_epoch() else {
             return;
@@ -423,7 +423,7 @@ impl Hand {
         }
     }
 
-    /// Sends the joints that are free and have a target; true if there are such. What moved the hand before does not any more.
+    /// Sends targets of unlocked joints; true if there are any. Whatever moved the hand before loses control.
     pub(crate) fn go_to(&mut self, fill: impl FnOnce(&mut Setpoints)) -> bool {
         let wanted = self.own_epoch().and_then(|epoch| {
             let mut wanted = Setpoints::none(epoch);
@@ -442,7 +442,7 @@ impl Hand {
         true
     }
 
-    /// The user moves the hand: what moved it before does not any more.
+    /// Gives control to the user; whatever moved the hand before loses it.
     pub(crate) fn take_over(&mut self) {
         if let Some(run) = self.running.sequence_mut() {
             run.leave();
@@ -450,7 +450,7 @@ impl Hand {
         self.connection.take_over();
     }
 
-    /// Starts what the user wants played; without arming, nothing. True if it was started.
+    /// Starts an entry of the library, if the hand is armed. True if it was started.
     pub(crate) fn play(&mut self, plan: PlayPlan, pace: PlayMode, env: &Env, now: Moment) -> bool {
         let Some(epoch) = self.own_epoch() else {
             return false;
@@ -491,7 +491,7 @@ impl Hand {
         true
     }
 
-    /// Something of this window's was sent by a task.
+    /// Notes that a task of this window sent setpoints.
     pub(crate) fn sent(&mut self, setpoints: &Setpoints) {
         self.connection.commanded = true;
         if self.own_epoch().is_some() {
@@ -499,7 +499,7 @@ impl Hand {
         }
     }
 
-    /// Starts a gesture of the hand's own. It moves every joint, so none may be locked.
+    /// Starts a gesture stored in the hand. It moves every joint, so none may be locked.
     pub(crate) fn gesture(&mut self, gesture: Gesture, route: GestureRoute, ctx: &mut Ctx<'_>) {
         let what = RequestKind::Gesture(gesture);
         if self.own_epoch().is_none() {
@@ -523,7 +523,7 @@ impl Hand {
         }
     }
 
-    /// Writes a command; false, and told, if no hand is there to take it. The link holds the pose before errors are cleared.
+    /// Writes a command; false, with a notice, if no hand is connected. The link holds the pose before it clears errors.
     pub(crate) fn ask(
         &mut self,
         what: RequestKind,
@@ -534,7 +534,7 @@ impl Hand {
         asked.map_err(|error| self.failed(what, error, ctx)).is_ok()
     }
 
-    /// Says how requests ended.
+    /// Notifies the user of the results of requests.
     pub(crate) fn tick_requests(&mut self, ctx: &mut Ctx<'_>) {
         for (what, end) in self.connection.ended_requests() {
             match end {

@@ -1,33 +1,33 @@
-//! The hands of the program, and which of them is shown.
+//! The hands of the program, and the shown one.
 
 use crate::app::hand::Connection;
 use crate::app::hands::Hand;
 use crate::app::slot::SlotId;
 use crate::hand::Moment;
 
-/// Hands in one window: as many keys as there are for them, and as many strips as fit a header.
+/// Maximum number of hands in one window: the keys available for them, and the strips that fit a header.
 pub const HANDS_MAX: usize = 8;
 
-/// The hands of the program, and which of them is shown. There is always one, connected or not.
+/// The hands of the program, and the shown one. There is always one, connected or not.
 #[derive(Debug, Default)]
 pub struct HandList {
     first: Hand,
     more: Vec<Hand>,
     shown: usize,
-    /// The slot that was given last.
+    /// Newest slot.
     given: SlotId,
-    /// Poses and demos go to all hands that are armed.
+    /// Poses and demos apply to all armed hands.
     poses_for_all: bool,
 }
 
 impl HandList {
-    /// The hand that is shown.
+    /// The shown hand.
     pub fn shown(&self) -> &Hand {
         let more = self.shown.checked_sub(1);
         more.and_then(|at| self.more.get(at)).unwrap_or(&self.first)
     }
 
-    /// The same, to be changed.
+    /// The shown hand, mutable.
     pub fn shown_mut(&mut self) -> &mut Hand {
         let more = self.shown.checked_sub(1);
         match more.and_then(|at| self.more.get_mut(at)) {
@@ -46,7 +46,7 @@ impl HandList {
         std::iter::once(&self.first).chain(&self.more)
     }
 
-    /// How many slots there are.
+    /// Number of slots.
     pub const fn count(&self) -> usize {
         1 + self.more.len()
     }
@@ -56,7 +56,7 @@ impl HandList {
         !self.more.is_empty()
     }
 
-    /// True if there is room for another.
+    /// True if there is room for another hand.
     pub const fn has_room(&self) -> bool {
         self.count() < HANDS_MAX
     }
@@ -66,7 +66,7 @@ impl HandList {
         self.iter_mut().find(|hand| hand.label.slot == slot)
     }
 
-    /// True if this hand would lead itself by leading that one, directly or over others.
+    /// True if `follower` would lead itself by following `leader`, directly or through others.
     pub fn is_circle(&self, leader: SlotId, follower: SlotId) -> bool {
         let before = |slot| {
             let mut all = self.iter();
@@ -77,7 +77,7 @@ impl HandList {
         line.take(HANDS_MAX).any(|slot| slot == follower)
     }
 
-    /// The shown hand, and where poses go to all, the others of which this is so.
+    /// The shown hand, and if poses apply to all, the others that satisfy `goes_along`.
     pub(crate) fn with_shown(
         &mut self,
         goes_along: impl Fn(&Hand) -> bool,
@@ -88,17 +88,17 @@ impl HandList {
         self.iter_mut().filter(is_meant)
     }
 
-    /// Whether poses and demos go to all hands that are armed.
+    /// True if poses and demos apply to all armed hands.
     pub const fn poses_for_all(&self) -> bool {
         self.poses_for_all && self.is_several()
     }
 
-    /// Lets them go to all hands that are armed, or to the shown one alone.
+    /// Applies poses and demos to all armed hands, or to the shown one only.
     pub(crate) const fn set_poses_for_all(&mut self, on: bool) {
         self.poses_for_all = on;
     }
 
-    /// Another slot, which is shown from now on. Nothing where there is no room.
+    /// Adds a slot and shows it, if there is room.
     pub fn add(&mut self, now: Moment) {
         if !self.has_room() {
             return;
@@ -118,7 +118,7 @@ impl HandList {
         self.shown = at.unwrap_or(self.shown);
     }
 
-    /// Takes this slot away, with all that is known of its hand. The last one stays.
+    /// Removes a slot with all data of its hand. The last slot remains.
     pub(crate) fn remove(&mut self, slot: SlotId) {
         let shown = self.shown().label.slot;
         if self.first.label.slot == slot && self.is_several() {
@@ -126,7 +126,7 @@ impl HandList {
         } else {
             self.more.retain(|hand| hand.label.slot != slot);
         }
-        // The one that is shown stays so; in place of one that went, the first.
+        // The shown hand remains shown; if it was removed, the first one is shown.
         self.shown = 0;
         self.show(shown);
     }
@@ -173,19 +173,19 @@ mod tests {
     }
 }
 
-/// What the user does with the list of hands. None of it moves a hand.
+/// User actions on the list of hands. None of them moves a hand.
 #[derive(Debug, Clone, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum HandsAction {
-    /// Another slot, without a hand so far, that is shown from now on.
+    /// Add an empty slot and show it.
     Add,
     /// Show this hand.
     Show(SlotId),
-    /// Leave this hand as *Disconnect* does, and take its slot away. The last slot stays.
+    /// Disconnect this hand as *Disconnect* does, and remove its slot. The last slot remains.
     Remove(SlotId),
-    /// Give this hand a name; empty takes it away.
+    /// Name this hand; an empty name removes it.
     Name(SlotId, String),
-    /// Hold this hand now, and no other.
+    /// Stop (hold) this hand, and no other.
     StopOne(SlotId),
-    /// Poses and demos go to all hands that are armed, or to the shown one alone.
+    /// Apply poses and demos to all armed hands, or to the shown one only.
     PosesForAll(bool),
 }

@@ -1,4 +1,4 @@
-//! The hands of the program: each composed of its parts, and the list of them.
+//! The hands of the program: each a composition of its parts, and the list of them.
 
 mod free_force;
 pub mod grip;

@@ -1,4 +1,4 @@
-//! What moves the hand now, so that every view can tell it.
+//! The current mover of a hand, for display in every view.
 
 use crate::app::hand::RecordedMover;
 use crate::app::hands::Hand;
@@ -9,22 +9,22 @@ use crate::link::{LinkStatus, Owner};
 use crate::poses::library::EntryId;
 use crate::record::{Hold, LinkState, Rest};
 
-/// What moves the hand now.
+/// Party or program that moves the hand now.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mover {
     /// Stop was pressed; feedback does not show rest yet.
     Stop,
     /// A calibration of its force sensors.
     Calibration,
-    /// A series of trials: the trial, and how many there are.
+    /// A series of trials: number of the trial, and of all trials.
     Series(usize, usize),
-    /// A check-up: its step, and how many there are.
+    /// A check-up: number of the step, and of all steps.
     Checkup(usize, usize),
-    /// An entry of the library that is played, and its step, 0 the first.
+    /// An entry of the library, with the index of its step, from 0.
     Playing(EntryId, usize),
     /// A stored gesture.
     Gesture(Gesture),
-    /// Another than this window, which the user let.
+    /// A party outside this window, to which the user granted control.
     Outside(Owner),
     /// Setpoints of the user.
     Setpoints,
@@ -32,14 +32,14 @@ pub enum Mover {
     Task,
     /// An exhibition, in a recording.
     Exhibition,
-    /// In a recording: nobody that it names.
+    /// In a recording: a mover that it does not name.
     Unrecorded,
-    /// Nothing that this program asked for.
+    /// Nothing that this program commanded.
     Unknown,
 }
 
 impl Mover {
-    /// What moves a hand now; `None` while it rests and nothing is about to move it, or nothing is known of it.
+    /// Current mover of a hand; `None` while it rests and no motion is pending, or its state is not known.
     pub fn of(hand: &Hand, now: Moment) -> Option<Self> {
         let connection = &hand.connection;
         let link = &connection.status;
@@ -72,12 +72,12 @@ impl Mover {
         if link.rest != Rest::Moving || connection.commanded && came_to_rest(hand, now) {
             return None;
         }
-        // A gesture lets all sliders follow the hand; whatever else is sent takes its own joints from it.
+        // A gesture makes all sliders follow the hand; any other setpoint takes its own joints out of that.
         let gesture = hand.controls.gesture;
         let gesture = gesture.filter(|_| hand.controls.all_follow());
         let is_other = link.foreign_setpoint.is_some() && link.armed.is_none();
         Some(match gesture {
-            // What another controller wrote last counts, where this window may send nothing any more.
+            // After a setpoint of another controller, the mover is unknown if this window may no longer send.
             _ if !connection.commanded || is_other => Self::Unknown,
             Some(gesture) => Self::Gesture(gesture),
             None => Self::Setpoints,
@@ -85,7 +85,7 @@ impl Mover {
     }
 }
 
-/// What moved the hand of a recording, as far as that tells.
+/// Mover of the hand of a recording, as far as the recording contains it.
 fn recorded_mover(then: RecordedMover, link: &LinkStatus) -> Option<Mover> {
     if let Some((number, of)) = then.trial {
         return Some(Mover::Series(number, of));
@@ -99,7 +99,7 @@ fn recorded_mover(then: RecordedMover, link: &LinkStatus) -> Option<Mover> {
     })
 }
 
-/// True if nothing moves the hand for certain, and nothing may: a hand that was never heard does not count as one.
+/// True if the hand certainly rests and nothing may move it: a hand that never answered counts as resting.
 pub fn rests(hand: &Hand, now: Moment) -> bool {
     let link = &hand.connection.status;
     if !link.state.is_live() {
@@ -109,8 +109,7 @@ pub fn rests(hand: &Hand, now: Moment) -> bool {
     !armed && link.rest == Rest::Resting && Mover::of(hand, now).is_none()
 }
 
-/// True if no setpoint passes any more and each drive says that it stopped: the link tells rest a second later, as a
-/// hand acts late.
+/// True if no setpoint passes and each drive reports that it stopped: the link reports rest a second later, because a hand acts late.
 fn came_to_rest(hand: &Hand, now: Moment) -> bool {
     let status = hand.readings.sample.status;
     let Some(status) = status.filter(|_| hand.connection.status.armed.is_none()) else {

@@ -46,7 +46,7 @@ impl RunningMotion {
         }
     }
 
-    /// The same, to change it.
+    /// The current or last sequence, mutable.
     pub(crate) const fn sequence_mut(&mut self) -> Option<&mut SequenceRun> {
         match &mut self.0 {
             Some(MotionRun::Sequence(run)) => Some(run),

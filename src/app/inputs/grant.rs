@@ -1,4 +1,4 @@
-//! Which source may be let move the hand now, and the task that follows it.
+//! Sources that may be granted control now, and the task that follows one.
 
 use crate::app::env::Env;
 use crate::app::env::running::Running;
@@ -11,16 +11,16 @@ use crate::motion::program::Ended;
 use crate::record::{Abort, Disarmed};
 use tokio::sync::{mpsc, watch};
 
-/// A source that is there and fresh.
+/// A source that is present and fresh.
 pub(crate) struct Offered {
     pub(crate) owner: Owner,
     offers: mpsc::Receiver<Offer>,
-    /// The hand that leads, if one does.
+    /// The leading hand, if one leads.
     leader: Option<LinkStopper>,
 }
 
 impl HandInputs {
-    /// What this source offers; `None` while nobody is there or what it says is old.
+    /// Offers of a source; `None` while there is none, or its data is old.
     pub(crate) fn offered(&self, source: InputSource, now: Moment) -> Option<Offered> {
         let (owner, offers) = match source {
             InputSource::Stream => {
@@ -29,7 +29,7 @@ impl HandInputs {
             }
             InputSource::Dds => {
                 let joined = self.dds.as_ref()?;
-                // Two hands must not obey one sender.
+                // Two hands must not follow one sender.
                 let joined = Some(joined).filter(|joined| joined.others.now().is_none())?;
                 let source = &joined.source;
                 (source.view().owner(now)?, source.follow())
@@ -53,7 +53,7 @@ impl HandInputs {
 }
 
 impl FollowRun {
-    /// Follows what is offered, under the lease of `start`. The terms of now are told by the run.
+    /// Follows a source under the lease of `start`. The run passes on changed terms.
     pub(crate) fn begin(
         offered: Offered,
         link: LinkHandle,
@@ -84,8 +84,8 @@ impl FollowRun {
     }
 }
 
-/// True if a hand that was led is lost or stopped, so that the one that leads must not go on alone. One that the user took back, or
-/// let another move, may.
+/// True if a led hand was lost or stopped, so that the leading hand must not continue alone. It may continue if the user took the led
+/// hand back, or granted control to another party.
 const fn stops_leader(end: Ended<FollowEnd>) -> bool {
     match end {
         Ok(FollowEnd::Silent | FollowEnd::Gone) | Err(Abort::TakenOver) => false,

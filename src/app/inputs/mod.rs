@@ -1,5 +1,5 @@
-//! What besides the window may move a hand, and who reads it: streams, gamepads, the gateway. Each is opened by the user, and
-//! belongs to one connection with one hand.
+//! Inputs from outside the window that may move a hand, and readers of its state: streams, gamepads, the gateway. Each is opened by
+//! the user, and belongs to one connection with one hand.
 
 mod grant;
 mod work;
@@ -25,46 +25,46 @@ use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use tokio::sync::watch;
 
-/// What the user asks of inputs and of the gateway.
+/// User actions on inputs and the gateway.
 #[derive(Debug, Clone, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
 pub enum InputAction {
-    /// Listen for lines here, or no more.
+    /// Listen for lines here; `None` stops listening.
     Listen(Option<StreamPlace>),
-    /// Read the gamepad, or no more.
+    /// Start or stop reading the gamepad.
     ReadPad(bool),
-    /// Let clients use the hand at this address, or no more.
+    /// Share the hand with clients at this address; `None` stops sharing.
     Share(Option<SocketAddr>),
-    /// Show the hand to viewers at this address, or no more.
+    /// Show the hand to viewers at this address; `None` stops that.
     Show(Option<SocketAddr>),
-    /// Tell the hand on DDS and listen to programs there, at this interface, or no more.
+    /// Publish the hand on DDS and receive commands there, on this interface; `None` leaves DDS.
     JoinDds(Option<String>),
-    /// Watch the hand of this slot, of which this share would be followed, or none any more. Only reads it.
+    /// Watch the hand of this slot, to follow it at this scale; `None` stops watching. Only reads that hand.
     Mirror(Option<(SlotId, MirrorScale)>),
-    /// Let this source move the hand.
+    /// Grant control to this source.
     Grant(InputSource),
-    /// Let a client of the gateway move the hand.
+    /// Grant control to a client of the gateway.
     GrantClient(ClientId),
-    /// Whoever moves the hand from outside may no more; it is stopped.
+    /// End the control of the party outside this window; the hand is stopped.
     TakeBack,
-    /// How far and how fast a hand follows.
+    /// Set lead and rate of following.
     Limit(FollowLimits),
-    /// What the gamepad's controls do.
+    /// Assign functions to the gamepad's controls.
     Map(PadMap),
 }
 
-/// A source that the user may let move the hand.
+/// A source that the user may grant control to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InputSource {
-    /// Whoever sends lines.
+    /// A program that sends lines.
     Stream,
-    /// The program that sends over DDS.
+    /// A program that sends over DDS.
     Dds,
     Pad,
     /// Another hand of this window.
     Mirror,
 }
 
-/// What can be opened.
+/// Inputs and outlets that the user can open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InputKind {
     /// Lines of another program.
@@ -76,14 +76,14 @@ pub enum InputKind {
     Dds,
 }
 
-/// Why something was not opened.
+/// Reason why an input or outlet was not opened.
 #[derive(Debug)]
 pub enum OpenRefusal {
     /// The system's error.
     System(SystemError),
-    /// Gamepads are not read.
+    /// Gamepads cannot be read.
     Pad(PadTrouble),
-    /// DDS does not come up.
+    /// DDS failed to start.
     Dds(DdsError),
 }
 
@@ -93,7 +93,7 @@ impl From<io::Error> for OpenRefusal {
     }
 }
 
-/// The inputs and the gateway of one connection. Dropped with it, they are closed.
+/// The inputs and the gateway of one connection. Dropping it closes them.
 #[derive(Debug, Default)]
 pub struct HandInputs {
     pub(crate) stream: Option<StreamSource>,
@@ -101,22 +101,22 @@ pub struct HandInputs {
     pub(crate) gateway: Option<Gateway>,
     pub(crate) foxglove: Option<FoxgloveServer>,
     pub(crate) dds: Option<JoinedDds>,
-    /// The other hand that is watched.
+    /// The watched hand.
     pub mirror: Option<HandMirror>,
-    /// Where lines are listened for.
+    /// Address at which lines are received.
     pub stream_at: Option<SocketAddr>,
-    /// What came in.
+    /// State of the stream.
     pub stream_view: StreamView,
-    /// What is known of the gamepad, while it is read.
+    /// State of the gamepad, while it is read.
     pub pad_view: Option<PadView>,
-    /// Where the gateway is, and who uses it.
+    /// Address of the gateway; `None` while it is closed.
     pub gateway_at: Option<SocketAddr>,
     pub clients: Vec<GatewayClient>,
-    /// Where viewers are served, and how many there are.
+    /// Address at which viewers are served, and their number.
     pub foxglove_at: Option<(SocketAddr, usize)>,
-    /// What is known of DDS, while it is joined.
+    /// State of DDS, while it is joined.
     pub dds_view: Option<DdsState>,
-    /// What was to be opened last and was not, and why.
+    /// The last failed opening, with its reason.
     pub refused: Option<(InputKind, OpenRefusal)>,
 }
 
@@ -127,13 +127,13 @@ pub(crate) struct JoinedDds {
     pub(crate) source: DdsSource,
 }
 
-/// What is known of DDS.
+/// State of DDS.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DdsState {
-    /// The address of its interface.
+    /// Address of its interface.
     pub at: Ipv4Addr,
     pub told: DdsCounts,
-    /// What came in.
+    /// State of its source.
     pub view: DdsView,
     /// Another hand that follows the same sender.
     pub other: Option<FleetCard>,
@@ -142,24 +142,24 @@ pub struct DdsState {
 /// A hand that follows a source.
 #[derive(Debug)]
 pub struct FollowRun {
-    /// Who moves the hand.
+    /// Party that moves the hand.
     pub owner: Owner,
-    /// How it goes.
+    /// Newest state of following; `None` before the first report.
     pub view: Option<FollowView>,
     pub(crate) terms: watch::Sender<FollowTerms>,
     pub(crate) task: Running<FollowView, FollowOutcome>,
 }
 
-/// How following ended.
+/// Result of following.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FollowOutcome {
     pub(crate) end: Ended<FollowEnd>,
-    /// The hand that led was told to stop, too.
+    /// The leading hand was stopped, too.
     pub(crate) leader_stopped: bool,
 }
 
 impl HandInputs {
-    /// Takes in what came and who is there.
+    /// Updates the state of all inputs and outlets.
     pub(crate) fn look(&mut self) {
         self.stream_at = self.stream.as_ref().map(StreamSource::local);
         let lines = self.stream.as_ref().map(StreamSource::view);
@@ -182,13 +182,13 @@ impl HandInputs {
         });
     }
 
-    /// Whether another hand obeys the same sender on DDS.
+    /// True if another hand follows the same sender on DDS.
     pub(crate) fn other_follows_dds(&self) -> bool {
         let mut joined = self.dds.iter();
         joined.any(|joined| joined.others.now().is_some())
     }
 
-    /// True while something from outside is listened to or served: a badge says so.
+    /// True while an input or outlet is open; a badge shows that.
     pub const fn is_open(&self) -> bool {
         let is_served = self.gateway_at.is_some() || self.foxglove_at.is_some();
         is_served || self.stream_at.is_some() || self.pad_view.is_some() || self.dds_view.is_some()
@@ -199,16 +199,16 @@ impl HandInputs {
 #[derive(Debug)]
 pub struct HandMirror {
     pub leader: SlotId,
-    /// Which share of its bends would be followed.
+    /// Scale of its bends for following.
     pub scale: MirrorScale,
-    /// What is known of it.
+    /// Newest state of the watched hand.
     pub view: MirrorView,
     pub(crate) source: MirrorSource,
     pub(crate) stopper: LinkStopper,
 }
 
 impl HandMirror {
-    /// Watches from now on. Must be called within a tokio runtime.
+    /// Starts watching. Must be called within a tokio runtime.
     pub(crate) fn open(leader: SlotId, link: &LinkHandle, scale: MirrorScale) -> Self {
         Self {
             leader,

@@ -64,7 +64,7 @@ impl HandInputs {
                 let _entered = env.runtime.enter();
                 let source = PadSource::open(PadSourceConfig {
                     reader,
-                    // Its poses are told with each frame.
+                    // Its poses are updated in each frame.
                     input: PadInput::new(settings.pad_map()),
                     records: link.records(),
                     clock,
@@ -130,7 +130,7 @@ impl HandInputs {
         }
     }
 
-    /// Joins DDS there, or no more. `allowed` is the most that a message may ask for.
+    /// Joins DDS at this place; `None` leaves it. `allowed` limits the requests of messages.
     pub(crate) fn join_dds(
         &mut self,
         place: Option<(DdsPlace, FleetCard)>,

@@ -1,4 +1,4 @@
-//! The window closes: a hand that may move is stopped first, and what would be lost is asked about.
+//! Closing the window: a hand that may move is stopped first, and the user is warned of unsaved work.
 
 use crate::app::env::Env;
 use crate::app::hands::Hand;
@@ -11,7 +11,7 @@ use crate::hand::Moment;
 #[derive(Clone, Copy)]
 pub(super) struct Closing {
     pub(super) since: Moment,
-    /// A hand was told to hold, and that is waited for.
+    /// A hand was stopped, and its rest is awaited.
     held: bool,
 }
 
@@ -29,13 +29,13 @@ impl Closing {
         Self { since: now, held }
     }
 
-    /// True once each hand that was told to hold rests, or is gone.
+    /// True once each stopped hand rests or has disconnected.
     pub(super) fn is_at_rest(&self, hands: &HandList) -> bool {
         !self.held || hands.iter().all(|hand| hand.connection.is_held(self.since))
     }
 }
 
-/// What would be lost if the window closed now, if something would.
+/// Question about unsaved work; `None` if closing would lose nothing.
 pub(super) fn question(hands: &HandList) -> Option<LeaveQuestion> {
     let series = hands.iter().any(Hand::runs_series);
     let staged = |hand: &Hand| hand.params.all_staged().iter().count();

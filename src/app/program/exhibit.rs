@@ -1,4 +1,4 @@
-//! Begins an exhibition in place of the window, and ends it.
+//! Starting an exhibition in place of the window, and ending it.
 
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
@@ -12,19 +12,19 @@ use crate::app::state::State;
 use crate::hand::Moment;
 use crate::store::BackgroundJob;
 
-/// What goes on around exhibitions.
+/// Background work of exhibitions.
 #[derive(Debug, Default)]
 pub(crate) struct ExhibitWork {
     opening: Option<BackgroundJob<Result<Exhibition, NoticeKind>>>,
-    /// Of an exhibition that was left; it is being written.
+    /// Report of an exhibition that has ended; it is being written.
     left: Option<StoredReport>,
 }
 
 impl ExhibitWork {
-    /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
+    /// Shows an exhibition in place of the window. Nothing moves before staff arm.
     pub(crate) fn enter(&mut self, start: Exhibition, state: &mut State, env: &Env, now: Moment) {
         self.leave(state, env, now);
-        // A file that is still asked for would take the place of this exhibition, PIN and all.
+        // A file that is still being opened would replace this exhibition with its PIN.
         self.opening = None;
         state.now = now;
         let is_open = |hand: &&Hand| hand.connection.open.is_some();
@@ -50,7 +50,7 @@ impl ExhibitWork {
         }
     }
 
-    /// Does what the user asked for. True if the program is to end with the exhibition.
+    /// Carries out a user action. True if the program should end with the exhibition.
     pub(crate) fn act(&mut self, action: ExhibitAction, state: &mut State, env: &Env) -> bool {
         let now = state.now;
         let Some(exhibit) = &mut state.exhibit else {
@@ -63,7 +63,7 @@ impl ExhibitWork {
                 ExhibitAction::EnterFile => {
                     self.opening.get_or_insert_with(|| exhibit_file::open(env));
                 }
-                // They belong to one that goes on.
+                // These belong to a running exhibition.
                 ExhibitAction::Wish(_)
                 | ExhibitAction::AskPin
                 | ExhibitAction::Pin(_)
@@ -90,7 +90,7 @@ impl ExhibitWork {
         hands::with_shown(state, env, |hand, _, ctx| stop_or_disarm(hand, ctx));
     }
 
-    /// Lets the exhibition, its file and its report go on.
+    /// Advances the exhibition, its file and its report.
     pub(crate) fn tick(&mut self, state: &mut State, env: &Env, now: Moment) {
         match BackgroundJob::take_from(&mut self.opening) {
             None => {}
@@ -113,7 +113,7 @@ impl ExhibitWork {
         }
     }
 
-    /// Writes what is not written yet. True when all is in files, or cannot be.
+    /// Writes unsaved reports. True once all are in files, or cannot be written.
     pub(crate) fn flush(&mut self, state: &mut State, now: Moment) -> bool {
         let shown = state.exhibit.iter_mut().map(|exhibit| &mut exhibit.report);
         let mut reports = shown.chain(&mut self.left);
@@ -121,7 +121,7 @@ impl ExhibitWork {
     }
 }
 
-/// Stops a hand that may move. One that rests is not armed later by what was asked before.
+/// Stops a hand that may move. A hand at rest is disarmed, so that an earlier request cannot arm it later.
 fn stop_or_disarm(hand: &mut Hand, ctx: &mut Ctx<'_>) {
     if hand.connection.may_move() {
         hand.stop(ctx)

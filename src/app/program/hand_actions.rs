@@ -1,4 +1,4 @@
-//! What the user does with the hand that is shown.
+//! User actions on the shown hand.
 
 use crate::app::checkup::CheckupAction;
 use crate::app::env::Env;
@@ -14,14 +14,14 @@ use crate::record::EventKind;
 use crate::store::calendar::{day, since_1970};
 use crate::transport::Endpoint;
 
-/// Leaves the shown hand for another, or for none.
+/// Replaces the shown hand by another, or by none.
 pub(super) fn connect(state: &mut State, to: Option<Endpoint>, env: &Env) {
     let slot = state.hand().label.slot;
     if let Some(endpoint) = &to {
         if hands::is_open_elsewhere(state, endpoint, Some(slot)) {
             return;
         }
-        // A scan may still ask further ids on the port that is wanted.
+        // A scan may still query further ids on the requested port.
         state.scan.cancel();
         state.settings.remember(endpoint);
         state.settings.used_on(endpoint, day(since_1970()));
@@ -34,7 +34,7 @@ pub(super) fn connect(state: &mut State, to: Option<Endpoint>, env: &Env) {
     });
 }
 
-/// Begins a check-up, in the arming of now or in one for it.
+/// Starts a check-up under the current arming, or arms for it first.
 pub(super) fn checkup(state: &mut State, action: CheckupAction, env: &Env) {
     hands::with_shown(state, env, |hand, settings, ctx| match action {
         CheckupAction::Start(plan) => start_checkup(hand, plan, settings, ctx),
@@ -63,7 +63,7 @@ pub(super) fn undo_tare(state: &mut State, env: &Env) {
     });
 }
 
-/// Puts a note into the history; no words are no note.
+/// Adds a note to the history; empty text adds none.
 pub(super) fn note(state: &mut State, at: Moment, words: &str) {
     if let Some(note) = MarkKind::note(words) {
         let hand = state.hand_mut();
@@ -80,7 +80,7 @@ pub(super) fn remove_mark(state: &mut State, mark: &Mark) {
     hand.measured.history.remove_mark(mark);
 }
 
-/// Which side the hand that is shown is of.
+/// Sets the side of the shown hand.
 pub(super) fn set_side(state: &mut State, side: Side) {
     let State {
         hands, settings, ..
@@ -88,14 +88,14 @@ pub(super) fn set_side(state: &mut State, side: Side) {
     if let Some(endpoint) = &hands.shown().connection.endpoint {
         settings.set_side_of(endpoint, side);
     }
-    // Others of which nobody said a side have the one that was said last.
+    // Hands without a side of their own use the side that was set last.
     if !hands.is_several() {
         settings.side = side;
     }
     hands.shown_mut().apply_settings(settings);
 }
 
-/// One joint, or all.
+/// Yields one joint, or all.
 pub(super) fn each(dof: Option<Dof>) -> impl Iterator<Item = Dof> {
     Dof::ALL
         .into_iter()

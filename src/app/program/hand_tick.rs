@@ -1,4 +1,4 @@
-//! What is done at each hand in each frame: news are taken in, and what was begun goes on.
+//! The work at each hand in each frame: applying news and continuing operations.
 
 use crate::app::checkup::CheckupRun;
 use crate::app::checkup::work::files;
@@ -22,19 +22,19 @@ use crate::poses::player::{PlayEnd, PlayPhase};
 use crate::record::EventKind;
 use std::time::Duration;
 
-/// A hand that is not armed by then, on the slowest of wires, is not any more.
+/// A hand that is not armed within this time, even on the slowest wire, will not be armed.
 const ARM_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// What all hands have in common.
+/// State that all hands share.
 pub(super) struct Shared<'a> {
     pub(super) settings: &'a mut Settings,
     pub(super) trials: &'a mut TrialsState,
     pub(super) poses: &'a PoseState,
-    /// False where nothing is recorded in this run, whatever the settings say.
+    /// False if nothing is recorded in this run, regardless of the settings.
     pub(super) records: bool,
 }
 
-/// Lets one hand go on.
+/// Advances one hand.
 pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     hand.take_news(&mut ctx.notices, ctx.now);
     let ran = hand.running.sequence().is_some_and(SequenceRun::is_running);
@@ -84,15 +84,15 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     hand.go_on_leaving(ctx);
 }
 
-/// Gives the user's own speed and force back to the joints that stand where a sequence took them. One that presses, or goes on to
-/// where it was sent, keeps what it was sent with until it is told something else: a threshold that rises would press harder.
+/// Restores the user's speed and force for joints that are at the targets of a sequence. A joint that presses or still moves keeps the
+/// values it was sent with until its next command: a rising threshold would press harder.
 fn restore_rested(hand: &mut Hand) {
     if let Some(status) = hand.readings.sample.status {
         hand.restore_limits(|dof| status.value[dof] == Status::PositionReached);
     }
 }
 
-/// Begins a series, in the arming of now. Without one nothing happens.
+/// Starts a series under the current arming; does nothing if there is none.
 pub(super) fn start_series(
     hand: &mut Hand,
     plan: SeriesPlan,
@@ -100,7 +100,7 @@ pub(super) fn start_series(
     ctx: &Ctx<'_>,
 ) {
     let is_refused = hand.series_refusal(Some(&plan.trials())).is_some() || !plan.is_sound();
-    // One series at a time: any key stops it, and it has the view to itself.
+    // One series at a time: any key stops it, and it uses the view exclusively.
     if is_refused || trials.running.is_some() {
         return;
     }
@@ -110,7 +110,7 @@ pub(super) fn start_series(
     }
 }
 
-/// Begins a check-up, in the arming of now. Without one nothing happens.
+/// Starts a check-up under the current arming; does nothing if there is none.
 pub(super) fn start_checkup(
     hand: &mut Hand,
     plan: CheckupPlan,
@@ -128,7 +128,7 @@ pub(super) fn start_checkup(
     }
 }
 
-/// Gives a hand that is armed to a series.
+/// Hands an armed hand over to a series.
 fn lend(hand: &mut Hand) -> Option<SeriesHand<'_>> {
     hand.take_over();
     let connection = &mut hand.connection;
@@ -145,15 +145,15 @@ fn lend(hand: &mut Hand) -> Option<SeriesHand<'_>> {
     })
 }
 
-/// Begins the series that the hand was to be armed for, once it is. One that was not armed in time, or for which another
-/// plan is written by now, does not begin.
+/// Starts the requested series once the hand is armed for it. A series does not start if arming was late, or the plan has changed
+/// meanwhile.
 fn start_asked(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     let trials = &mut *shared.trials;
     let is_armed = hand.connection.is_armed();
     let Some(MotionRun::Arming(asked, at)) = &hand.running.0 else {
         return;
     };
-    // A window that hung meanwhile moves nothing late.
+    // A window that hung meanwhile must not move the hand late.
     let is_late = ctx.now.since(*at) > ARM_TIMEOUT;
     let is_other = match asked {
         AskedSeries::Trials(plan) => **plan != trials.planned(plan.kind()),
@@ -175,7 +175,7 @@ fn start_asked(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     }
 }
 
-/// Takes in what the series did.
+/// Applies the progress of the series.
 fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
     let Some(MotionRun::Trials(run)) = &mut hand.running.0 else {
         return;
@@ -196,7 +196,7 @@ fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
     }
 }
 
-/// Takes in what the check-up did, and what was read of kept ones.
+/// Applies the progress of the check-up, and stored check-ups that were read.
 fn tick_checkup(hand: &mut Hand, ctx: &mut Ctx<'_>) {
     hand.checkup.tick();
     let Some(MotionRun::Checkup(run)) = &mut hand.running.0 else {
@@ -215,7 +215,7 @@ fn tick_checkup(hand: &mut Hand, ctx: &mut Ctx<'_>) {
     }
 }
 
-/// Takes in what the task under the card told, and goes where it has to look.
+/// Applies the progress of the open procedure, and opens the link it requests.
 fn tick_procedure(hand: &mut Hand, settings: &mut Settings, ctx: &mut Ctx<'_>) {
     hand.procedures.watch(&hand.readings.sample);
     let map = &hand.overshoot.map;
@@ -240,7 +240,7 @@ fn tick_procedure(hand: &mut Hand, settings: &mut Settings, ctx: &mut Ctx<'_>) {
     }
 }
 
-/// Begins or ends the recording of a hand as the settings say.
+/// Starts or ends the recording of a hand according to the settings.
 fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
     let Hand {
         connection,
@@ -253,12 +253,12 @@ fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
         (Some(recording), Some(link)) if wanted => {
             recording.tick(&mut ctx.notices, ctx.now);
             recording.settings(settings, ctx.now);
-            // Half of a reading is no news.
+            // A partial reading is no news.
             if !params.is_busy() {
                 recording.params(&params.live_params(), ctx.now);
             }
-            // It tells what the hand keeps: that is read once, as soon as the hand rests and nothing else goes on, unless the user
-            // looked at it before.
+            // A recording contains the persistent parameters: they are read once, as soon as the hand rests and no other activity
+            // prevents it, unless the user read them before.
             let may_read = params.write_refusal(&connection.status).is_none();
             let link = link.clone();
             if may_read
@@ -269,7 +269,7 @@ fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
             }
         }
         (Some(_), _) => hand.recording = None,
-        // A hand that never answers makes no file; what went over the wire before is still in the tap.
+        // A hand that never answers creates no file; earlier traffic is still in the tap.
         (None, Some(link)) if wanted && connection.is_live() => {
             let folder = settings.recordings_folder(ctx.env.documents.as_deref());
             let target = folder.zip(connection.endpoint.as_ref());
@@ -286,7 +286,7 @@ fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
     }
 }
 
-/// Notes in the recording of a hand that the user did something.
+/// Records a user action in the recording of a hand.
 pub(super) fn record_event(hand: &Hand, at: Moment, kind: EventKind, words: String) {
     if let Some(recording) = &hand.recording {
         recording.event(at, kind, words);

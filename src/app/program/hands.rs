@@ -1,4 +1,4 @@
-//! Carries out what the user does with the list of hands. What is done to one hand touches no other.
+//! Carries out user actions on the list of hands. An action on one hand affects no other.
 
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
@@ -11,7 +11,7 @@ use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::transport::Endpoint;
 
-/// Does what the user asked for.
+/// Carries out a user action.
 pub(super) fn act(state: &mut State, action: HandsAction, env: &Env) {
     match action {
         HandsAction::Add => {
@@ -34,7 +34,7 @@ pub(super) fn act(state: &mut State, action: HandsAction, env: &Env) {
     }
 }
 
-/// A dry run began at the pose of the hand that was shown before.
+/// Ends a dry run, which started at the pose of the hand shown before.
 fn hand_is_shown(state: &mut State) {
     state.poses.preview = None;
     state.hands.shown_mut().apply_settings(&state.settings);
@@ -52,7 +52,7 @@ fn remove_hand(state: &mut State, slot: SlotId, env: &Env) {
     drop_removed(state);
 }
 
-/// Takes away the slots of hands that were to go and are left by now.
+/// Removes the slots of hands that were to be removed and are now disconnected.
 pub(super) fn drop_removed(state: &mut State) {
     let is_gone = |hand: &&Hand| hand.is_removed && hand.connection.open.is_none();
     let gone: Vec<SlotId> = state
@@ -73,12 +73,12 @@ pub(super) fn drop_removed(state: &mut State) {
         .iter_mut()
         .filter(|hand| hand.connection.open.is_none())
     {
-        // The last one stays.
+        // The last slot remains.
         hand.is_removed = false;
     }
 }
 
-/// Holds every hand now. A slot without a hand has nothing to stop, unless there is nothing else.
+/// Stops (holds) every hand. A slot without a hand has nothing to stop, unless there is no hand at all.
 pub(super) fn stop_all(state: &mut State, env: &Env) {
     let any = state.hands.iter().any(has_hand);
     let shown = state.hands.shown().label.slot;
@@ -89,7 +89,7 @@ pub(super) fn stop_all(state: &mut State, env: &Env) {
     });
 }
 
-/// The key that is held lets every hand move that is armed; its press arms the shown one alone.
+/// Applies the hold-to-run key: holding it permits motion of every armed hand; pressing it arms only the shown one.
 pub(super) fn hold_key(state: &mut State, key: HoldKey, env: &Env) {
     let shown = state.hands.shown().label.slot;
     each_hand(state, env, |hand, ctx| {
@@ -101,7 +101,7 @@ pub(super) fn hold_key(state: &mut State, key: HoldKey, env: &Env) {
     });
 }
 
-/// Does this with the hand that is shown.
+/// Applies a function to the shown hand.
 pub(super) fn with_shown<T>(
     state: &mut State,
     env: &Env,
@@ -124,7 +124,7 @@ pub(super) fn with_shown<T>(
     act(hand, settings, &mut ctx)
 }
 
-/// Does this with the hand of a slot, if there is one.
+/// Applies a function to the hand of a slot, if there is one.
 pub(super) fn with_hand(
     state: &mut State,
     slot: SlotId,
@@ -149,7 +149,7 @@ pub(super) fn with_hand(
     }
 }
 
-/// Does this with each hand.
+/// Applies a function to each hand.
 pub(super) fn each_hand(
     state: &mut State,
     env: &Env,
@@ -172,7 +172,7 @@ pub(super) fn each_hand(
     }
 }
 
-/// True if a slot, other than the one it is for, has this hand or the port that leads to it; the user is told.
+/// True if a slot other than `own` has this hand or the port that leads to it; the user is notified.
 pub(super) fn is_open_elsewhere(
     state: &mut State,
     endpoint: &Endpoint,
@@ -195,7 +195,7 @@ fn has_hand(hand: &Hand) -> bool {
     hand.connection.endpoint.is_some()
 }
 
-/// True if this endpoint leads to this hand, or through its port: a serial port has room for one.
+/// True if this endpoint leads to this hand, or uses its port: a serial port has room for one.
 fn leads_to(hand: &Hand, endpoint: &Endpoint) -> bool {
     let connection = &hand.connection;
     let going = hand.leaving.as_ref();

@@ -1,4 +1,4 @@
-//! What besides the window may move a hand: opened, granted, taken back, and what came of it.
+//! Inputs from outside the window that may move a hand: opening them, granting and ending control, and their results.
 
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
@@ -19,7 +19,7 @@ use crate::share::fleet::{self, FleetCard};
 use crate::share::gateway::Gateway;
 use crate::transport::dds::DdsPlace;
 
-/// Does what the user asked for at the shown hand.
+/// Carries out a user action on the shown hand.
 pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
     let (may_be_led, now) = (leading::may_be_led(state), state.now);
     let State {
@@ -36,7 +36,7 @@ pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
             let card = fleet_card(hand, settings);
             let domain = 0;
             let place = interface.map(|interface| (DdsPlace { interface, domain }, card));
-            // What the user set here is the most that a message may ask for.
+            // The user's limits are the most that a message may request.
             let allowed = hand.controls.limits();
             hand.inputs.join_dds(place, allowed, connection, env);
         }
@@ -53,7 +53,7 @@ pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
         InputAction::Limit(limits) => settings.follow = limits.within(),
         InputAction::Map(map) => {
             settings.pad_map = Some(file::write(&map));
-            // What is held has to be pressed anew.
+            // Controls that are held have to be pressed again.
             if hand.inputs.pad.is_some() {
                 hand.inputs.read_pad(true, connection, settings, env);
             }
@@ -61,7 +61,7 @@ pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
     }
 }
 
-/// Lets this source move the hand; what moved it before does not any more.
+/// Grants control to a source; whatever moved the hand before loses it.
 fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now): (&Env, Moment)) {
     let Some(offered) = hand.inputs.offered(source, now) else {
         return;
@@ -76,11 +76,11 @@ fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now):
         return;
     };
     let lease = link.grant(offered.owner);
-    // Of an armed hand that played something: whoever moves it now does so with the user's speed and force.
+    // An armed hand may have the speed and force of a played entry: the new source starts with the user's.
     let armed = hand.connection.status.armed;
     if let Some(mut own) = armed.map(Setpoints::none) {
         hand.controls.restore_limits(&mut own, |_| true);
-        // One that is refused has ended, and takes nothing.
+        // A refused lease has ended and accepts nothing.
         let _sent = (!own.is_empty()).then(|| link.set(lease, &own));
     }
     let arm = hand.controls.arm_request(&hand.readings.sample);
@@ -103,7 +103,7 @@ fn terms(hand: &Hand, settings: &Settings) -> FollowTerms {
     }
 }
 
-/// Takes in what inputs and clients did.
+/// Applies news of inputs and clients.
 pub(super) fn tick(hand: &mut Hand, settings: &Settings, poses: &PoseState, ctx: &mut Ctx<'_>) {
     let terms = terms(hand, settings);
     let (card, follows_dds) = (fleet_card(hand, settings), hand.running.follows(Owner::Dds));
@@ -116,7 +116,7 @@ pub(super) fn tick(hand: &mut Hand, settings: &Settings, poses: &PoseState, ctx:
         joined.shared.announce(card);
     }
     if follows_dds && inputs.other_follows_dds() {
-        // Each hears of the other, and both stop.
+        // Each program sees the other, and both stop.
         hand.connection.end_outside(Disarmed::Stop);
     }
     let Some(MotionRun::Follow(run)) = &mut hand.running.0 else {

@@ -1,4 +1,4 @@
-//! What goes on off the window's thread: files that the user asked for, and serial ports that are looked for.
+//! Jobs off the window's thread: files that the user requested, and the search for serial ports.
 
 use crate::app::env::Env;
 use crate::app::files::export::{self, Export};
@@ -28,12 +28,12 @@ pub(super) struct Jobs {
     importing: Option<BackgroundJob<Result<PoseLibrary, NoticeKind>>>,
     /// Sessions of trials that the user opens or saves.
     sessions: Option<BackgroundJob<FilesEnd>>,
-    /// A session of trials that is written by itself.
+    /// A session of trials that is saved automatically.
     keeping: Option<BackgroundJob<FilesEnd>>,
 }
 
 impl Jobs {
-    /// Takes in what is done; what the user should know of it.
+    /// Applies the results of finished jobs; returns notices for the user.
     pub(super) fn tick(&mut self, state: &mut State, env: &Env) -> Vec<NoticeKind> {
         if let Some(found) = BackgroundJob::take_from(&mut self.finding_ports) {
             state.ports = found;
@@ -68,12 +68,12 @@ impl Jobs {
         told
     }
 
-    /// True while a session of trials is being written by itself.
+    /// True while a session of trials is being saved automatically.
     pub(super) const fn keeps(&self) -> bool {
         self.keeping.is_some()
     }
 
-    /// What is done with files is begun here, all else with the hand.
+    /// Carries out an action on parameters: those on files here, all others on the hand.
     pub(super) fn param_action(&mut self, action: ParamAction, state: &mut State, env: &Env) {
         if action != ParamAction::Dump {
             hands::with_shown(state, env, |hand, _, ctx| {
@@ -101,7 +101,7 @@ impl Jobs {
         self.export(Export::Params(Box::new(file)), env);
     }
 
-    /// The same for trials.
+    /// Carries out an action on trials.
     pub(super) fn trial_action(&mut self, action: TrialAction, state: &mut State, env: &Env) {
         let State {
             trials, settings, ..
@@ -142,7 +142,7 @@ impl Jobs {
         }
     }
 
-    /// One file at a time: while a dialog is open, another is not opened.
+    /// Exports one file at a time: while a dialog is open, no other is opened.
     pub(super) fn export(&mut self, content: Export, env: &Env) {
         if self.exporting.is_none() {
             self.exporting = Some(export::save(content, env));

@@ -1,4 +1,4 @@
-//! One hand of the window that leads another: which one is watched, who may lead, and what a stop of it means.
+//! One hand of the window that leads another: choosing the watched hand, the condition for leading, and the effect of a stop.
 
 use crate::app::env::Env;
 use crate::app::inputs::HandMirror;
@@ -7,7 +7,7 @@ use crate::app::state::State;
 use crate::inputs::mirror::MirrorScale;
 use crate::record::{Disarmed, LinkState};
 
-/// The shown hand watches another one, or none any more. Nothing moves by that; a hand that was led until now is stopped.
+/// Makes the shown hand watch another one, or none. Watching moves nothing; a hand that was led until now is stopped.
 pub(super) fn watch_hand(state: &mut State, wanted: Option<(SlotId, MirrorScale)>, env: &Env) {
     let _entered = env.runtime.enter();
     let own = state.hand().label.slot;
@@ -23,14 +23,14 @@ pub(super) fn watch_hand(state: &mut State, wanted: Option<(SlotId, MirrorScale)
     hand.inputs.mirror = mirror.filter(|_| hand.connection.open.is_some());
 }
 
-/// Whether the hand that is watched may lead the shown one: unless that one leads it.
+/// True if the watched hand may lead the shown one: it must not be led by it.
 pub(super) fn may_be_led(state: &State) -> bool {
     let shown = state.hands.shown();
     let mirror = shown.inputs.mirror.as_ref();
     mirror.is_some_and(|mirror| !state.hands.is_circle(mirror.leader, shown.label.slot))
 }
 
-/// Stops a hand whose leader is told to stop: it would still go to where that one is.
+/// Stops a hand whose leader is being stopped: it would otherwise continue to the leader's position.
 pub(super) fn stop_mirrored(state: &mut State) {
     let stopping = state.hands.iter().filter(|hand| {
         let let_go = hand.connection.status.disarmed == Some(Disarmed::Released);

@@ -1,4 +1,4 @@
-//! The program: carries out actions, lets hands and files go on. The rules of motion are with the hand.
+//! The program: carries out actions, and advances hands and files. The rules of motion are with the hand.
 
 mod closing;
 pub(crate) mod exhibit;
@@ -46,7 +46,7 @@ use crate::record::EventKind;
 use crate::transport::Endpoint;
 use std::time::Duration;
 
-/// A series is over and written long before, on a disk that works.
+/// Far longer than a series takes to end and be written, on a working disk.
 const SAVE_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The whole program without its window.
@@ -64,7 +64,7 @@ pub struct App {
 }
 
 impl App {
-    /// Connects to nothing by itself.
+    /// Creates the program without connecting.
     pub fn new(env: Env, settings: Settings) -> Self {
         let (saved, state) = SavedFiles::load(settings, &env);
         Self {
@@ -81,22 +81,22 @@ impl App {
         }
     }
 
-    /// At start: the given hand, else the remembered one, else the built-in one. Remembers nothing.
+    /// Opens a hand at start: the given one, else the remembered one, else the built-in one. Remembers nothing.
     pub fn open(&mut self, endpoint: Option<Endpoint>, now: Moment) {
         open(&mut self.state, endpoint, &self.env, now);
     }
 
-    /// At start: further hands, each in a slot of its own; the first stays shown. Remembers nothing.
+    /// Opens further hands at start, each in its own slot; the first stays shown. Remembers nothing.
     pub fn open_beside(&mut self, endpoints: Vec<Endpoint>, now: Moment) {
         open_beside(&mut self.state, endpoints, &self.env, now);
     }
 
-    /// Records nothing in this run, whatever the settings say.
+    /// Disables recording in this run, regardless of the settings.
     pub fn record_nothing(&mut self) {
         self.records = false;
     }
 
-    /// Tells the user something that was found elsewhere, such as an unreadable settings file.
+    /// Adds a notice from outside the program, such as an unreadable settings file.
     pub fn tell(&mut self, what: NoticeKind, now: Moment) {
         if let Some(player) = &mut self.recorded.player {
             player.notify(what.clone());
@@ -110,12 +110,12 @@ impl App {
         replayed.map_or(&self.state, |player| &player.state)
     }
 
-    /// The live hands, whatever is shown.
+    /// The live hands, regardless of what is shown.
     pub const fn live(&self) -> &State {
         &self.state
     }
 
-    /// Takes in what happened since the last call. Runs also while the window is hidden.
+    /// Applies all news since the last call. Also runs while the window is hidden.
     pub fn logic(&mut self, now: Moment) {
         self.state.now = now;
         let State {
@@ -161,14 +161,14 @@ impl App {
         told.into_iter().for_each(|told| self.tell(told, now));
         self.recorded.tick(&mut self.state, &self.env);
         if self.state.exhibit.is_some() {
-            // A replay would cover the page, and lead from it.
+            // A replay would cover the page, and offer a way out of it.
             self.recorded.player = None;
         }
         let told = self.saved.tick(&self.state, now);
         told.into_iter().for_each(|told| self.tell(told, now));
     }
 
-    /// Carries out one thing that the user asked for.
+    /// Carries out one user action.
     pub fn act(&mut self, action: Action, now: Moment) {
         let action = match &mut self.recorded.player {
             Some(player) => match player.pass(action) {
@@ -245,7 +245,7 @@ impl App {
                     RecordingAction::Record(true),
                     RecordingAction::RecordSimulated(true),
                 ];
-                // A press of the user counts more than how the program was started.
+                // A user action overrides the start option.
                 self.records |= on.contains(&action);
                 self.recorded.act(action, state, env);
             }
@@ -260,7 +260,7 @@ impl App {
             }
             Action::NameGesture(gesture, name) => state.settings.name_gesture(gesture, &name),
             Action::GestureRoute(route) => state.settings.gesture_route = route,
-            // A card that is open clears them itself, or must not be disturbed.
+            // An open card clears errors itself, or must not be disturbed.
             Action::ClearErrors if state.hand().procedures.card.is_some() => {}
             Action::ClearErrors => {
                 hands::with_shown(state, env, |hand, _, ctx| {
@@ -301,7 +301,7 @@ impl App {
             Action::SeenFault(dof, what) => state.hand_mut().readings.faults.see_one(dof, what),
             Action::SeenFaults => state.hand_mut().readings.faults.see_all(),
             Action::Save(content) => self.jobs.export(content, env),
-            // The shell draws it, and asks for its file to be saved then.
+            // The shell draws the picture, and then requests saving its file.
             Action::SavePicture(_) => {}
             Action::Stay => state.leave = None,
             Action::Leave => (self.leaves, state.leave) = (true, None),
@@ -328,7 +328,7 @@ impl App {
         }
     }
 
-    /// Keeps with each hand what the user does to it.
+    /// Records a user action with each hand that it affects.
     fn record_act(&mut self, action: &Action, now: Moment) {
         let State { hands, poses, .. } = &mut self.state;
         let goes_to_all = matches!(action, Action::Recall(_) | Action::Play(Play::Start(_)));
@@ -340,7 +340,7 @@ impl App {
         }
     }
 
-    /// Holds every hand, shown or not.
+    /// Stops (holds) every hand, shown or not.
     fn stop(&mut self) {
         hands::stop_all(&mut self.state, &self.env);
         if let Some(exhibit) = &mut self.state.exhibit {
@@ -348,7 +348,7 @@ impl App {
         }
     }
 
-    /// Reads on what went over the wire. Called while somebody looks at it, and only then.
+    /// Reads further wire traffic. Called only while the user views it.
     pub fn read_traffic(&mut self, now: Moment) {
         let (state, now) = match &mut self.recorded.player {
             Some(player) => {
@@ -360,7 +360,7 @@ impl App {
         export::read_on(&mut state.hand_mut().connection.traffic, now);
     }
 
-    /// Reads what the hand keeps because somebody looks at it. Called while they do; asks only when it is due. Writes nothing.
+    /// Reads the persistent parameters while the user views them; sends requests only when they are due. Writes nothing.
     pub fn look_at_params(&mut self, now: Moment) {
         if self.recorded.player.is_some() {
             return;
@@ -374,7 +374,7 @@ impl App {
         hand.params.read_if_due(of, now);
     }
 
-    /// Reads the check-ups that were kept of the shown hand because somebody looks at them. Called while they do.
+    /// Reads the stored check-ups of the shown hand while the user views them.
     pub fn look_at_checkups(&mut self) {
         let State {
             hands, settings, ..
@@ -390,28 +390,28 @@ impl App {
         }
     }
 
-    /// Whether something was tried, and reading what the hand keeps comes between nothing and the hand.
+    /// True if trials were run and the shown hand is idle, so that reading its persistent parameters disturbs nothing.
     pub fn may_keep_tried(&self) -> bool {
         let hand = self.state.hand();
         let is_free = hand.activity() == Activity::Idle && !hand.connection.is_armed();
         is_free && !self.state.trials.sessions.is_empty()
     }
 
-    /// Shows an exhibition in place of the window from now on. Nothing moves before staff arm.
+    /// Shows an exhibition in place of the window. Nothing moves before staff arm.
     pub fn enter_exhibit(&mut self, start: Exhibition, now: Moment) {
         self.exhibit.enter(start, &mut self.state, &self.env, now);
     }
 
-    /// A frame was drawn: whoever stands before it can see and press STOP. An exhibition goes on only while this is called.
+    /// Notes that a frame was drawn, so that STOP can be seen and pressed. An exhibition continues only while this is called.
     pub fn drawn(&self, now: Moment) {
         if let Some(exhibit) = &self.state.exhibit {
             exhibit.drawn.mark(now);
         }
     }
 
-    /// The user wants to close the window. True if something would be lost and they are asked first; the live hand is shown then.
+    /// Handles a request to close the window. True if work would be lost and the question is shown first, with the live hand.
     pub fn asks_before_closing(&mut self) -> bool {
-        // The way out of an exhibition is the PIN.
+        // An exhibition ends only with the PIN.
         if let Some(exhibit) = &mut self.state.exhibit {
             exhibit.ask(self.state.now);
             return true;
@@ -427,14 +427,14 @@ impl App {
         asks
     }
 
-    /// True once the user said that the window should close, whatever is lost.
+    /// True once the user confirmed that the window should close, regardless of unsaved work.
     pub const fn leaves(&self) -> bool {
         self.leaves
     }
 
-    /// The window is about to close. A hand that is armed, or that this program set in motion, is stopped first.
-    /// True once the window may go: the hand rests, or 600 ms have passed, and what was tried is in files, or
-    /// [`SAVE_TIMEOUT`] has passed. Call it each frame until then.
+    /// Prepares closing the window. A hand that is armed, or that this program set in motion, is stopped first. True once the window
+    /// may close: the hand rests, or 600 ms have passed, and all results are in files, or [`SAVE_TIMEOUT`] has passed. Called each
+    /// frame until then.
     pub fn close(&mut self, now: Moment) -> bool {
         let state = &mut self.state;
         let closing = *self
@@ -455,7 +455,7 @@ impl App {
         let goes =
             (saved && rests || waited >= REST_TIMEOUT) && (is_kept || waited >= SAVE_TIMEOUT);
         if goes {
-            // A frame that still comes begins no file.
+            // A further frame must not start a file.
             self.records = false;
             let hands = state.hands.iter_mut();
             hands
@@ -478,7 +478,7 @@ pub(super) fn open(state: &mut State, endpoint: Option<Endpoint>, env: &Env, now
     });
 }
 
-/// Opens further hands, each in a slot of its own; the first stays shown.
+/// Opens further hands, each in its own slot; the first stays shown.
 pub(super) fn open_beside(state: &mut State, endpoints: Vec<Endpoint>, env: &Env, now: Moment) {
     let first = state.hand().label.slot;
     for endpoint in endpoints {

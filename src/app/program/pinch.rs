@@ -1,4 +1,4 @@
-//! Grips by size with the hand that is shown, and the blocks that make its sizes true.
+//! Grips by size with the shown hand, and the blocks that calibrate its sizes.
 
 use crate::app::env::Env;
 use crate::app::hands::grip;
@@ -10,12 +10,12 @@ use crate::poses::player::{Cue, PlayMode, PlayPlan};
 use crate::poses::starter::starter;
 use std::time::Duration;
 
-/// The shipped pose under whose name the hand opens for a pinch.
+/// The shipped pose with which the hand opens for a pinch.
 const PINCH: &str = "Pinch";
-/// How long each part of the opening may take, at the slowest that is of use.
+/// Time limit for each leg of the opening, at the slowest useful speed.
 const OPEN_TIMEOUT: Duration = Duration::from_secs(30);
 
-/// Goes to a gap. Where thumb and index could meet on the way, the hand only opens: the next step is the user's.
+/// Moves to a gap. If thumb and index could collide on the path, the hand only opens: the user starts the next step.
 pub(super) fn pinch(state: &mut State, gap: Gap, env: &Env) {
     let now = state.now;
     let hand = state.hand_mut();
@@ -43,7 +43,7 @@ pub(super) fn pinch(state: &mut State, gap: Gap, env: &Env) {
     hand.play(plan, PlayMode::Through, env, now);
 }
 
-/// Keeps what is held now as a block of this size.
+/// Stores the object held now as a block of this size.
 pub(super) fn measure_block(state: &mut State, size_mm: f32) {
     let State {
         hands,
@@ -65,7 +65,7 @@ pub(super) fn measure_block(state: &mut State, size_mm: f32) {
     }
 }
 
-/// Sizes of the hand that is shown are by the model again.
+/// Discards the blocks of the shown hand, so that its sizes follow the model again.
 pub(super) fn forget_blocks(state: &mut State) {
     let endpoint = state.hand().connection.endpoint.clone();
     if let Some(endpoint) = endpoint {

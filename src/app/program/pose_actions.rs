@@ -1,4 +1,4 @@
-//! What the user does with poses and sequences.
+//! User actions on poses and sequences.
 
 use crate::app::env::Env;
 use crate::app::hand::SequenceRun;
@@ -12,7 +12,7 @@ use crate::poses::player::PlayMode;
 use crate::poses::preview::Preview;
 use crate::poses::{Play, Preset};
 
-/// Keeps the pose of the hand that is shown, by this name or the next free one.
+/// Stores the pose of the shown hand under this name or the next free one.
 pub(super) fn capture(state: &mut State, name: &str) {
     if let Some(angles) = pose_now(state) {
         let poses = &mut state.poses;
@@ -20,7 +20,7 @@ pub(super) fn capture(state: &mut State, name: &str) {
     }
 }
 
-/// Puts the pose of the hand that is shown in the place of this one.
+/// Replaces this pose by the pose of the shown hand.
 pub(super) fn recapture(state: &mut State, id: PoseId) {
     if let Some(angles) = pose_now(state) {
         let mut known = state.poses.library.poses.iter_mut();
@@ -31,7 +31,7 @@ pub(super) fn recapture(state: &mut State, id: PoseId) {
     }
 }
 
-/// The pose of the hand that is shown; if it is not known, that is told.
+/// Pose of the shown hand; `None`, with a notice, if it is not known.
 fn pose_now(state: &mut State) -> Option<PerDof<Angle>> {
     let known = state.hands.shown().pose_now(state.now);
     if known.is_none() {
@@ -49,7 +49,7 @@ pub(super) fn hide_shipped(state: &mut State, name: String, hide: bool) {
     };
 }
 
-/// Takes a pose, with each hand that takes poses.
+/// Moves each hand that accepts poses to a pose.
 pub(super) fn recall(state: &mut State, id: PoseId, env: &Env) {
     let plan = state.poses.plan(EntryId::Pose(id));
     for hand in state.hands.with_shown(takes_poses) {
@@ -60,7 +60,7 @@ pub(super) fn recall(state: &mut State, id: PoseId, env: &Env) {
     }
 }
 
-/// Shows a sequence on the drawn hand, from where the hand is now, or none any more.
+/// Shows a sequence on the drawn hand, starting at the current pose; `None` ends that.
 pub(super) fn dry_run(state: &mut State, sequence: Option<SequenceId>) {
     let angle = state.hands.shown().readings.sample.angle;
     let from = PerDof::from_fn(|dof| angle.and_then(|angle| angle.value[dof].documented()));
@@ -69,7 +69,7 @@ pub(super) fn dry_run(state: &mut State, sequence: Option<SequenceId>) {
     poses.preview = sequence.and_then(preview);
 }
 
-/// Plays, with each hand that plays along.
+/// Plays with each participating hand.
 pub(super) fn play(state: &mut State, play: Play, env: &Env) {
     if matches!(play, Play::Start(_) | Play::Step(_)) {
         state.poses.preview = None;
@@ -94,14 +94,14 @@ pub(super) fn play(state: &mut State, play: Play, env: &Env) {
     }
 }
 
-/// All joints that are not locked to where the preset has them, in one step, at the speeds that are set.
+/// Moves all unlocked joints to their preset targets, in one step, at the set speeds.
 pub(super) fn preset(hand: &mut Hand, preset: Preset) {
     hand.go_to(|setpoints| {
         setpoints.angle = PerDof::from_fn(|dof| preset.angle(dof).map(Target::Go));
     });
 }
 
-/// What a wish to play comes to at one hand.
+/// Result of a play action at one hand.
 enum PlayStep {
     Start(EntryId, PlayMode),
     Tell(PlayCommand),
@@ -125,13 +125,13 @@ fn next_step(hand: &Hand, play: Play) -> PlayStep {
     }
 }
 
-/// True for a hand that takes a pose which is meant for all: it is armed, and the user at this window moves it.
+/// True if a hand accepts a pose meant for all: it is armed, and the user at this window has control.
 pub(super) fn takes_poses(hand: &Hand) -> bool {
     hand.own_epoch().is_some()
 }
 
-/// True if this hand does what the user asks of the shown one, where that is meant for all. `entry` is what the shown one plays:
-/// nothing else is resumed with it.
+/// True if this hand takes part in an action on the shown one that is meant for all. `entry` is the entry that the shown hand plays:
+/// no other entry is resumed with it.
 fn plays_along(hand: &Hand, play: Play, entry: Option<EntryId>) -> bool {
     match play {
         Play::Start(_) | Play::Step(_) => takes_poses(hand),

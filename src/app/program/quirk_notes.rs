@@ -1,5 +1,5 @@
-//! Keeps the quirk sheet of the hand that answers now, off the window's thread, and says where it differs from the one of
-//! last time. Decides nothing about the hand.
+//! Maintains the quirk sheet of the connected hand, off the window's thread, and reports differences from the previous one. Decides
+//! nothing about the hand.
 
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
@@ -20,22 +20,22 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The sheet from before, and the one of now.
+/// The previous sheet, and the current one.
 type Noted = (Option<QuirkSheet>, QuirkSheet);
 
-/// Notes each hand once for what it answers.
+/// Notes each hand once per set of answers.
 #[derive(Debug)]
 pub(crate) struct QuirkNotes {
     path: Option<PathBuf>,
-    /// By slot: what was noted last of the hand in it. As long as the slots of one run.
+    /// The last noted hand of each slot. As many entries as slots of one run.
     noted: BTreeMap<SlotId, (Endpoint, Quirks)>,
     under_way: Option<BackgroundJob<io::Result<Noted>>>,
-    /// What this program changed itself, and whether it may be in flash: nothing to be warned of.
+    /// A change made by this program, and whether it may be in flash: it causes no warning.
     own: Option<(PlaceChange, bool)>,
 }
 
 impl QuirkNotes {
-    /// Keeps the book beside the settings; without settings nowhere.
+    /// Stores the book beside the settings; without settings nothing is stored.
     pub(crate) fn new(settings: Option<&Path>) -> Self {
         Self {
             path: settings.map(QuirkBook::path),
@@ -45,7 +45,7 @@ impl QuirkNotes {
         }
     }
 
-    /// Notes a hand that is new or answers otherwise, and tells where it differs from last time.
+    /// Notes a hand that is new or answers differently, and notifies the user of differences from last time.
     pub(crate) fn tick(&mut self, hand: &mut Hand, ctx: &mut Ctx<'_>) {
         match BackgroundJob::take_from(&mut self.under_way) {
             None => {}
@@ -99,7 +99,7 @@ impl QuirkNotes {
         self.under_way = Some(BackgroundJob::start(&env.runtime, &env.wake, note));
     }
 
-    /// What the hand answers; after a change that this program made and saved, what it will answer once it is asked again.
+    /// Answers of the hand; after a change that this program made and saved, the answers expected from the next query.
     fn quirks(&self, hand: &Hand) -> Quirks {
         let mut quirks = hand.connection.status.quirks;
         let Some((change, true)) = &self.own else {

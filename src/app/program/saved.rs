@@ -1,4 +1,4 @@
-//! Settings and the user's own poses: taken from their files at start, saved off the window's thread when they change.
+//! Settings and the user's own poses: loaded from their files at start, saved off the window's thread when they change.
 
 use crate::app::env::Env;
 use crate::app::files::{pose_file, settings_file};
@@ -11,14 +11,14 @@ use crate::poses::library::PoseLibrary;
 use crate::store::Saver;
 use crate::trials::plan_settings::from_settings;
 
-/// Saves what changes.
+/// Saves changes.
 pub(super) struct SavedFiles {
     settings: Saver<Settings>,
     poses: Saver<PoseLibrary>,
 }
 
 impl SavedFiles {
-    /// What the program begins with: these settings, and the poses beside their file.
+    /// Initial state of the program: these settings, and the poses beside their file.
     pub(super) fn load(settings: Settings, env: &Env) -> (Self, State) {
         let path = env.settings_path.clone();
         let pose_path = path.as_deref().map(pose_file::path_beside);
@@ -49,10 +49,10 @@ impl SavedFiles {
         (saved, state)
     }
 
-    /// Saves what changed; what could not be saved before.
+    /// Saves changes; returns notices of failures.
     pub(super) fn tick(&mut self, state: &State, now: Moment) -> Vec<NoticeKind> {
         let at = now.since(Moment::ZERO);
-        // What a visitor chooses is not what staff chose.
+        // A visitor's choices must not replace those of staff.
         let settings = match state.exhibit {
             Some(_) => Ok(()),
             None => self.settings.tick(&state.settings, at),
@@ -63,7 +63,7 @@ impl SavedFiles {
         told.collect()
     }
 
-    /// Saves what is not saved yet, without waiting for more changes. True when all is in files, or cannot be.
+    /// Saves all changes without waiting for more. True once all are in files, or cannot be saved.
     pub(super) fn flush(&mut self, state: &State, now: Moment) -> bool {
         let at = now.since(Moment::ZERO);
         let poses = self.poses.flush(&state.poses.library, at);

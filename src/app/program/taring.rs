@@ -1,4 +1,4 @@
-//! Taring of the fingertips: by the user, kept for the next time the same hand is connected, and offered then.
+//! Taring of the fingertips by the user, stored for the next connection with the same hand, and offered then.
 
 use crate::app::ctx::Ctx;
 use crate::app::hands::Hand;
@@ -9,7 +9,7 @@ use crate::hand::{Finger, Moment};
 use crate::store::calendar::since_1970;
 use crate::transport::Endpoint;
 
-/// Counts tactile channels from now, where the reading is fresh: one fingertip, or all. Refused where one is touched.
+/// Tares the fresh readings of one fingertip, or of all. Refused if one of them is touched.
 pub(super) fn tare(hand: &mut Hand, finger: Option<Finger>, ctx: &mut Ctx<'_>) {
     let mut fresh = fresh_tips(hand, ctx.now);
     fresh.retain(|each| finger.is_none_or(|finger| finger == *each));
@@ -19,7 +19,7 @@ pub(super) fn tare(hand: &mut Hand, finger: Option<Finger>, ctx: &mut Ctx<'_>) {
     }
 }
 
-/// Counts from the taring that was kept, where the reading is fresh. Refused where one fingertip is touched.
+/// Applies the stored taring to fresh readings. Refused if a fingertip is touched.
 pub(super) fn take_kept(hand: &mut Hand, ctx: &mut Ctx<'_>) {
     let fresh = fresh_tips(hand, ctx.now);
     let readings = &mut hand.readings;
@@ -36,14 +36,14 @@ fn fresh_tips(hand: &Hand, now: Moment) -> Vec<Finger> {
     Finger::ALL.into_iter().filter(is_fresh).collect()
 }
 
-/// Puts what the user tared into the settings.
+/// Stores the user's taring in the settings.
 pub(super) fn keep(hand: &Hand, settings: &mut Settings, now: Moment) {
     if let Some(tared) = tared_hand(hand) {
         settings.keep_tare(tared, hand.readings.tare.to_keep(since_1970(), now));
     }
 }
 
-/// Once a connection: offers what was kept of the same hand. Applies nothing.
+/// Offers the stored taring of the same hand, once per connection. Applies nothing.
 pub(super) fn offer(hand: &mut Hand, settings: &Settings, now: Moment) {
     if hand.connection.is_live() && !hand.readings.tare.was_offered() {
         let kept = tared_hand(hand).and_then(|hand| settings.tares.get(&hand));
@@ -51,7 +51,7 @@ pub(super) fn offer(hand: &mut Hand, settings: &Settings, now: Moment) {
     }
 }
 
-/// The hand as files are kept by it: its place and id. The built-in one is none.
+/// Key of the hand for stored tarings: its place and id; `None` for the built-in hand.
 fn tared_hand(hand: &Hand) -> Option<String> {
     let endpoint = hand.connection.endpoint.as_ref();
     let (place, id) = endpoint
