@@ -4,8 +4,9 @@
 use crate::hand::{ArmEpoch, HandCommand, HandSample, Moment, Setpoints};
 use crate::link::{Clock, Lease, LeaseRefusal, LinkHandle, LinkStatus, PollRates, Records, Stop};
 use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
-use crate::record::{Abort, Disarmed, LinkState, Record, SetpointConflict, WriteCause};
+use crate::record::{Abort, ArmRefusal, Disarmed, LinkState, Record, SetpointConflict, WriteCause};
 use crate::trials::limits::{TaskStall, fault, heat_reason};
+use futures::future::BoxFuture;
 use futures::{FutureExt as _, Stream, StreamExt as _};
 use std::pin::pin;
 use std::time::Duration;
@@ -114,6 +115,7 @@ pub async fn drive<P: Program>(
         armed_by: start.armed_by,
         lease: start.lease,
         foreign: None,
+        arming: None,
         turns: Turns::from(clock.now()),
     };
     if let Some(rates) = P::RATES {
@@ -134,6 +136,8 @@ pub async fn drive<P: Program>(
             program.stalled(stall);
         }
         at.read(&mut program, record, clock.now());
+        // Before the status, which then shows the arming.
+        let answer = at.answered();
         let status = hand.status();
         let is_broken = at.broken(&status);
         if is_broken {
@@ -150,19 +154,21 @@ pub async fn drive<P: Program>(
             stall: at.turns.stall,
             now: clock.now(),
         };
+        let follow_up = answer.and_then(|answer| program.armed(answer));
+        follow_up.and_then(|order| at.execute(order, &status));
         let mut order = match input {
             Some(Some(input)) => program.input(input, &seen),
             Some(None) => program.input_ended(&seen),
             None => None,
         };
-        let mut sent = order.and_then(|order| at.obey(order, &status));
+        let mut sent = order.and_then(|order| at.execute(order, &status));
         if program.ended().is_none() && is_broken {
             program.abort(at.cause(&status, clock.now()), clock.now());
             // A program that continues has no control until control is granted again.
             at.lease = None;
         } else if program.ended().is_none() && sent.is_none() {
             order = program.tick(&seen);
-            sent = order.and_then(|order| at.obey(order, &status));
+            sent = order.and_then(|order| at.execute(order, &status));
         }
         if !report(&mut program, sent.as_ref()) {
             program.abort(Abort::NotKept, clock.now());
@@ -194,10 +200,19 @@ struct Driving<'a> {
     lease: Option<Lease>,
     /// Foreign setpoint that was already known when the program disarmed the hand.
     foreign: Option<SetpointConflict>,
+    /// The arming that the program requested.
+    arming: Option<BoxFuture<'static, Result<ArmEpoch, ArmRefusal>>>,
     turns: Turns,
 }
 
 impl Driving<'_> {
+    /// The answer to the last arming request, once there is one.
+    fn answered(&mut self) -> Option<Result<ArmEpoch, ArmRefusal>> {
+        let answer = self.arming.as_mut()?.now_or_never()?;
+        self.arming = None;
+        Some(answer)
+    }
+
     fn read<P: Program>(&mut self, program: &mut P, record: Option<Record>, now: Moment) {
         match record {
             Some(Record::Reading { sample, fresh }) => {
@@ -214,7 +229,7 @@ impl Driving<'_> {
     }
 
     /// Executes an order; returns the setpoints that were sent, if any.
-    fn obey(&mut self, order: Order, status: &LinkStatus) -> Option<Setpoints> {
+    fn execute(&mut self, order: Order, status: &LinkStatus) -> Option<Setpoints> {
         let (hand, lease) = (self.hand, self.lease);
         // Under an ended lease no order is executed, and the next step ends the program.
         let under = |act: &dyn Fn(Lease) -> Result<(), LeaseRefusal>| {
@@ -225,7 +240,11 @@ impl Driving<'_> {
                 let is_sent = !setpoints.is_empty() && under(&|lease| hand.set(lease, &setpoints));
                 return is_sent.then_some(setpoints);
             }
-            Order::Arm(request) => under(&|lease| hand.arm(lease, request).map(drop)),
+            Order::Arm(request) => {
+                let asked = lease.and_then(|lease| hand.arm(lease, request).ok());
+                self.arming = asked.map(IntoFuture::into_future);
+                self.arming.is_some()
+            }
             Order::Rest => under(&|lease| hand.rest(lease)),
             Order::Halt => under(&|lease| hand.halt(lease)),
             Order::RunUntil(until) => under(&|lease| hand.run_until(lease, until)),

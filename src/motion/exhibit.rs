@@ -12,7 +12,7 @@ use crate::motion::drive::{ArmedBy, DriveStart, drive};
 use crate::motion::play::{PlayCommand, PlayStart, Playing};
 use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
 use crate::poses::player::{PlayMode, PlayPlan};
-use crate::record::{Abort, Disarmed, LinkState};
+use crate::record::{Abort, ArmRefusal, Disarmed, LinkState};
 use futures::stream::poll_fn;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -26,8 +26,6 @@ const CLEARED_MAX: usize = 3;
 const CLEAR_WINDOW: Duration = Duration::from_secs(600);
 /// A fault that is still reported this long after clearing was not cleared.
 const CLEAR_TIMEOUT: Duration = Duration::from_secs(3);
-/// Arming takes a few readings.
-const ARM_TIMEOUT: Duration = Duration::from_secs(3);
 /// A visitor who presses nothing for this long has left.
 const GONE_TIMEOUT: Duration = Duration::from_secs(25);
 /// Pause between two visitors.
@@ -152,8 +150,8 @@ pub(crate) struct ExhibitRun {
     playing: Option<Playing>,
     /// The hand should hold, which ends the current piece.
     holds: bool,
-    /// Time of an arming request that has no effect yet.
-    asked: Option<Moment>,
+    /// An arming request has no answer yet.
+    is_arming: bool,
     /// The arming that was requested here.
     epoch: Option<ArmEpoch>,
     /// The user permitted motion in this step.
@@ -199,7 +197,7 @@ impl ExhibitRun {
             motion: Playback::None,
             playing: None,
             holds: false,
-            asked: None,
+            is_arming: false,
             epoch: None,
             grants: false,
             stops: false,
@@ -290,7 +288,7 @@ impl ExhibitRun {
         // A tile that was held before does not count as held from now on.
         self.held = None;
         self.holds = false;
-        let may_move = self.epoch.take().is_some() | self.asked.take().is_some();
+        let may_move = self.epoch.take().is_some() | std::mem::take(&mut self.is_arming);
         self.stops |= may_move || self.motion != Playback::None;
         self.motion = Playback::None;
     }
@@ -445,7 +443,7 @@ impl ExhibitRun {
         // The link disarmed the hand, which ended the piece.
         self.holds = false;
         self.motion = Playback::None;
-        self.asked = None;
+        self.is_arming = false;
         self.epoch = None;
     }
 
@@ -558,16 +556,6 @@ impl ExhibitRun {
     /// Starts the waiting motion, and arms or disarms the hand for it.
     fn start_motion(&mut self, seen: &Seen<'_>) -> Option<Order> {
         let (status, now) = (seen.status, seen.now);
-        if self.asked.is_some() && status.state == LinkState::Armed {
-            self.asked = None;
-            self.epoch = status.armed;
-        }
-        let is_late = |at| now.since(at) >= ARM_TIMEOUT;
-        if self.asked.take_if(|at| is_late(*at)).is_some() {
-            self.motion = Playback::None;
-            // It must not be armed late either.
-            return Some(Order::Rest);
-        }
         let is_resting = matches!(self.phase, Phase::Idle | Phase::Cooling { .. });
         let is_disarmed = status.state == LinkState::Monitoring && status.armed.is_none();
         let own = self.epoch.filter(|epoch| status.armed == Some(*epoch));
@@ -588,8 +576,8 @@ impl ExhibitRun {
                 self.playing = Some(Playing::new(epoch, start, now));
                 None
             }
-            (Playback::Waits(_), None) if self.asked.is_none() && is_disarmed => {
-                self.asked = Some(now);
+            (Playback::Waits(_), None) if !self.is_arming && is_disarmed => {
+                self.is_arming = true;
                 Some(Order::Arm(self.plan.limits.arm_request()))
             }
             _ => None,
@@ -601,6 +589,7 @@ impl ExhibitRun {
         let piece = self.playing.as_mut()?;
         let is_armed = seen.status.armed == Some(piece.epoch());
         if !is_armed || seen.status.state == LinkState::Fault {
+            self.epoch = None;
             self.piece_ended(seen.now);
             return None;
         }
@@ -620,6 +609,19 @@ impl Program for ExhibitRun {
     fn input(&mut self, wish: ExhibitWish, seen: &Seen<'_>) -> Option<Order> {
         self.wish(wish, seen.now);
         None
+    }
+
+    fn armed(&mut self, answer: Result<ArmEpoch, ArmRefusal>) -> Option<Order> {
+        // A halt or a fault withdraws the request.
+        if !std::mem::take(&mut self.is_arming) {
+            return None;
+        }
+        self.epoch = answer.ok();
+        if self.epoch.is_none() {
+            self.motion = Playback::None;
+        }
+        // It must not be armed later either.
+        self.epoch.is_none().then_some(Order::Rest)
     }
 
     fn input_ended(&mut self, seen: &Seen<'_>) -> Option<Order> {

@@ -88,7 +88,7 @@ pub async fn follow(
         clock,
     };
     let limits = start.terms.borrow().limits;
-    let program = FollowRun {
+    let program = FollowProgram {
         follow: Follow::new(limits, clock.now()),
         view: None,
         delays: Delays::default(),
@@ -117,7 +117,7 @@ pub async fn follow(
     driven.await.end
 }
 
-struct FollowRun {
+struct FollowProgram {
     start: FollowStart,
     follow: Follow,
     view: Option<FollowView>,
@@ -129,7 +129,7 @@ struct FollowRun {
     end: Option<Ended<FollowEnd>>,
 }
 
-impl Program for FollowRun {
+impl Program for FollowProgram {
     type Input = Offer;
     type Outcome = FollowEnd;
     const AFTER_ABORT: AfterAbort = AfterAbort::StopAfterLinkLoss;
@@ -198,7 +198,7 @@ impl Program for FollowRun {
     }
 }
 
-impl FollowRun {
+impl FollowProgram {
     /// Sends targets, and limits that were not sent under this arming yet.
     fn set(&mut self, epoch: ArmEpoch, aims: &PerDof<Option<Angle>>) -> Option<Order> {
         let mut setpoints = Setpoints::none(epoch);

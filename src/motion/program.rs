@@ -1,9 +1,9 @@
 //! The interface of a motion over time: a pure state machine with readings, time and user input in, orders out. `drive` runs it and
 //! owns the safety rules.
 
-use crate::hand::{AngleReading, Groups, HandSample, Moment, PerDof, Setpoints, Timed};
+use crate::hand::{AngleReading, ArmEpoch, Groups, HandSample, Moment, PerDof, Setpoints, Timed};
 use crate::link::{ArmRequest, LinkStatus, Owner, PollRates};
-use crate::record::{Abort, Disarmed};
+use crate::record::{Abort, ArmRefusal, Disarmed};
 use crate::trials::limits::TaskStall;
 
 /// Result of a program: its own outcome, or the reason for an early end.
@@ -83,6 +83,10 @@ pub trait Program {
     fn input(&mut self, input: Self::Input, seen: &Seen<'_>) -> Option<Order>;
     /// Receives a reading.
     fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment);
+    /// Receives the answer to [`Order::Arm`].
+    fn armed(&mut self, _answer: Result<ArmEpoch, ArmRefusal>) -> Option<Order> {
+        None
+    }
     /// Receives the end of the input stream. By default this means that the caller moves the hand in another way.
     fn input_ended(&mut self, seen: &Seen<'_>) -> Option<Order> {
         self.abort(Abort::TakenOver, seen.now);

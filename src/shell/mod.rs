@@ -63,11 +63,11 @@ impl DesktopApp {
             self.app.read_traffic(now);
         }
         match self.window.view() {
-            View::Device => self.app.look_at_params(now),
-            View::Checkup => self.app.look_at_checkups(),
+            View::Device => self.app.read_params_if_due(now),
+            View::Checkup => self.app.read_checkups(),
             // Tried settings may become the defaults, which are compared with the hand's stored ones.
             View::Tune | View::Compare if self.app.may_keep_tried() => {
-                self.app.look_at_params(now);
+                self.app.read_params_if_due(now);
             }
             _ => {}
         }

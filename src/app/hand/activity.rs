@@ -96,7 +96,7 @@ impl RecordedMover {
     }
 
     /// Applies a status of the link: no series continues without arming.
-    pub(crate) fn take_status(&mut self, link: &LinkStatus) {
+    pub(crate) fn apply_status(&mut self, link: &LinkStatus) {
         self.trial = self.trial.filter(|_| link.armed.is_some());
     }
 }

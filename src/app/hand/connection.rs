@@ -210,7 +210,7 @@ impl Connection {
     ///
     /// # Errors
     /// [`RequestError::NotConnected`], if no hand is connected.
-    pub(crate) fn ask(
+    pub(crate) fn request(
         &mut self,
         what: RequestKind,
         command: HandCommand,
@@ -247,7 +247,7 @@ impl Connection {
     }
 
     /// Records since the last call, and the link's current status; `None` without a link.
-    pub(crate) fn heard(&mut self) -> Option<(Vec<Record>, LinkStatus)> {
+    pub(crate) fn received(&mut self) -> Option<(Vec<Record>, LinkStatus)> {
         let open = self.open.as_mut()?;
         let status = open.link.status();
         self.stats = open.link.stats();
@@ -258,7 +258,7 @@ impl Connection {
     }
 
     /// Replaces the status, and returns the previous one. No arming from before the last disarming counts.
-    pub(crate) fn take_status(&mut self, mut status: LinkStatus) -> LinkStatus {
+    pub(crate) fn replace_status(&mut self, mut status: LinkStatus) -> LinkStatus {
         let outdated = self.disarmed_at.is_some_and(|at| status.since <= at);
         if outdated && (status.state == LinkState::Armed || status.armed.is_some()) {
             status.state = self.status.state;

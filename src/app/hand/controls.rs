@@ -94,7 +94,7 @@ impl Controls {
 
     /// Applies a record of a replay, which has no user settings: speeds and forces are those of the hand, and a target applies from
     /// the time it was sent.
-    pub(crate) fn take_recorded(&mut self, record: &Record) {
+    pub(crate) fn apply_recorded(&mut self, record: &Record) {
         match record {
             Record::Reading { sample, fresh } => {
                 for (dof, joint) in self.joints.iter_mut() {
@@ -182,7 +182,7 @@ impl Controls {
     }
 
     /// Applies a change. `epoch` is the arming under which the user may move the hand; returns the setpoints to send under it.
-    pub(crate) fn take(
+    pub(crate) fn apply(
         &mut self,
         dof: Dof,
         change: JointChange,
@@ -254,20 +254,20 @@ impl Controls {
     }
 
     /// Notes that the hand was armed: sliders keep their positions until they are moved.
-    pub(crate) fn stand(&mut self) {
+    pub(crate) fn freeze(&mut self) {
         let stands = |joint: JointControl| !joint.locked && joint.target.is_some();
         self.steered = self.joints.map(stands);
     }
 
     /// Makes all sliders follow their joints, discarding targets.
-    pub(crate) fn let_go(&mut self) {
+    pub(crate) fn release(&mut self) {
         (self.steered, self.sent) = (PerDof::default(), PerDof::default());
     }
 
     /// Moves sliders that the user has not moved to the actual angle, so that arming and taking over never jump.
     pub(crate) fn follow(&mut self, actual: Option<&PerDof<AngleReading>>, is_armed: bool) {
         if !is_armed {
-            self.let_go();
+            self.release();
         }
         for (dof, joint) in self.joints.iter_mut() {
             if !self.steered[dof] {
@@ -294,7 +294,7 @@ mod tests {
         for change in changes {
             let mut controls = Controls::default();
             assert!(
-                controls.take(Dof::Index, change, None).is_none(),
+                controls.apply(Dof::Index, change, None).is_none(),
                 "{change:?}"
             );
             assert_eq!(
@@ -302,8 +302,8 @@ mod tests {
                 None,
                 "no wish to move is kept"
             );
-            controls.take(Dof::Index, JointChange::Lock(true), Some(EPOCH));
-            let sent = controls.take(Dof::Index, change, Some(EPOCH));
+            controls.apply(Dof::Index, JointChange::Lock(true), Some(EPOCH));
+            let sent = controls.apply(Dof::Index, change, Some(EPOCH));
             let frees = matches!(change, JointChange::Lock(false));
             assert_eq!(sent.is_some(), frees, "{change:?} of a locked joint");
         }
@@ -312,9 +312,9 @@ mod tests {
     #[test]
     fn speed_and_force_that_were_changed_while_locked_go_out_when_it_is_free() {
         let mut controls = Controls::default();
-        controls.take(Dof::Ring, JointChange::Lock(true), Some(EPOCH));
-        controls.take(Dof::Ring, JointChange::Force(Force::MAX), Some(EPOCH));
-        let sent = controls.take(Dof::Ring, JointChange::Lock(false), Some(EPOCH));
+        controls.apply(Dof::Ring, JointChange::Lock(true), Some(EPOCH));
+        controls.apply(Dof::Ring, JointChange::Force(Force::MAX), Some(EPOCH));
+        let sent = controls.apply(Dof::Ring, JointChange::Lock(false), Some(EPOCH));
         let sent = sent.unwrap();
         assert_eq!(sent.force[Dof::Ring], Some(Force::MAX));
         assert_eq!(sent.speed[Dof::Ring], None, "nothing is known of it");
@@ -324,8 +324,8 @@ mod tests {
     #[test]
     fn own_speed_and_force_are_restored_once_and_for_the_joints_that_were_played() {
         let mut controls = Controls::default();
-        controls.take(Dof::Ring, JointChange::Speed(Speed::MIN), None);
-        controls.take(Dof::Index, JointChange::Speed(Speed::MIN), None);
+        controls.apply(Dof::Ring, JointChange::Speed(Speed::MIN), None);
+        controls.apply(Dof::Index, JointChange::Speed(Speed::MIN), None);
         let mut targets = PerDof::splat(None);
         targets[Dof::Ring] = Some(Angle::MIN);
         controls.override_limits(&targets);
@@ -346,7 +346,7 @@ mod tests {
     #[test]
     fn wishes_are_what_the_hand_was_found_with_until_a_person_sets_others() {
         let mut controls = Controls::default();
-        controls.take(Dof::Ring, JointChange::Force(Force::MIN), None);
+        controls.apply(Dof::Ring, JointChange::Force(Force::MIN), None);
         let timed = |value| {
             Some(crate::hand::Timed {
                 value: PerDof::splat(Some(value)),
@@ -374,7 +374,7 @@ mod tests {
     #[test]
     fn of_a_pose_the_locked_joints_are_left_out() {
         let mut controls = Controls::default();
-        controls.take(Dof::Little, JointChange::Lock(true), None);
+        controls.apply(Dof::Little, JointChange::Lock(true), None);
         let mut pose = Setpoints::none(EPOCH);
         pose.angle = PerDof::splat(Some(Target::Go(Angle::MAX)));
         let sent = controls.free(&pose).unwrap();

@@ -45,7 +45,7 @@ impl HeldKey {
     }
 
     /// Applies the state of the key; true while a press waits for arming.
-    pub(crate) fn take(&mut self, key: HoldKey, now: Moment) -> bool {
+    pub(crate) fn apply(&mut self, key: HoldKey, now: Moment) -> bool {
         let until = now.plus(HOLD_DURATION);
         (self.until, self.is_pressed) = match key {
             HoldKey::Pressed => (until, true),

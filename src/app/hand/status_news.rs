@@ -30,7 +30,7 @@ pub(crate) struct StatusReport<'a, 'n> {
 impl StatusReport<'_, '_> {
     /// Compares the new status with the previous one; adds marks and notices for changes.
     pub(crate) fn status(&mut self, connection: &mut Connection, status: LinkStatus) -> StatusNews {
-        let before = connection.take_status(status);
+        let before = connection.replace_status(status);
         let mut news = self.reached(connection, &before);
         self.latency(connection, &before);
         self.hold(&connection.status, &before);

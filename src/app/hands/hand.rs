@@ -169,7 +169,7 @@ impl Hand {
     }
 
     /// Continues a disconnect once the stopped hand rests, or its time has expired.
-    pub(crate) fn go_on_leaving(&mut self, ctx: &mut Ctx<'_>) {
+    pub(crate) fn continue_leaving(&mut self, ctx: &mut Ctx<'_>) {
         let is_due = |leaving: &mut Leaving| {
             let told = leaving.told;
             ctx.now.since(told) >= REST_TIMEOUT || self.connection.is_held(told)
@@ -231,18 +231,18 @@ impl Hand {
     }
 
     /// Applies news of the link.
-    pub(crate) fn take_news(&mut self, notices: &mut HandNotices<'_>, now: Moment) {
-        if let Some((records, status)) = self.connection.heard() {
+    pub(crate) fn apply_news(&mut self, notices: &mut HandNotices<'_>, now: Moment) {
+        if let Some((records, status)) = self.connection.received() {
             for record in &records {
-                self.take(record, notices, now);
+                self.apply(record, notices, now);
             }
-            self.take_status(status, notices, now);
+            self.apply_status(status, notices, now);
         }
         self.follow();
     }
 
     /// Applies a record. A reading has its own time, independent of the frame, so that a replay gives the same result.
-    pub(crate) fn take(&mut self, record: &Record, notices: &mut HandNotices<'_>, now: Moment) {
+    pub(crate) fn apply(&mut self, record: &Record, notices: &mut HandNotices<'_>, now: Moment) {
         match record {
             Record::Reading { sample, fresh } => {
                 let at = sample.newest(*fresh).unwrap_or(now);
@@ -270,7 +270,7 @@ impl Hand {
     }
 
     /// Applies a status of the link.
-    pub(crate) fn take_status(
+    pub(crate) fn apply_status(
         &mut self,
         status: LinkStatus,
         notices: &mut HandNotices<'_>,
@@ -287,7 +287,7 @@ impl Hand {
         }
         if news.is_armed {
             self.connection.asked_at = now;
-            self.controls.stand();
+            self.controls.freeze();
         }
     }
 
@@ -365,7 +365,7 @@ impl Hand {
 
     /// Applies the state of the hold-to-run key. A press arms the hand as soon as an earlier stop is confirmed.
     pub(crate) fn hold_key(&mut self, key: HoldKey, ctx: &mut Ctx<'_>) {
-        let wants_to_arm = self.controls.held.take(key, ctx.now);
+        let wants_to_arm = self.controls.held.apply(key, ctx.now);
         self.connection
             .hold_to_run(self.controls.held.hold_to_run());
         if !wants_to_arm || self.arm_refusal(ctx.now) == Some(ArmRefusal::Holding) {
@@ -393,7 +393,7 @@ impl Hand {
 
     /// Changes the user's setting of a joint. Speed and force are stored if they cannot be sent.
     pub(crate) fn change_joint(&mut self, dof: Dof, change: JointChange) {
-        let wanted = self.controls.take(dof, change, self.own_epoch());
+        let wanted = self.controls.apply(dof, change, self.own_epoch());
         if let JointChange::Lock(_) = change {
             self.follow();
             if let Some(run) = self.running.sequence() {
@@ -514,23 +514,23 @@ impl Hand {
             self.take_over();
             self.restore_limits(|_| true);
             self.controls.gesture = Some(gesture);
-            if self.ask(what, HandCommand::Gesture(gesture, route), ctx) {
+            if self.request(what, HandCommand::Gesture(gesture, route), ctx) {
                 let number = MarkKind::Gesture(gesture.get());
                 self.measured.history.mark(ctx.now, number);
                 self.connection.commanded = true;
-                self.controls.let_go();
+                self.controls.release();
             }
         }
     }
 
     /// Writes a command; false, with a notice, if no hand is connected. The link holds the pose before it clears errors.
-    pub(crate) fn ask(
+    pub(crate) fn request(
         &mut self,
         what: RequestKind,
         command: HandCommand,
         ctx: &mut Ctx<'_>,
     ) -> bool {
-        let asked = self.connection.ask(what, command, ctx.env);
+        let asked = self.connection.request(what, command, ctx.env);
         asked.map_err(|error| self.failed(what, error, ctx)).is_ok()
     }
 

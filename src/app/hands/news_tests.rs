@@ -75,7 +75,7 @@ impl Bench {
         self.millis += 10;
         let now = self.now();
         self.hand
-            .take_status(status, &mut self.notices.about(None), now);
+            .apply_status(status, &mut self.notices.about(None), now);
         self.hand.follow();
     }
 
@@ -106,7 +106,7 @@ impl Bench {
         let sample = Arc::new(sample);
         let record = Record::Reading { sample, fresh };
         let now = self.now();
-        self.hand.take(&record, &mut self.notices.about(None), now);
+        self.hand.apply(&record, &mut self.notices.about(None), now);
         self.hand.follow();
     }
 

@@ -160,7 +160,7 @@ pub(crate) struct FollowOutcome {
 
 impl HandInputs {
     /// Updates the state of all inputs and outlets.
-    pub(crate) fn look(&mut self) {
+    pub(crate) fn refresh(&mut self) {
         self.stream_at = self.stream.as_ref().map(StreamSource::local);
         let lines = self.stream.as_ref().map(StreamSource::view);
         self.stream_view = lines.unwrap_or_default();
@@ -172,7 +172,7 @@ impl HandInputs {
         self.foxglove_at = self.foxglove.as_ref().map(viewed);
         self.mirror.take_if(|mirror| mirror.is_over());
         if let Some(mirror) = &mut self.mirror {
-            mirror.look();
+            mirror.refresh();
         }
         self.dds_view = self.dds.as_ref().map(|joined| DdsState {
             at: joined.shared.node.address(),
@@ -219,7 +219,7 @@ impl HandMirror {
         }
     }
 
-    pub(crate) fn look(&mut self) {
+    pub(crate) fn refresh(&mut self) {
         self.view = self.source.view();
     }
 

@@ -36,7 +36,7 @@ pub(super) struct Shared<'a> {
 
 /// Advances one hand.
 pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
-    hand.take_news(&mut ctx.notices, ctx.now);
+    hand.apply_news(&mut ctx.notices, ctx.now);
     let ran = hand.running.sequence().is_some_and(SequenceRun::is_running);
     let played = hand.running.sequence_mut().map(SequenceRun::news);
     if let Some(sent) = played {
@@ -81,7 +81,7 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     if shared.records {
         tick_recording(hand, shared.settings, ctx);
     }
-    hand.go_on_leaving(ctx);
+    hand.continue_leaving(ctx);
 }
 
 /// Restores the user's speed and force for joints that are at the targets of a sequence. A joint that presses or still moves keeps the
@@ -134,7 +134,7 @@ fn lend(hand: &mut Hand) -> Option<SeriesHand<'_>> {
     let connection = &mut hand.connection;
     let (epoch, open) = (connection.status.armed?, connection.open.as_mut()?);
     let (link, lease) = (open.link.clone(), open.lend_lease());
-    hand.controls.let_go();
+    hand.controls.release();
     connection.commanded = true;
     Some(SeriesHand {
         link,

@@ -111,7 +111,7 @@ pub(super) fn tick(hand: &mut Hand, settings: &Settings, poses: &PoseState, ctx:
     if let Some(pad) = &inputs.pad {
         pad.set_poses(poses.on_pad(&settings.pad_map(), &settings.hidden_poses));
     }
-    inputs.look();
+    inputs.refresh();
     if let Some(joined) = &inputs.dds {
         joined.shared.announce(card);
     }

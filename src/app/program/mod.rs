@@ -31,7 +31,7 @@ use crate::app::program::exhibit::ExhibitWork;
 use crate::app::program::hand_actions::each;
 use crate::app::program::hand_tick::{Shared, record_event};
 use crate::app::program::jobs::Jobs;
-use crate::app::program::pose_actions::takes_poses;
+use crate::app::program::pose_actions::accepts_poses;
 use crate::app::program::quirk_notes::QuirkNotes;
 use crate::app::program::saved::SavedFiles;
 use crate::app::recordings::RecordingAction;
@@ -97,7 +97,7 @@ impl App {
     }
 
     /// Adds a notice from outside the program, such as an unreadable settings file.
-    pub fn tell(&mut self, what: NoticeKind, now: Moment) {
+    pub fn notify(&mut self, what: NoticeKind, now: Moment) {
         if let Some(player) = &mut self.recorded.player {
             player.notify(what.clone());
         }
@@ -158,14 +158,14 @@ impl App {
         hands::drop_removed(&mut self.state);
         self.exhibit.tick(&mut self.state, &self.env, now);
         let told = self.jobs.tick(&mut self.state, &self.env);
-        told.into_iter().for_each(|told| self.tell(told, now));
+        told.into_iter().for_each(|told| self.notify(told, now));
         self.recorded.tick(&mut self.state, &self.env);
         if self.state.exhibit.is_some() {
             // A replay would cover the page, and offer a way out of it.
             self.recorded.player = None;
         }
         let told = self.saved.tick(&self.state, now);
-        told.into_iter().for_each(|told| self.tell(told, now));
+        told.into_iter().for_each(|told| self.notify(told, now));
     }
 
     /// Carries out one user action.
@@ -182,7 +182,7 @@ impl App {
             return;
         }
         if self.state.hand().runs_series() && !action.effect().passes_in_series() {
-            self.tell(NoticeKind::SeriesRuns, now);
+            self.notify(NoticeKind::SeriesRuns, now);
             return;
         }
         self.record_act(&action, now);
@@ -264,7 +264,7 @@ impl App {
             Action::ClearErrors if state.hand().procedures.card.is_some() => {}
             Action::ClearErrors => {
                 hands::with_shown(state, env, |hand, _, ctx| {
-                    hand.ask(RequestKind::ClearErrors, HandCommand::ClearErrors, ctx);
+                    hand.request(RequestKind::ClearErrors, HandCommand::ClearErrors, ctx);
                 });
             }
             Action::ChangePlace(id, wanted) => {
@@ -321,7 +321,7 @@ impl App {
             Action::Tare(finger) => hand_actions::tare(state, finger, env),
             Action::UndoTare => hand_actions::undo_tare(state, env),
             Action::TakeKeptTare => {
-                hands::with_shown(state, env, |hand, _, ctx| taring::take_kept(hand, ctx));
+                hands::with_shown(state, env, |hand, _, ctx| taring::restore(hand, ctx));
             }
             Action::Stage(id, value) => state.hand_mut().params.stage(id, value),
             Action::Param(action) => self.jobs.param_action(action, state, env),
@@ -332,7 +332,7 @@ impl App {
     fn record_act(&mut self, action: &Action, now: Moment) {
         let State { hands, poses, .. } = &mut self.state;
         let goes_to_all = matches!(action, Action::Recall(_) | Action::Play(Play::Start(_)));
-        for hand in hands.with_shown(|hand| goes_to_all && takes_poses(hand)) {
+        for hand in hands.with_shown(|hand| goes_to_all && accepts_poses(hand)) {
             if let Some(done) = action.user_act(hand.connection.is_armed(), poses) {
                 record_event(hand, now, EventKind::Person, done.words());
                 hand.measured.recorder.record_user_act(done, now);
@@ -361,7 +361,7 @@ impl App {
     }
 
     /// Reads the persistent parameters while the user views them; sends requests only when they are due. Writes nothing.
-    pub fn look_at_params(&mut self, now: Moment) {
+    pub fn read_params_if_due(&mut self, now: Moment) {
         if self.recorded.player.is_some() {
             return;
         }
@@ -375,7 +375,7 @@ impl App {
     }
 
     /// Reads the stored check-ups of the shown hand while the user views them.
-    pub fn look_at_checkups(&mut self) {
+    pub fn read_checkups(&mut self) {
         let State {
             hands, settings, ..
         } = &mut self.state;

@@ -52,7 +52,7 @@ pub(super) fn hide_shipped(state: &mut State, name: String, hide: bool) {
 /// Moves each hand that accepts poses to a pose.
 pub(super) fn recall(state: &mut State, id: PoseId, env: &Env) {
     let plan = state.poses.plan(EntryId::Pose(id));
-    for hand in state.hands.with_shown(takes_poses) {
+    for hand in state.hands.with_shown(accepts_poses) {
         let plan = plan.clone();
         if plan.is_some_and(|plan| hand.play(plan, PlayMode::Through, env, state.now)) {
             state.poses.recalled = Some(id);
@@ -79,13 +79,13 @@ pub(super) fn play(state: &mut State, play: Play, env: &Env) {
         .hands
         .with_shown(|hand| plays_along(hand, play, entry))
     {
-        match next_step(hand, play) {
-            PlayStep::Tell(command) => {
+        match request_of(hand, play) {
+            PlayRequest::Command(command) => {
                 if let Some(run) = hand.running.sequence() {
                     run.command(command);
                 }
             }
-            PlayStep::Start(entry, pace) => {
+            PlayRequest::Start(entry, pace) => {
                 if let Some(plan) = state.poses.plan(entry) {
                     hand.play(plan, pace, env, state.now);
                 }
@@ -102,31 +102,31 @@ pub(super) fn preset(hand: &mut Hand, preset: Preset) {
 }
 
 /// Result of a play action at one hand.
-enum PlayStep {
+enum PlayRequest {
     Start(EntryId, PlayMode),
-    Tell(PlayCommand),
+    Command(PlayCommand),
 }
 
-fn next_step(hand: &Hand, play: Play) -> PlayStep {
+fn request_of(hand: &Hand, play: Play) -> PlayRequest {
     match play {
-        Play::Start(entry) => PlayStep::Start(entry, PlayMode::Through),
+        Play::Start(entry) => PlayRequest::Start(entry, PlayMode::Through),
         Play::Step(id) => {
             let entry = EntryId::Sequence(id);
             let waits = |run: &SequenceRun| run.entry == entry && run.is_paused();
             if hand.running.sequence().is_some_and(waits) {
-                PlayStep::Tell(PlayCommand::Resume(PlayMode::OneStep))
+                PlayRequest::Command(PlayCommand::Resume(PlayMode::OneStep))
             } else {
-                PlayStep::Start(entry, PlayMode::OneStep)
+                PlayRequest::Start(entry, PlayMode::OneStep)
             }
         }
-        Play::Pause => PlayStep::Tell(PlayCommand::Pause),
-        Play::Resume => PlayStep::Tell(PlayCommand::Resume(PlayMode::Through)),
-        Play::End => PlayStep::Tell(PlayCommand::End),
+        Play::Pause => PlayRequest::Command(PlayCommand::Pause),
+        Play::Resume => PlayRequest::Command(PlayCommand::Resume(PlayMode::Through)),
+        Play::End => PlayRequest::Command(PlayCommand::End),
     }
 }
 
 /// True if a hand accepts a pose meant for all: it is armed, and the user at this window has control.
-pub(super) fn takes_poses(hand: &Hand) -> bool {
+pub(super) fn accepts_poses(hand: &Hand) -> bool {
     hand.own_epoch().is_some()
 }
 
@@ -134,7 +134,7 @@ pub(super) fn takes_poses(hand: &Hand) -> bool {
 /// no other entry is resumed with it.
 fn plays_along(hand: &Hand, play: Play, entry: Option<EntryId>) -> bool {
     match play {
-        Play::Start(_) | Play::Step(_) => takes_poses(hand),
+        Play::Start(_) | Play::Step(_) => accepts_poses(hand),
         Play::Resume => hand.running.sequence().map(|run| run.entry) == entry,
         Play::Pause | Play::End => true,
     }

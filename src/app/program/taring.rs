@@ -20,7 +20,7 @@ pub(super) fn tare(hand: &mut Hand, finger: Option<Finger>, ctx: &mut Ctx<'_>) {
 }
 
 /// Applies the stored taring to fresh readings. Refused if a fingertip is touched.
-pub(super) fn take_kept(hand: &mut Hand, ctx: &mut Ctx<'_>) {
+pub(super) fn restore(hand: &mut Hand, ctx: &mut Ctx<'_>) {
     let fresh = fresh_tips(hand, ctx.now);
     let readings = &mut hand.readings;
     let taken = readings.tare.apply_stored(fresh, &readings.sample, ctx.now);

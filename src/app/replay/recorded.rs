@@ -125,22 +125,22 @@ impl ReplayTarget<'_> {
     pub(crate) fn apply(&mut self, entry: &Entry) {
         let at = entry.at();
         match entry {
-            Entry::Heard(record) => self.hand.take(record, &mut self.notices.about(None), at),
+            Entry::Heard(record) => self.hand.apply(record, &mut self.notices.about(None), at),
             Entry::Wire(piece) => self.tap.record(piece.at, piece.kind, &piece.bytes),
             Entry::Link(report) => self.link(report),
             Entry::Event(event) => self.event(event),
         }
         if let Entry::Heard(record) = entry {
-            self.hand.controls.take_recorded(record);
+            self.hand.controls.apply_recorded(record);
         }
     }
 
     fn link(&mut self, report: &LinkReport) {
         if let Ok(status) = serde_json::from_str(&report.status) {
             self.hand
-                .take_status(status, &mut self.notices.about(None), report.at);
+                .apply_status(status, &mut self.notices.about(None), report.at);
             if let Some(mover) = &mut self.hand.recorded {
-                mover.take_status(&self.hand.connection.status);
+                mover.apply_status(&self.hand.connection.status);
             }
         }
         if let Ok(figures) = serde_json::from_str(&report.figures) {

@@ -556,7 +556,8 @@ fn a_touch_in_the_moment_of_a_fault_does_not_hang_the_exhibition() {
     for (second, epoch) in [(1, 1), (70, 2)] {
         let asked = order(free, second, None);
         assert!(matches!(asked, Some(Order::Arm(_))), "{asked:?}");
-        let plays = order((LinkState::Armed, Some(epoch)), second, None);
+        let armed = (LinkState::Armed, Some(epoch));
+        let plays = order(armed, second, None);
         assert!(matches!(plays, Some(Order::Set(_))), "{plays:?}");
         if epoch == 1 {
             assert_eq!(order(free, 5, None), None, "the piece ends with its arming");

@@ -161,7 +161,7 @@ impl DesktopProgram {
             Renderer::OpenGl | Renderer::Software => None,
         };
         for notice in start.loaded.notice.into_iter().chain(without) {
-            app.tell(notice, clock.now());
+            app.notify(notice, clock.now());
         }
         if !start.records {
             app.record_nothing();

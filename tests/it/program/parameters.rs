@@ -292,7 +292,7 @@ async fn after_a_factory_reset_no_row_is_shown_as_it_was() {
     assert_ne!(fresh(&bench, INDEX), Freshness::Live);
     for _ in 0..500 {
         bench.run(10).await;
-        bench.app.look_at_params(bench.clock.now());
+        bench.app.read_params_if_due(bench.clock.now());
     }
     assert_eq!(fresh(&bench, INDEX), Freshness::Live);
     let read = live(&bench, INDEX);
