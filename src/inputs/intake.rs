@@ -4,7 +4,7 @@ use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::follow::END_TIMEOUT;
 use crate::inputs::line::{LineField, LineRefusal, StreamLine, StreamLineFault};
-use crate::link::rate::EventRate;
+use crate::link::stats::EventRate;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;
 

@@ -4,7 +4,7 @@
 use crate::hand::{Angle, AngleReading, Group, HandSample, Moment, PerDof};
 use crate::inputs::follow::is_fresh;
 use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
-use crate::link::rate::EventRate;
+use crate::link::stats::EventRate;
 use crate::link::{Owner, Records};
 use crate::record::Record;
 use tokio::sync::{mpsc, watch};

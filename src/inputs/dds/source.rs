@@ -6,7 +6,7 @@ use crate::inputs::dds::ctrl::{self, CtrlFault, CtrlMessage};
 use crate::inputs::dds::motors;
 use crate::inputs::follow::{END_TIMEOUT, is_fresh};
 use crate::inputs::offer::{Offer, OfferOutlet};
-use crate::link::rate::EventRate;
+use crate::link::stats::EventRate;
 use crate::link::{ArmRequest, Clock, Owner, Wake};
 use crate::transport::dds::{DdsMessage, DdsNode, DdsWriterId};
 use std::collections::BTreeMap;

@@ -6,12 +6,14 @@ pub(crate) mod echo;
 pub(crate) mod error;
 pub(crate) mod filter;
 pub(crate) mod late_replies;
+pub(crate) mod latency;
 pub(crate) mod modbus;
 pub(crate) mod modbus_rtu;
 pub(crate) mod modbus_tcp;
 pub(crate) mod packing;
 pub(crate) mod rs485;
 pub(crate) mod rtu_line;
+pub(crate) mod slowness;
 
 pub(crate) use crate::link::bus::client::{Bus, ResultFrame};
 pub(crate) use crate::link::bus::error::{BusCounts, BusError, Bytes};

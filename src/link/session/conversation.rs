@@ -3,12 +3,13 @@
 
 use crate::hand::{HandSample, ModbusException, Moment, Refusal};
 use crate::link::bus::late_replies::{LateReplies, REPLY_LIMIT_MIN};
+use crate::link::bus::latency::Ticks;
+use crate::link::bus::slowness::Slowness;
 use crate::link::bus::{self, Bus, BusCounts, BusError};
 use crate::link::clock::SleepWatch;
 use crate::link::config::LinkConfig;
 use crate::link::guard::MotionGuard;
 use crate::link::image::RegisterImage;
-use crate::link::latency::Ticks;
 use crate::link::poll::cost::WireCost;
 use crate::link::poll::plan::PollPlan;
 use crate::link::request::RequestError;
@@ -20,7 +21,6 @@ use crate::link::session::hold::PendingStop;
 use crate::link::session::job::SessionJob;
 use crate::link::session::motion::Motion;
 use crate::link::session::rest::RestWatch;
-use crate::link::session::slowness::Slowness;
 use crate::link::session::stall::{STALL_MIN, StallMeter, watched};
 use crate::link::session::watch::feedback::FeedbackWatch;
 use crate::link::session::watch::heat::HeatWatch;

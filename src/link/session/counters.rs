@@ -2,7 +2,7 @@
 
 use crate::hand::{Finger, Group, Groups, HandSample, Moment};
 use crate::link::poll::meter::LineMeter;
-use crate::link::rate::EventRate;
+use crate::link::stats::EventRate;
 use crate::link::stats::{LineUse, LinkStats};
 use std::collections::VecDeque;
 use std::time::Duration;

@@ -14,6 +14,5 @@ pub(crate) mod requests;
 pub(crate) mod rest;
 pub(crate) mod serve;
 pub(crate) mod settings;
-mod slowness;
 pub(crate) mod stall;
 pub(crate) mod watch;

@@ -4,7 +4,7 @@ use arrayvec::ArrayVec;
 use std::time::Duration;
 
 /// Longest reply, in memory bytes, that an adapter holds back until its timer ticks; a fuller packet is forwarded at once.
-pub const BYTES_MAX: u16 = 48;
+const BYTES_MAX: u16 = 48;
 /// Round trips that a verdict needs, and considers.
 const TRIPS: usize = 16;
 /// Default tick of adapters.
