@@ -1,11 +1,12 @@
 //! Writes a persistent value when it changed, at most once a second and one write at a time.
 
 use crate::store::file::replace_keeping_last;
-use crate::store::job::{BackgroundJob, on_thread};
+use crate::store::job::on_thread;
+use futures::FutureExt as _;
 use std::io;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::Duration;
+use tokio::task::JoinHandle;
 
 /// Minimum interval of writes: typing a name or dragging a window changes settings many times a second.
 const SAVE_EVERY: Duration = Duration::from_secs(1);
@@ -21,7 +22,7 @@ pub struct Saver<K> {
     text: fn(&K) -> io::Result<String>,
     kept: K,
     begun: Option<Duration>,
-    under_way: Option<BackgroundJob<Result<(), NotSaved>>>,
+    under_way: Option<JoinHandle<Result<(), NotSaved>>>,
 }
 
 impl<K: Clone + PartialEq + Send + 'static> Saver<K> {
@@ -77,13 +78,19 @@ impl<K: Clone + PartialEq + Send + 'static> Saver<K> {
         let place = path.clone();
         let write = on_thread(move || replace_keeping_last(&place, &text(&kept)?));
         let write = async move { write.await.map_err(|error| (path, error)) };
-        let nobody: Arc<dyn Fn() + Send + Sync> = Arc::new(|| ());
-        self.under_way = Some(BackgroundJob::start(&self.runtime, &nobody, write));
+        self.under_way = Some(self.runtime.spawn(write));
         self.begun = Some(now);
     }
 
     fn ended(&mut self) -> Result<(), NotSaved> {
-        BackgroundJob::take_from(&mut self.under_way).unwrap_or(Ok(()))
+        let ended = self
+            .under_way
+            .as_mut()
+            .and_then(|write| write.now_or_never());
+        let Some(ended) = ended else { return Ok(()) };
+        self.under_way = None;
+        // A write that panicked or was cancelled has no error of its own.
+        ended.unwrap_or(Ok(()))
     }
 }
 

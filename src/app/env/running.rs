@@ -2,9 +2,8 @@
 
 use crate::app::env::{Env, LostSteps};
 use crate::hand::Moment;
-use crate::store::BackgroundJob;
-use tokio::sync::broadcast;
 use tokio::sync::broadcast::error::TryRecvError;
+use tokio::sync::{broadcast, oneshot};
 use tokio_util::task::AbortOnDrop;
 
 /// Capacity of the step queue: five seconds of a following hand. A window that does not read for longer gets the newest steps.
@@ -15,7 +14,7 @@ const STEPS_MAX: usize = 1024;
 pub(crate) struct Running<S, E> {
     steps: broadcast::Receiver<(Moment, S)>,
     lost: LostSteps,
-    end: Option<BackgroundJob<E>>,
+    end: oneshot::Receiver<E>,
     _task: AbortOnDrop,
 }
 
@@ -47,19 +46,26 @@ impl<S: Clone + Send + 'static, E: Send + 'static> Running<S, E> {
         });
         let task = env.runtime.spawn(work);
         let abort = AbortOnDrop::new(task.abort_handle());
-        let end =
-            BackgroundJob::start_fallible(&env.runtime, &env.wake, async move { task.await.ok() });
+        let (ended, end) = oneshot::channel();
+        let wake = env.wake;
+        env.runtime.spawn(async move {
+            if let Ok(result) = task.await {
+                // A dropped receiver means that the window no longer needs the result.
+                let _sent = ended.send(result);
+            }
+            wake();
+        });
         Self {
             steps,
-            lost: env.lost_steps.clone(),
-            end: Some(end),
+            lost: env.lost_steps,
+            end,
             _task: abort,
         }
     }
 
     /// Returns the steps since the last call, and the result once the task has ended. All steps come before the result.
     pub(crate) fn news(&mut self) -> (Vec<(Moment, S)>, Option<E>) {
-        let end = BackgroundJob::take_from(&mut self.end);
+        let end = self.end.try_recv().ok();
         (waiting(&mut self.steps, &self.lost), end)
     }
 }

@@ -8,15 +8,15 @@ use crate::link::{
     PollRates, Records, RequestError, Traffic,
 };
 use crate::record::{Disarmed, Hold, LinkState, Record, Rest};
-use crate::store::BackgroundJob;
 use crate::transport::Endpoint;
 use std::sync::Arc;
 use std::time::Duration;
+use tokio::sync::mpsc;
 
 /// Maximum number of records per frame: a tenth of a second of the fastest link, far more than a frame brings. The rest waits for the
 /// next frame, so that a delayed window catches up smoothly.
 const RECORDS_PER_FRAME: usize = 256;
-/// Maximum number of pending requests; the link itself allows fewer.
+/// Maximum number of ended requests that wait for the next frame; the link itself allows fewer.
 const REQUESTS_MAX: usize = 32;
 
 /// The user is notified of an armed hand that has received no command for this long.
@@ -34,7 +34,7 @@ pub struct Connection {
     /// Wire traffic, as far as it was read.
     pub traffic: Traffic,
     pub(crate) open: Option<OpenLink>,
-    requests: Vec<Pending>,
+    requests: EndedRequests,
     /// No arming from before this moment counts, regardless of the link's status.
     disarmed_at: Option<Moment>,
     /// A command was sent that may move the hand.
@@ -221,29 +221,23 @@ impl Connection {
         let open = open.ok_or(RequestError::NotConnected)?;
         let (link, lease) = (open.link.clone(), open.lease);
         let lease: Option<Lease> = lease.filter(|_| command.is_motion());
-        let write = async move {
-            match lease {
+        let (ended, wake) = (self.requests.sender.clone(), Arc::clone(&env.wake));
+        env.runtime.spawn(async move {
+            let end = match lease {
                 Some(lease) => link.write_as(lease, command).await,
                 None => link.write(command).await,
-            }
-        };
-        let end = Some(BackgroundJob::start(&env.runtime, &env.wake, write));
-        if self.requests.len() >= REQUESTS_MAX {
-            self.requests.remove(0);
-        }
-        self.requests.push(Pending { what, end });
+            };
+            // A dropped receiver means that the connection was replaced.
+            let _sent = ended.send((what, end)).await;
+            wake();
+        });
         Ok(())
     }
 
     /// Requests that ended since the last call, with their results.
-    pub(crate) fn ended_requests(&mut self) -> Vec<(RequestKind, Result<(), RequestError>)> {
-        let mut ended = Vec::new();
-        self.requests.retain_mut(|asked| {
-            let end = BackgroundJob::take_from(&mut asked.end);
-            ended.extend(end.map(|end| (asked.what, end)));
-            asked.end.is_some()
-        });
-        ended
+    pub(crate) fn ended_requests(&mut self) -> Vec<EndedRequest> {
+        let ended = &mut self.requests.receiver;
+        std::iter::from_fn(|| ended.try_recv().ok()).collect()
     }
 
     /// Records since the last call, and the link's current status; `None` without a link.
@@ -320,9 +314,19 @@ pub(crate) struct Leaving {
     pub(crate) told: Moment,
 }
 
-/// A pending request.
+/// A request that has ended, with its result.
+pub(crate) type EndedRequest = (RequestKind, Result<(), RequestError>);
+
+/// Results of this connection's requests, in order of arrival.
 #[derive(Debug)]
-pub(crate) struct Pending {
-    pub(crate) what: RequestKind,
-    pub(crate) end: Option<BackgroundJob<Result<(), RequestError>>>,
+struct EndedRequests {
+    sender: mpsc::Sender<EndedRequest>,
+    receiver: mpsc::Receiver<EndedRequest>,
+}
+
+impl Default for EndedRequests {
+    fn default() -> Self {
+        let (sender, receiver) = mpsc::channel(REQUESTS_MAX);
+        Self { sender, receiver }
+    }
 }
