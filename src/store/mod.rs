@@ -14,6 +14,6 @@ pub use crate::store::file::{
     replace_keeping_last, set_aside, write_new, write_private,
 };
 pub use crate::store::file_error::{FileCause, FileError, ValueKind};
-pub use crate::store::job::{BackgroundJob, on_thread};
+pub use crate::store::job::{Background, JobKind, Jobs, on_thread};
 pub use crate::store::saver::Saver;
 pub use crate::store::toml_file::FileText;

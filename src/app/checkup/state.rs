@@ -7,14 +7,11 @@ use crate::checkup::run::CheckupView;
 use crate::hand::{ArmEpoch, Moment};
 use crate::motion::checkup::ConcludedCheckup;
 use crate::record::Abort;
-use crate::store::BackgroundJob;
+use crate::store::{JobKind, Jobs};
 use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
 use tokio::sync::oneshot;
-
-/// Result of reading the last stored check-up and the folder of its report; `None` if there is none.
-pub(crate) type LastCheckupResult = io::Result<Option<(CheckupReport, Option<PathBuf>)>>;
 
 #[derive(Debug, Default)]
 pub struct HandCheckup {
@@ -22,9 +19,18 @@ pub struct HandCheckup {
     pub last: Option<ShownCheckup>,
     /// Reason why the stored check-ups cannot be read.
     pub unread: Option<String>,
-    pub(crate) reading: Option<BackgroundJob<LastCheckupResult>>,
+    pub(crate) jobs: Jobs<ReadLastCheckup>,
     /// True once stored check-ups have been requested.
     pub(crate) is_read: bool,
+}
+
+/// Background job of check-ups: reading the last stored one.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct ReadLastCheckup;
+
+impl JobKind for ReadLastCheckup {
+    type State = HandCheckup;
+    type Ctx<'a> = ();
 }
 
 /// A finished check-up.
@@ -72,7 +78,7 @@ impl CheckupRun {
 impl HandCheckup {
     /// True while the stored check-ups are being read.
     pub const fn is_reading(&self) -> bool {
-        self.reading.is_some()
+        !self.jobs.is_empty()
     }
 }
 

@@ -1,6 +1,6 @@
 //! The check-up that runs on the hand, and reading stored ones.
 
-use crate::app::checkup::state::{CheckupRun, HandCheckup, ShownCheckup};
+use crate::app::checkup::state::{CheckupRun, HandCheckup, ReadLastCheckup, ShownCheckup};
 use crate::app::ctx::Ctx;
 use crate::app::env::running::Running;
 use crate::app::env::{Env, day_folder};
@@ -14,7 +14,7 @@ use crate::hand::Setpoints;
 use crate::motion::checkup::{CheckupFiles, ConcludedCheckup, EndedCheckup};
 use crate::motion::drive::{Armed, drive};
 use crate::store::calendar::{day, since_1970, stamp};
-use crate::store::{BackgroundJob, create_folder, on_thread};
+use crate::store::{create_folder, on_thread};
 use crate::transport::Endpoint;
 use std::io;
 use std::path::PathBuf;
@@ -148,16 +148,22 @@ impl HandCheckup {
             return;
         }
         let read = async move { on_thread(move || Ok(files.last())).await.flatten() };
-        self.reading = Some(BackgroundJob::start(&env.runtime, &env.wake, read));
+        self.jobs.start(
+            ReadLastCheckup,
+            env.background(),
+            read,
+            |checkup, (), read| match read {
+                Ok(kept) if checkup.last.is_none() => checkup.last = kept.map(ShownCheckup::of),
+                Ok(_) => {}
+                Err(error) => checkup.unread = Some(error.to_string()),
+            },
+        );
     }
 
     /// Applies the result of the read.
     pub(crate) fn tick(&mut self) {
-        match BackgroundJob::take_from(&mut self.reading) {
-            None => {}
-            Some(Ok(kept)) if self.last.is_none() => self.last = kept.map(ShownCheckup::of),
-            Some(Ok(_)) => {}
-            Some(Err(error)) => self.unread = Some(error.to_string()),
+        while let Some(effect) = self.jobs.next_ended() {
+            effect(self, &mut ());
         }
     }
 }

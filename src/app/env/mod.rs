@@ -5,6 +5,7 @@ pub(crate) mod running;
 
 use crate::inputs::pad::device::OpenPads;
 use crate::link::{Clock, Wake};
+use crate::store::Background;
 use crate::transport::Dial;
 use futures::future::BoxFuture;
 use std::io;
@@ -34,6 +35,16 @@ pub struct Env {
     pub documents: Option<PathBuf>,
     /// Number of task steps that the window missed.
     pub lost_steps: LostSteps,
+}
+
+impl Env {
+    /// Runtime and wake of background jobs.
+    pub(crate) const fn background(&self) -> Background<'_> {
+        Background {
+            runtime: &self.runtime,
+            wake: &self.wake,
+        }
+    }
 }
 
 /// Number of task steps that the window did not read in time. Clones share the count.

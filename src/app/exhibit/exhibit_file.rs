@@ -7,7 +7,7 @@ use crate::app::files::pose_file;
 use crate::app::notices::NoticeKind;
 use crate::exhibit::file::{self, ExhibitFile, NamedFile};
 use crate::poses::library::PoseLibrary;
-use crate::store::{BackgroundJob, FileCause, FileError, toml_file};
+use crate::store::{FileCause, FileError, toml_file};
 use std::fs::File;
 use std::io::{Cursor, ErrorKind, Read as _};
 use std::path::Path;
@@ -31,7 +31,9 @@ pub fn built_in() -> Option<Exhibition> {
 }
 
 /// Asks for an exhibition file and reads it.
-pub(crate) fn open(env: &Env) -> BackgroundJob<Result<Exhibition, NoticeKind>> {
+pub(crate) fn open(
+    env: &Env,
+) -> impl Future<Output = Result<Exhibition, NoticeKind>> + Send + use<> {
     open::open(None, FILE_NAME, env, read)
 }
 

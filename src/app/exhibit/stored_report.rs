@@ -10,7 +10,7 @@ use crate::exhibit::stage::ExhibitEvent;
 use crate::hand::Moment;
 use crate::store::calendar;
 use crate::store::saver::NotSaved;
-use crate::store::{BackgroundJob, FileError, on_thread, read_text, replace};
+use crate::store::{Background, FileError, JobKind, Jobs, on_thread, read_text, replace};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -33,13 +33,24 @@ pub struct StoredReport {
     runtime: Handle,
     /// Contents of the file, including a write in progress.
     written: DayReport,
-    reading: Option<BackgroundJob<ReadReport>>,
-    writing: Option<BackgroundJob<Result<(), NotSaved>>>,
+    jobs: Jobs<ReportJob>,
     begun: Option<Moment>,
     /// True once the file of the day was read, was missing, or was set aside. Until then it must not be overwritten.
     may_write: bool,
     unreadable: Option<NoticeKind>,
     not_saved: Option<NoticeKind>,
+}
+
+/// Background jobs of the report.
+#[derive(Debug, PartialEq, Eq)]
+enum ReportJob {
+    Read,
+    Write,
+}
+
+impl JobKind for ReportJob {
+    type State = StoredReport;
+    type Ctx<'a> = ();
 }
 
 impl StoredReport {
@@ -50,8 +61,7 @@ impl StoredReport {
             documents,
             runtime,
             written: DayReport::default(),
-            reading: None,
-            writing: None,
+            jobs: Jobs::default(),
             begun: None,
             may_write: false,
             unreadable: None,
@@ -106,7 +116,7 @@ impl StoredReport {
 
     /// True while a read or write is in progress.
     pub(crate) const fn is_busy(&self) -> bool {
-        self.reading.is_some() || self.writing.is_some()
+        !self.jobs.is_empty()
     }
 
     fn see(&mut self, hand: &Hand, since_1970: Duration, now: Moment) {
@@ -126,12 +136,16 @@ impl StoredReport {
         self.may_write = false;
         if let Some(path) = self.path() {
             let read = on_thread(move || Ok(load(&path, &day)));
-            let read = async move { read.await.ok() };
-            self.reading = Some(BackgroundJob::start_fallible(
-                &self.runtime,
-                &no_wake(),
-                read,
-            ));
+            let background = Background {
+                runtime: &self.runtime,
+                wake: &no_wake(),
+            };
+            self.jobs
+                .start(ReportJob::Read, background, read, |report, (), read| {
+                    if let Ok(read) = read {
+                        report.apply_read(read);
+                    }
+                });
         }
     }
 
@@ -148,31 +162,45 @@ impl StoredReport {
         if let Some(path) = self.path().filter(|_| self.may_write) {
             let report = self.written.clone();
             let write = on_thread(move || Ok(save(&path, &report)));
-            let write = async move { write.await.ok() };
-            self.writing = Some(BackgroundJob::start_fallible(
-                &self.runtime,
-                &no_wake(),
+            let background = Background {
+                runtime: &self.runtime,
+                wake: &no_wake(),
+            };
+            self.jobs.start(
+                ReportJob::Write,
+                background,
                 write,
-            ));
+                |report, (), written| {
+                    if let Ok(written) = written {
+                        report.apply_written(written);
+                    }
+                },
+            );
         }
     }
 
     fn apply_ended(&mut self) {
-        if let Some((earlier, notice)) = BackgroundJob::take_from(&mut self.reading) {
-            let is_aside = |notice: &NoticeKind| matches!(notice, NoticeKind::FileIgnored { kept_as, .. } if kept_as.is_some());
-            self.may_write = notice.as_ref().is_none_or(is_aside);
-            self.unreadable = notice.or(self.unreadable.take());
-            if let Some(earlier) = earlier {
-                self.today.add(&earlier);
-                self.written = earlier;
-            }
+        while let Some(effect) = self.jobs.next_ended() {
+            effect(self, &mut ());
         }
-        match BackgroundJob::take_from(&mut self.writing) {
-            None => {}
-            Some(Err((path, error))) => {
+    }
+
+    fn apply_read(&mut self, (earlier, notice): ReadReport) {
+        let is_aside = |notice: &NoticeKind| matches!(notice, NoticeKind::FileIgnored { kept_as, .. } if kept_as.is_some());
+        self.may_write = notice.as_ref().is_none_or(is_aside);
+        self.unreadable = notice.or(self.unreadable.take());
+        if let Some(earlier) = earlier {
+            self.today.add(&earlier);
+            self.written = earlier;
+        }
+    }
+
+    fn apply_written(&mut self, written: Result<(), NotSaved>) {
+        match written {
+            Err((path, error)) => {
                 self.not_saved = Some(NoticeKind::not_saved(path, &error));
             }
-            Some(Ok(())) => {
+            Ok(()) => {
                 // A successful write clears the failure of the same day.
                 let day = self.path();
                 self.not_saved.take_if(|notice| match notice {

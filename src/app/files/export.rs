@@ -14,7 +14,7 @@ use crate::params;
 use crate::params::file::ParamsFile;
 use crate::poses::library::PoseLibrary;
 use crate::store::calendar;
-use crate::store::{BackgroundJob, on_thread, write_private};
+use crate::store::{on_thread, write_private};
 use crate::trials::overshoot_file;
 use std::io;
 use std::sync::Arc;
@@ -104,7 +104,7 @@ fn frame_lines(form: TrafficForm, frames: &[Arc<Frame>]) -> String {
 
 /// Saves under an unused name in the day's folder in the user's documents; without a documents folder, asks for a path.
 /// Yields the notice for the user.
-pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
+pub(crate) fn save(content: Export, env: &Env) -> impl Future<Output = NoticeKind> + Send + use<> {
     let chosen = match &env.documents {
         Some(documents) => {
             let folder = day_folder::of_day(documents, &calendar::day(calendar::since_1970()));
@@ -113,7 +113,7 @@ pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
         }
         None => env.files.choose(content.file_name()),
     };
-    BackgroundJob::start(&env.runtime, &env.wake, async move {
+    async move {
         let Some(path) = chosen.await else {
             return NoticeKind::NoFileChosen;
         };
@@ -126,7 +126,7 @@ pub(crate) fn save(content: Export, env: &Env) -> BackgroundJob<NoticeKind> {
             Ok(entries) => NoticeKind::Saved { path, entries },
             Err(error) => NoticeKind::not_saved(path, &error),
         }
-    })
+    }
 }
 
 /// Reads traffic for as long as one frame of the window permits; the rest waits for the next frame.

@@ -5,10 +5,10 @@ use crate::app::ctx::Ctx;
 use crate::app::notices::NoticeKind;
 use crate::checkup::free_file;
 use crate::hand::grip::{FreeForce, GripEstimator};
-use crate::store::{BackgroundJob, on_thread};
+use crate::store::{JobKind, Jobs, on_thread};
 use crate::transport::Endpoint;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Free forces of one hand.
 #[derive(Debug, Default)]
@@ -18,7 +18,22 @@ pub(crate) struct HandFreeForce {
     known: Option<FreeForce>,
     /// Value of `learned` of the estimator at the last store.
     kept: u64,
-    under_way: Option<BackgroundJob<io::Result<FreeForce>>>,
+    jobs: Jobs<FreeForceJob>,
+}
+
+/// Reading or keeping the file; one of both at a time.
+#[derive(Debug, PartialEq, Eq)]
+struct FreeForceJob;
+
+/// What is changed besides when the file was read or kept.
+struct FreeForceCtx<'a> {
+    grip: &'a mut GripEstimator,
+    notices: Vec<NoticeKind>,
+}
+
+impl JobKind for FreeForceJob {
+    type State = HandFreeForce;
+    type Ctx<'a> = FreeForceCtx<'a>;
 }
 
 impl HandFreeForce {
@@ -40,24 +55,20 @@ impl HandFreeForce {
                 ..Self::default()
             };
             match self.file(ctx) {
-                Some(file) => self.start(ctx, move || free_file::read(&file)),
+                Some(file) => self.start(ctx, file, free_file::read),
                 None => self.known = Some(FreeForce::default()),
             }
         }
-        match BackgroundJob::take_from(&mut self.under_way) {
-            None => {}
-            Some(Ok(known)) => {
-                self.kept = grip.learned();
-                self.known = Some(known);
-                grip.set_free_force(known);
-            }
-            Some(Err(error)) => {
-                self.known.get_or_insert_default();
-                let file = self.file(ctx).unwrap_or_default();
-                ctx.notify(NoticeKind::not_saved(file, &error));
-            }
+        let mut changes = FreeForceCtx {
+            grip: &mut *grip,
+            notices: Vec::new(),
+        };
+        while let Some(effect) = self.jobs.next_ended() {
+            effect(self, &mut changes);
         }
-        let Some(known) = self.known.filter(|_| self.under_way.is_none()) else {
+        let notices = changes.notices.into_iter();
+        notices.for_each(|notice| ctx.notify(notice));
+        let Some(known) = self.known.filter(|_| self.jobs.is_empty()) else {
             return;
         };
         if grip.learned() == 0 && *grip.free_force() != known {
@@ -68,8 +79,8 @@ impl HandFreeForce {
             let learnt = *grip.free_force();
             (self.known, self.kept) = (Some(learnt), grip.learned());
             if let Some(file) = self.file(ctx) {
-                self.start(ctx, move || {
-                    free_file::keep(&file, &learnt).map(|()| learnt)
+                self.start(ctx, file, move |file| {
+                    free_file::keep(file, &learnt).map(|()| learnt)
                 });
             }
         }
@@ -78,10 +89,27 @@ impl HandFreeForce {
     fn start(
         &mut self,
         ctx: &Ctx<'_>,
-        work: impl FnOnce() -> io::Result<FreeForce> + Send + 'static,
+        file: PathBuf,
+        work: impl FnOnce(&Path) -> io::Result<FreeForce> + Send + 'static,
     ) {
-        let work = on_thread(work);
-        self.under_way = Some(BackgroundJob::start(&ctx.env.runtime, &ctx.env.wake, work));
+        let place = file.clone();
+        let work = on_thread(move || work(&place));
+        self.jobs.start(
+            FreeForceJob,
+            ctx.env.background(),
+            work,
+            move |own, changes, known| match known {
+                Ok(known) => {
+                    own.kept = changes.grip.learned();
+                    own.known = Some(known);
+                    changes.grip.set_free_force(known);
+                }
+                Err(error) => {
+                    own.known.get_or_insert_default();
+                    changes.notices.push(NoticeKind::not_saved(file, &error));
+                }
+            },
+        );
     }
 
     fn file(&self, ctx: &Ctx<'_>) -> Option<PathBuf> {

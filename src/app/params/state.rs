@@ -1,5 +1,6 @@
 //! Known state of a hand's persistent parameters: read, staged, saved, and the outcomes of the last writes. Sends nothing.
 
+use crate::app::ctx::Ctx;
 use crate::app::env::running::Running;
 use crate::app::notices::NoticeKind;
 use crate::app::readings::Freshness;
@@ -13,7 +14,7 @@ use crate::params::file::ParamsFile;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{ParamDifference, Params};
 use crate::record::{LinkState, Rest, Saved};
-use crate::store::{BackgroundJob, FileError};
+use crate::store::{FileError, JobKind, Jobs};
 use crate::system::SystemError;
 use crate::tasks::apply::Applied;
 use crate::tasks::read::ReadRows;
@@ -123,12 +124,23 @@ pub struct ParamsState {
     pub(crate) save_next: Option<Vec<Danger>>,
     /// Running task.
     pub(crate) task: Option<Running<ParamStep, ParamsEnd>>,
-    /// Listing of the files in progress.
-    pub(crate) listing: Option<BackgroundJob<FilesRead>>,
     /// Hand whose files were listed last.
     pub(crate) listed: Option<Endpoint>,
-    /// File to compare that is being chosen and read.
-    pub(crate) opening: Option<BackgroundJob<Result<(PathBuf, ParamsFile), NoticeKind>>>,
+    pub(crate) jobs: Jobs<ParamsJob>,
+}
+
+/// Background jobs of a hand's parameters.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum ParamsJob {
+    /// List the files of the hand.
+    List,
+    /// Choose and read a file to compare.
+    Open,
+}
+
+impl JobKind for ParamsJob {
+    type State = ParamsState;
+    type Ctx<'a> = Ctx<'a>;
 }
 
 impl ParamsState {

@@ -7,8 +7,8 @@ use crate::app::env::running::{Running, Steps};
 use crate::app::files::open::open;
 use crate::app::hand::Connection;
 use crate::app::params::state::{
-    Doing, FileComparison, FilesRead, ParamAction, ParamsEnd, ParamsState, SaveEnd, WriteQuestion,
-    WriteRequest,
+    Doing, FileComparison, FilesRead, ParamAction, ParamsEnd, ParamsJob, ParamsState, SaveEnd,
+    WriteQuestion, WriteRequest,
 };
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Dof, HandSample, Moment};
@@ -19,7 +19,7 @@ use crate::params::danger::Danger;
 use crate::params::file::{self, ParamsFile};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
-use crate::store::{BackgroundJob, on_thread};
+use crate::store::on_thread;
 use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
 use crate::tasks::read::{ReadRows, rows};
 use crate::tasks::save::{Save, SaveReport, save};
@@ -202,11 +202,24 @@ impl ParamsState {
     }
 
     fn open_file(&mut self, typed: Option<PathBuf>, env: &Env) {
-        if self.opening.is_none() {
-            self.file_refused = None;
-            let read = |path: &Path| Ok((path.to_owned(), file::load(path)?));
-            self.opening = Some(open(typed, file::FILE_NAME, env, read));
+        if self.jobs.is_running(&ParamsJob::Open) {
+            return;
         }
+        self.file_refused = None;
+        let read = |path: &Path| Ok((path.to_owned(), file::load(path)?));
+        let opened = open(typed, file::FILE_NAME, env, read);
+        self.jobs.start(
+            ParamsJob::Open,
+            env.background(),
+            opened,
+            |params, ctx, opened| match opened {
+                Ok((path, file)) => params.show_file(&path, file),
+                Err(refused) => {
+                    params.file_refused = Some(refused.clone());
+                    ctx.notify(refused);
+                }
+            },
+        );
     }
 
     /// Applies results of tasks and file reads, and lists the files of the current hand.
@@ -224,16 +237,8 @@ impl ParamsState {
                 self.save = Some((SaveEnd::NotApplied, now));
             }
         }
-        if let Some(read) = BackgroundJob::take_from(&mut self.listing) {
-            self.show_files(read);
-        }
-        match BackgroundJob::take_from(&mut self.opening) {
-            None => {}
-            Some(Ok((path, file))) => self.show_file(&path, file),
-            Some(Err(refused)) => {
-                self.file_refused = Some(refused.clone());
-                ctx.notify(refused);
-            }
+        while let Some(effect) = self.jobs.next_ended() {
+            effect(self, ctx);
         }
         self.list_files(connection.endpoint.as_ref(), ctx.env);
     }
@@ -246,7 +251,7 @@ impl ParamsState {
         let Some(folder) = env.settings_path.as_deref().map(folder_beside) else {
             return;
         };
-        if self.files.is_some() || self.listing.is_some() {
+        if self.files.is_some() || self.jobs.is_running(&ParamsJob::List) {
             return;
         }
         let files = Backups::new(&folder, hand);
@@ -260,8 +265,16 @@ impl ParamsState {
             }
             Ok(FilesRead::of(files))
         });
-        let list = async move { list.await.ok() };
-        self.listing = Some(BackgroundJob::start_fallible(&env.runtime, &env.wake, list));
+        self.jobs.start(
+            ParamsJob::List,
+            env.background(),
+            list,
+            |params, _, read| {
+                if let Ok(read) = read {
+                    params.show_files(read);
+                }
+            },
+        );
     }
 }
 

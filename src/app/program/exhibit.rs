@@ -10,14 +10,23 @@ use crate::app::notices::NoticeKind;
 use crate::app::program::hands;
 use crate::app::state::State;
 use crate::hand::Moment;
-use crate::store::BackgroundJob;
+use crate::store::{JobKind, Jobs};
 
 /// Background work of exhibitions.
 #[derive(Debug, Default)]
 pub(crate) struct ExhibitWork {
-    opening: Option<BackgroundJob<Result<Exhibition, NoticeKind>>>,
+    jobs: Jobs<OpenExhibition>,
     /// Report of an exhibition that has ended; it is being written.
     left: Option<StoredReport>,
+}
+
+/// Background job around exhibitions: choosing and reading an exhibition file.
+#[derive(Debug, PartialEq, Eq)]
+struct OpenExhibition;
+
+impl JobKind for OpenExhibition {
+    type State = ExhibitWork;
+    type Ctx<'a> = State;
 }
 
 impl ExhibitWork {
@@ -25,7 +34,7 @@ impl ExhibitWork {
     pub(crate) fn enter(&mut self, start: Exhibition, state: &mut State, env: &Env, now: Moment) {
         self.leave(state, env, now);
         // A file that is still being opened would replace this exhibition with its PIN.
-        self.opening = None;
+        self.jobs.cancel(&OpenExhibition);
         state.now = now;
         let is_open = |hand: &&Hand| hand.connection.open.is_some();
         if state.hands.iter().filter(is_open).count() > 1 {
@@ -60,9 +69,7 @@ impl ExhibitWork {
                         self.enter(start, state, env, now);
                     }
                 }
-                ExhibitAction::EnterFile => {
-                    self.opening.get_or_insert_with(|| exhibit_file::open(env));
-                }
+                ExhibitAction::EnterFile => self.enter_file(env),
                 // These belong to a running exhibition.
                 ExhibitAction::Wish(_)
                 | ExhibitAction::AskPin
@@ -80,6 +87,23 @@ impl ExhibitWork {
         leaves && ends_program
     }
 
+    /// Asks for an exhibition file, and shows its exhibition.
+    fn enter_file(&mut self, env: &Env) {
+        if self.jobs.is_running(&OpenExhibition) {
+            return;
+        }
+        let to_enter = env.clone();
+        self.jobs.start(
+            OpenExhibition,
+            env.background(),
+            exhibit_file::open(env),
+            move |work, state, opened| match opened {
+                Ok(start) => work.enter(start, state, &to_enter, state.now),
+                Err(refused) => state.notices.push(state.now, refused),
+            },
+        );
+    }
+
     fn leave(&mut self, state: &mut State, env: &Env, now: Moment) {
         let Some(exhibit) = state.exhibit.take() else {
             return;
@@ -91,11 +115,9 @@ impl ExhibitWork {
     }
 
     /// Advances the exhibition, its file and its report.
-    pub(crate) fn tick(&mut self, state: &mut State, env: &Env, now: Moment) {
-        match BackgroundJob::take_from(&mut self.opening) {
-            None => {}
-            Some(Ok(start)) => self.enter(start, state, env, now),
-            Some(Err(refused)) => state.notices.push(now, refused),
+    pub(crate) fn tick(&mut self, state: &mut State, now: Moment) {
+        while let Some(effect) = self.jobs.next_ended() {
+            effect(self, state);
         }
         if let Some(exhibit) = &mut state.exhibit
             && exhibit.tick(state.hands.shown_mut(), now)

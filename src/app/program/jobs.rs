@@ -13,64 +13,61 @@ use crate::app::state::State;
 use crate::app::trials::TrialAction;
 use crate::app::trials::files::{self, FilesEnd};
 use crate::params::file::ParamsFile;
-use crate::poses::library::PoseLibrary;
 use crate::store::calendar::{since_1970, stamp};
-use crate::store::{BackgroundJob, on_thread};
-use crate::transport::{PortFound, ports};
+use crate::store::{JobKind, Jobs, on_thread};
+use crate::transport::ports;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Jobs under way, one of a kind at a time.
-#[derive(Default)]
-pub(super) struct Jobs {
-    finding_ports: Option<BackgroundJob<Vec<PortFound>>>,
-    exporting: Option<BackgroundJob<NoticeKind>>,
-    importing: Option<BackgroundJob<Result<PoseLibrary, NoticeKind>>>,
-    /// Sessions of trials that the user opens or saves.
-    sessions: Option<BackgroundJob<FilesEnd>>,
-    /// A session of trials that is saved automatically.
-    keeping: Option<BackgroundJob<FilesEnd>>,
+/// Background jobs of the program, one of a kind at a time.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum ProgramJob {
+    FindPorts,
+    Export,
+    ImportPoses,
+    /// Open or save a session of trials for the user.
+    Session,
+    /// Write a session of trials that the user did not ask to save.
+    KeepSession,
 }
 
-impl Jobs {
-    /// Applies the results of finished jobs; returns notices for the user.
+impl JobKind for ProgramJob {
+    type State = State;
+    /// Notices for the user.
+    type Ctx<'a> = Vec<NoticeKind>;
+}
+
+/// Running jobs of the program.
+#[derive(Default)]
+pub(super) struct ProgramJobs(Jobs<ProgramJob>);
+
+impl ProgramJobs {
+    /// Takes in what is done; what the user should know of it.
     pub(super) fn tick(&mut self, state: &mut State, env: &Env) -> Vec<NoticeKind> {
-        if let Some(found) = BackgroundJob::take_from(&mut self.finding_ports) {
-            state.ports = found;
+        let mut told = Vec::new();
+        while let Some(effect) = self.0.next_ended() {
+            effect(state, &mut told);
         }
-        let mut told = Vec::from_iter(BackgroundJob::take_from(&mut self.exporting));
-        let trials = &mut state.trials;
-        let asked = BackgroundJob::take_from(&mut self.sessions);
-        if let Some(end) = &asked {
-            trials.asks_path = std::mem::take(&mut trials.is_opening) && end.is_err();
-        }
-        let kept = BackgroundJob::take_from(&mut self.keeping);
-        told.extend(asked.into_iter().chain(kept).map(|end| trials.apply(end)));
-        while self.keeping.is_none()
-            && let Some(id) = trials.to_keep.pop_front()
+        while !self.keeps()
+            && let Some(id) = state.trials.to_keep.pop_front()
         {
-            let session = trials.session(id);
-            self.keeping = session.and_then(|session| files::keep(session, env));
-        }
-        match BackgroundJob::take_from(&mut self.importing) {
-            None => {}
-            // All of it is added, or nothing.
-            Some(Ok(library)) => {
-                let (poses, sequences) = (library.poses.len(), library.sequences.len());
-                state.poses.import(library);
-                told.push(NoticeKind::PosesImported { poses, sequences });
-            }
-            Some(Err(refused)) => {
-                state.poses.refused = Some(refused.clone());
-                told.push(refused);
-            }
+            let session = state.trials.session(id);
+            let Some(keep) = session.and_then(|session| files::keep(session, env)) else {
+                continue;
+            };
+            self.0.start(
+                ProgramJob::KeepSession,
+                env.background(),
+                keep,
+                |state, told, end| told.push(state.trials.apply(end)),
+            );
         }
         told
     }
 
     /// True while a session of trials is being saved automatically.
-    pub(super) const fn keeps(&self) -> bool {
-        self.keeping.is_some()
+    pub(super) fn keeps(&self) -> bool {
+        self.0.is_running(&ProgramJob::KeepSession)
     }
 
     /// Carries out an action on parameters: those on files here, all others on the hand.
@@ -123,15 +120,31 @@ impl Jobs {
                     });
                 }
             }
-            TrialAction::Open(_) | TrialAction::Save(..) if self.sessions.is_some() => {}
-            TrialAction::Open(typed) => {
-                trials.is_opening = true;
-                self.sessions = Some(files::open(typed, env));
-            }
+            TrialAction::Open(_) | TrialAction::Save(..)
+                if self.0.is_running(&ProgramJob::Session) => {}
+            TrialAction::Open(typed) => self.0.start(
+                ProgramJob::Session,
+                env.background(),
+                files::open(typed, env),
+                |state, told, end: FilesEnd| {
+                    state.trials.asks_path = end.is_err();
+                    told.push(state.trials.apply(end));
+                },
+            ),
             TrialAction::Save(id, criterion) => {
                 let session = trials.session(id);
-                let save = |session| files::save(session, criterion, env);
-                self.sessions = session.and_then(save);
+                let save = session.and_then(|session| files::save(session, criterion, env));
+                if let Some(save) = save {
+                    self.0.start(
+                        ProgramJob::Session,
+                        env.background(),
+                        save,
+                        |state, told, end| {
+                            state.trials.asks_path = false;
+                            told.push(state.trials.apply(end));
+                        },
+                    );
+                }
             }
             TrialAction::ForgetOvershoot => state.hand_mut().overshoot.forget(),
             TrialAction::ExportOvershoot => {
@@ -144,24 +157,50 @@ impl Jobs {
 
     /// Exports one file at a time: while a dialog is open, no other is opened.
     pub(super) fn export(&mut self, content: Export, env: &Env) {
-        if self.exporting.is_none() {
-            self.exporting = Some(export::save(content, env));
+        if self.0.is_running(&ProgramJob::Export) {
+            return;
         }
+        self.0.start(
+            ProgramJob::Export,
+            env.background(),
+            export::save(content, env),
+            |_, told, notice| told.push(notice),
+        );
     }
 
     pub(super) fn import_poses(&mut self, typed: Option<PathBuf>, state: &mut State, env: &Env) {
-        if self.importing.is_none() {
-            state.poses.refused = None;
-            let import = open(typed, pose_file::FILE_NAME, env, pose_file::read);
-            self.importing = Some(import);
+        if self.0.is_running(&ProgramJob::ImportPoses) {
+            return;
         }
+        state.poses.refused = None;
+        self.0.start(
+            ProgramJob::ImportPoses,
+            env.background(),
+            open(typed, pose_file::FILE_NAME, env, pose_file::read),
+            |state, told, read| match read {
+                // All of it is added, or nothing.
+                Ok(library) => {
+                    let (poses, sequences) = (library.poses.len(), library.sequences.len());
+                    state.poses.import(library);
+                    told.push(NoticeKind::PosesImported { poses, sequences });
+                }
+                Err(refused) => {
+                    state.poses.refused = Some(refused.clone());
+                    told.push(refused);
+                }
+            },
+        );
     }
 
     pub(super) fn find_ports(&mut self, env: &Env) {
-        if self.finding_ports.is_none() {
-            let find = async { on_thread(|| Ok(ports())).await.unwrap_or_default() };
-            let finding = BackgroundJob::start(&env.runtime, &env.wake, find);
-            self.finding_ports = Some(finding);
+        if self.0.is_running(&ProgramJob::FindPorts) {
+            return;
         }
+        self.0.start(
+            ProgramJob::FindPorts,
+            env.background(),
+            on_thread(|| Ok(ports())),
+            |state, _, found| state.ports = found.unwrap_or_default(),
+        );
     }
 }

@@ -30,7 +30,7 @@ use crate::app::program::closing::Closing;
 use crate::app::program::exhibit::ExhibitWork;
 use crate::app::program::hand_actions::each;
 use crate::app::program::hand_tick::{Shared, record_event};
-use crate::app::program::jobs::Jobs;
+use crate::app::program::jobs::ProgramJobs;
 use crate::app::program::pose_actions::accepts_poses;
 use crate::app::program::quirk_notes::QuirkNotes;
 use crate::app::program::saved::SavedFiles;
@@ -56,7 +56,7 @@ pub struct App {
     saved: SavedFiles,
     quirk_notes: QuirkNotes,
     closing: Option<Closing>,
-    jobs: Jobs,
+    jobs: ProgramJobs,
     exhibit: ExhibitWork,
     recorded: ReplayWork,
     records: bool,
@@ -73,7 +73,7 @@ impl App {
             state,
             saved,
             closing: None,
-            jobs: Jobs::default(),
+            jobs: ProgramJobs::default(),
             exhibit: ExhibitWork::default(),
             recorded: ReplayWork::default(),
             records: true,
@@ -156,7 +156,7 @@ impl App {
         fleet.drain();
         leading::stop_mirrored(&mut self.state);
         hands::drop_removed(&mut self.state);
-        self.exhibit.tick(&mut self.state, &self.env, now);
+        self.exhibit.tick(&mut self.state, now);
         let told = self.jobs.tick(&mut self.state, &self.env);
         told.into_iter().for_each(|told| self.notify(told, now));
         self.recorded.tick(&mut self.state, &self.env);

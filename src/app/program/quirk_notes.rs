@@ -13,15 +13,11 @@ use crate::params::place::WhichPlace;
 use crate::params::rows::{ParamId, Value};
 use crate::record::{Fact, QuirkSheet, Saved};
 use crate::store::calendar::{day, since_1970};
-use crate::store::{BackgroundJob, on_thread};
+use crate::store::{JobKind, Jobs, on_thread};
 use crate::tasks::place::{PlaceChange, PlaceEnd};
 use crate::transport::Endpoint;
 use std::collections::BTreeMap;
-use std::io;
 use std::path::{Path, PathBuf};
-
-/// The previous sheet, and the current one.
-type Noted = (Option<QuirkSheet>, QuirkSheet);
 
 /// Notes each hand once per set of answers.
 #[derive(Debug)]
@@ -29,9 +25,18 @@ pub(crate) struct QuirkNotes {
     path: Option<PathBuf>,
     /// The last noted hand of each slot. As many entries as slots of one run.
     noted: BTreeMap<SlotId, (Endpoint, Quirks)>,
-    under_way: Option<BackgroundJob<io::Result<Noted>>>,
+    jobs: Jobs<KeepSheet>,
     /// A change made by this program, and whether it may be in flash: it causes no warning.
     own: Option<(PlaceChange, bool)>,
+}
+
+/// Background job of the notes: keeping the sheet of a hand.
+#[derive(Debug, PartialEq, Eq)]
+struct KeepSheet;
+
+impl JobKind for KeepSheet {
+    type State = QuirkNotes;
+    type Ctx<'a> = Ctx<'a>;
 }
 
 impl QuirkNotes {
@@ -40,24 +45,15 @@ impl QuirkNotes {
         Self {
             path: settings.map(QuirkBook::path),
             noted: BTreeMap::new(),
-            under_way: None,
+            jobs: Jobs::default(),
             own: None,
         }
     }
 
     /// Notes a hand that is new or answers differently, and notifies the user of differences from last time.
     pub(crate) fn tick(&mut self, hand: &mut Hand, ctx: &mut Ctx<'_>) {
-        match BackgroundJob::take_from(&mut self.under_way) {
-            None => {}
-            Some(Err(error)) => {
-                let path = self.path.clone().unwrap_or_default();
-                ctx.notify(NoticeKind::not_saved(path, &error));
-            }
-            Some(Ok((before, sheet))) => {
-                if let Some(differs) = self.difference(before.as_ref(), &sheet) {
-                    ctx.notify(differs);
-                }
-            }
+        while let Some(effect) = self.jobs.next_ended() {
+            effect(self, ctx);
         }
         if let Some(Procedure::Place(card)) = &hand.procedures.card
             && let Some(Ok(report)) = card.stage.end()
@@ -77,7 +73,7 @@ impl QuirkNotes {
             hand.connection.status.state.is_live()
                 && noted.is_none_or(|noted| (&noted.0, noted.1) != (endpoint, quirks))
         });
-        if let Some(endpoint) = new.filter(|_| self.under_way.is_none()).cloned() {
+        if let Some(endpoint) = new.filter(|_| self.jobs.is_empty()).cloned() {
             let noted = (endpoint.clone(), quirks);
             self.noted.insert(hand.label.slot, noted);
             self.note(endpoint, quirks, ctx.env);
@@ -88,15 +84,28 @@ impl QuirkNotes {
         let Some(path) = self.path.clone() else {
             return;
         };
+        let place = path.clone();
         let note = on_thread(move || {
             let mut now = book::sheet(&endpoint, &quirks, &day(since_1970()));
-            let before = QuirkBook::keep(&path, now.clone())?;
+            let before = QuirkBook::keep(&place, now.clone())?;
             if let Some(before) = &before {
                 now.first_seen.clone_from(&before.first_seen);
             }
             Ok((before, now))
         });
-        self.under_way = Some(BackgroundJob::start(&env.runtime, &env.wake, note));
+        self.jobs.start(
+            KeepSheet,
+            env.background(),
+            note,
+            move |notes, ctx, noted| match noted {
+                Ok((before, now)) => {
+                    if let Some(differs) = notes.difference(before.as_ref(), &now) {
+                        ctx.notify(differs);
+                    }
+                }
+                Err(error) => ctx.notify(NoticeKind::not_saved(path, &error)),
+            },
+        );
     }
 
     /// Answers of the hand; after a change that this program made and saved, the answers expected from the next query.

@@ -9,7 +9,7 @@ use crate::record::export::{
 };
 use crate::record::file::RecordingFile;
 use crate::record::file::reader::TimeRange;
-use crate::store::{BackgroundJob, calendar, on_thread};
+use crate::store::{calendar, on_thread};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -92,13 +92,21 @@ pub struct ExportProgress {
 
 /// An export in progress.
 pub(crate) struct RunningExport {
+    /// Number of the export in this run of the program.
+    pub(crate) number: u64,
     export: RecordingExport,
     percent: Arc<AtomicU8>,
-    /// Yields the notice for the user when the export ends.
-    pub(crate) job: Option<BackgroundJob<NoticeKind>>,
 }
 
 impl RunningExport {
+    pub(crate) fn new(number: u64, export: RecordingExport) -> Self {
+        Self {
+            number,
+            export,
+            percent: Arc::default(),
+        }
+    }
+
     pub(crate) fn progress(&self) -> ExportProgress {
         ExportProgress {
             export: self.export.clone(),
@@ -153,18 +161,19 @@ impl RecordingExport {
             Err(error) => NoticeKind::NotExported { path, error },
         }
     }
+}
 
-    /// Starts the export in the background.
-    pub(crate) fn begin(self, env: &Env) -> RunningExport {
-        let name = self.file_name();
+impl RunningExport {
+    /// Exports off the window's thread; yields the notice for the user.
+    pub(crate) fn work(&self, env: &Env) -> impl Future<Output = NoticeKind> + Send + use<> {
+        let (export, progress) = (self.export.clone(), Arc::clone(&self.percent));
+        let name = export.file_name();
         let folder = env.documents.as_ref().map(|documents| {
             let day = calendar::day(calendar::since_1970());
             day_folder::of_day(documents, &day)
         });
         let files = Arc::clone(&env.files);
-        let percent = Arc::new(AtomicU8::new(0));
-        let (export, progress) = (self.clone(), Arc::clone(&percent));
-        let job = BackgroundJob::start(&env.runtime, &env.wake, async move {
+        async move {
             let to = match folder {
                 Some(folder) => day_folder::free_path(&folder, &name),
                 None => match files.choose(&name).await {
@@ -175,11 +184,6 @@ impl RecordingExport {
             let place = to.clone();
             let written = on_thread(move || Ok(export.write(place, &progress))).await;
             written.unwrap_or_else(|error| NoticeKind::not_saved(to, &error))
-        });
-        RunningExport {
-            export: self,
-            percent,
-            job: Some(job),
         }
     }
 }

@@ -1,13 +1,12 @@
 //! The list of recordings. It is scanned in the background; the summary of an unchanged file is reused.
 
-use crate::app::env::Env;
 use crate::app::recordings::about::RecordingNote;
 use crate::app::recordings::budget::{self, PlannedDeletion};
 use crate::app::recordings::export::{ExportProgress, RecordingExport};
 use crate::app::recordings::item::RecordingItem;
 use crate::hand::Moment;
 use crate::record::file::{FileMark, parts};
-use crate::store::{BackgroundJob, on_thread};
+use crate::store::on_thread;
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -88,20 +87,13 @@ pub(crate) struct FolderListing {
 }
 
 /// Scans this folder and its day folders for recordings.
-pub(crate) fn scan(
-    folder: PathBuf,
-    known: Arc<Vec<RecordingItem>>,
-    env: &Env,
-) -> BackgroundJob<FolderListing> {
-    let scan = async move {
-        let found = on_thread(move || Ok(find(&folder, &known))).await;
-        found.unwrap_or(FolderListing {
-            items: Vec::new(),
-            unread: Vec::new(),
-            announced: Vec::new(),
-        })
-    };
-    BackgroundJob::start(&env.runtime, &env.wake, scan)
+pub(crate) async fn scan(folder: PathBuf, known: Arc<Vec<RecordingItem>>) -> FolderListing {
+    let found = on_thread(move || Ok(find(&folder, &known))).await;
+    found.unwrap_or(FolderListing {
+        items: Vec::new(),
+        unread: Vec::new(),
+        announced: Vec::new(),
+    })
 }
 
 fn find(folder: &Path, known: &[RecordingItem]) -> FolderListing {

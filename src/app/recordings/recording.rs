@@ -18,8 +18,8 @@ use crate::record::file::{
     FileMark, Opening, PART_LENGTH, Recorder, RecorderStatus, RecordingPlan, SystemDisk,
 };
 use crate::record::{Entry, Event, EventKind};
-use crate::store::BackgroundJob;
 use crate::store::calendar::{day, since_1970, stamp};
+use crate::store::{JobKind, Jobs};
 use crate::tasks::read::rows;
 use crate::transport::Endpoint;
 use std::path::PathBuf;
@@ -41,11 +41,21 @@ pub struct HandRecording {
     params: Params,
     /// True once the parameters have been requested from the hand.
     is_asked: bool,
-    asking: Option<BackgroundJob<Params>>,
+    jobs: Jobs<ReadParams>,
     /// Settings as last recorded, and the time of the last comparison.
     settings: Option<(Settings, Moment)>,
     /// Recorder status as of this frame.
     pub status: RecorderStatus,
+}
+
+/// Background job of a recording: reading the hand's persistent parameters.
+#[derive(Debug, PartialEq, Eq)]
+struct ReadParams;
+
+impl JobKind for ReadParams {
+    type State = HandRecording;
+    /// Time of the tick.
+    type Ctx<'a> = Moment;
 }
 
 /// Subject and destination of a recording.
@@ -85,7 +95,7 @@ impl HandRecording {
             began: now,
             params: Params::default(),
             is_asked: false,
-            asking: None,
+            jobs: Jobs::default(),
             settings: None,
             status: recorder.status(),
             recorder,
@@ -94,7 +104,7 @@ impl HandRecording {
     }
 
     /// Updates the status, applies the requested parameters, and publishes notices about the file.
-    pub(crate) fn tick(&mut self, notices: &mut HandNotices<'_>, now: Moment) {
+    pub(crate) fn tick(&mut self, notices: &mut HandNotices<'_>, mut now: Moment) {
         let reported = self.status.notices.len();
         let before = std::mem::replace(&mut self.status, self.recorder.status()).trouble;
         match (&before, &self.status.trouble) {
@@ -107,8 +117,8 @@ impl HandRecording {
             }
             _ => {}
         }
-        if let Some(kept) = BackgroundJob::take_from(&mut self.asking) {
-            self.params(&kept, now);
+        while let Some(effect) = self.jobs.next_ended() {
+            effect(self, &mut now);
         }
         for notice in self.status.notices.iter().skip(reported) {
             notices.push(now, NoticeKind::Recording(notice.clone()));
@@ -127,7 +137,8 @@ impl HandRecording {
         }
         let link = link.clone();
         let read = async move { rows(&link, |_, _| ()).await.params };
-        self.asking = Some(BackgroundJob::start(&env.runtime, &env.wake, read));
+        let apply = |recording: &mut Self, now: &mut Moment, live| recording.params(&live, *now);
+        self.jobs.start(ReadParams, env.background(), read, apply);
     }
 
     /// True once the parameters have been requested from the hand.

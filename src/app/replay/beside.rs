@@ -1,6 +1,5 @@
-//! Reads a second recording, to be overlaid on the replayed one, in the background.
+//! Reads a second recording, to be overlaid on the replayed one, off the window's thread.
 
-use crate::app::env::Env;
 use crate::app::notices::NoticeKind;
 use crate::app::recordings::BesideRecording;
 use crate::app::recordings::about::RecordingAbout;
@@ -8,22 +7,15 @@ use crate::app::recordings::item::RecordingItem;
 use crate::app::replay::recorded::Recorded;
 use crate::hand::Moment;
 use crate::record::file::{OpenError, RecordingFile};
-use crate::store::{BackgroundJob, on_thread};
+use crate::store::on_thread;
 use std::path::PathBuf;
 
 /// Reads a recording and aligns its start with this moment.
-pub(crate) fn read(
-    path: PathBuf,
-    own: Moment,
-    env: &Env,
-) -> BackgroundJob<Result<BesideRecording, NoticeKind>> {
-    let read = async move {
-        let place = path.clone();
-        let read = on_thread(move || Ok(open(&place, own))).await;
-        let read = read.unwrap_or_else(|error| Err(error.into()));
-        read.map_err(|why| NoticeKind::RecordingRefused { path, why })
-    };
-    BackgroundJob::start(&env.runtime, &env.wake, read)
+pub(crate) async fn read(path: PathBuf, own: Moment) -> Result<BesideRecording, NoticeKind> {
+    let place = path.clone();
+    let read = on_thread(move || Ok(open(&place, own))).await;
+    let read = read.unwrap_or_else(|error| Err(error.into()));
+    read.map_err(|why| NoticeKind::RecordingRefused { path, why })
 }
 
 fn open(path: &std::path::Path, own: Moment) -> Result<BesideRecording, OpenError> {

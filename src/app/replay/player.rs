@@ -3,7 +3,6 @@
 use crate::app::action::Action;
 use crate::app::env::Env;
 use crate::app::notices::NoticeKind;
-use crate::app::recordings::BesideRecording;
 use crate::app::recordings::about::{RecordingAbout, RecordingNote};
 use crate::app::recordings::item::RecordingItem;
 use crate::app::recordings::list::{RecordingAction, Timeline};
@@ -16,7 +15,7 @@ use crate::link::tap::WireTap;
 use crate::record::file::reader::TimeRange;
 use crate::record::file::{OpenError, RecordingFile};
 use crate::record::{Entry, Record};
-use crate::store::{BackgroundJob, on_thread};
+use crate::store::{JobKind, Jobs, on_thread};
 use std::collections::VecDeque;
 use std::io;
 use std::ops::ControlFlow;
@@ -62,37 +61,47 @@ pub(crate) struct RecordingPlayer {
     /// Time of the last tick, on the program's clock.
     ticked: Moment,
     seek_target: Option<SeekTarget>,
-    seeking: Option<BackgroundJob<io::Result<HandSnapshot>>>,
     ahead: VecDeque<Entry>,
     ahead_until: Moment,
-    reading: Option<(Moment, BackgroundJob<io::Result<Vec<Entry>>>)>,
-    beside: Option<BackgroundJob<Result<BesideRecording, NoticeKind>>>,
+    jobs: Jobs<PlayerJob>,
 }
 
-/// Opens a file near its start or at a time range, in the background.
-pub(crate) fn open(
+/// Background jobs of the player.
+#[derive(Debug, PartialEq, Eq)]
+enum PlayerJob {
+    /// Read the state of the hand at the seek target.
+    Seek,
+    /// Read the next entries for playback.
+    ReadAhead,
+    /// Read the overlay.
+    ReadBeside,
+}
+
+impl JobKind for PlayerJob {
+    type State = RecordingPlayer;
+    type Ctx<'a> = ();
+}
+
+/// Opens a file near its start or at a time range, off the window's thread.
+pub(crate) async fn open(
     path: PathBuf,
     stretch: Option<(Moment, Moment)>,
-    env: &Env,
-) -> BackgroundJob<Result<OpenedRecording, NoticeKind>> {
-    let open = async move {
-        let place = path.clone();
-        let opened = on_thread(move || {
-            Ok(RecordingFile::open(&place).and_then(|file| {
-                let at = stretch.map_or(file.first().plus(AHEAD), |(from, _)| from);
-                let at = at.clamp(file.first(), file.last());
-                let found = find(&file, SeekTarget::At(at))?;
-                Ok::<OpenedRecording, OpenError>(OpenedRecording {
-                    file: Arc::new(file),
-                    found,
-                    stretch,
-                })
-            }))
-        });
-        let opened = opened.await.unwrap_or_else(|error| Err(error.into()));
-        opened.map_err(|why| NoticeKind::RecordingRefused { path, why })
-    };
-    BackgroundJob::start(&env.runtime, &env.wake, open)
+) -> Result<OpenedRecording, NoticeKind> {
+    let place = path.clone();
+    let opened = on_thread(move || {
+        Ok(RecordingFile::open(&place).and_then(|file| {
+            let at = stretch.map_or(file.first().plus(AHEAD), |(from, _)| from);
+            let at = at.clamp(file.first(), file.last());
+            let found = find(&file, SeekTarget::At(at))?;
+            Ok::<OpenedRecording, OpenError>(OpenedRecording {
+                file: Arc::new(file),
+                found,
+                stretch,
+            })
+        }))
+    });
+    let opened = opened.await.unwrap_or_else(|error| Err(error.into()));
+    opened.map_err(|why| NoticeKind::RecordingRefused { path, why })
 }
 
 /// Reads the state of the hand at the seek target.
@@ -173,11 +182,9 @@ impl RecordingPlayer {
             tap: WireTap::default(),
             ticked: live.now,
             seek_target: None,
-            seeking: None,
             ahead: VecDeque::new(),
             ahead_until: at,
-            reading: None,
-            beside: None,
+            jobs: Jobs::default(),
             file,
         };
         player.apply_found((at, recorded));
@@ -237,7 +244,8 @@ impl RecordingPlayer {
         self.state.notices = recorded.notices;
         self.tap = recorded.tap;
         self.ahead.clear();
-        (self.ahead_until, self.reading) = (at, None);
+        self.ahead_until = at;
+        self.jobs.cancel(&PlayerJob::ReadAhead);
         self.show(at);
     }
 
@@ -256,65 +264,52 @@ impl RecordingPlayer {
         self.state.settings.clone_from(&live.settings);
         self.state.recordings.clone_from(&live.recordings);
         let eyes = live.hands.iter().any(|hand| hand.connection.may_move());
-        match BackgroundJob::take_from(&mut self.beside) {
-            Some(Ok(beside)) => self.state.beside = Some(beside),
-            Some(Err(refused)) => self.state.notices.push(self.state.now, refused),
-            None => {}
+        while let Some(effect) = self.jobs.next_ended() {
+            effect(self, &mut ());
         }
-        self.apply_seek(env);
-        self.apply_ahead();
+        self.seek(env);
         self.run(passed);
         self.read_ahead(env);
         let side = self.file.opening().side;
         let shown = self.state.hands.shown_mut();
         // The views continue with the slot of the live hand that was shown.
         (shown.label.slot, shown.side) = (live.hand().label.slot, side);
-        let waits = self.seeking.is_some();
+        let waits = self.is_seeking();
         if let Some(line) = self.line() {
             (line.live_needs_eyes, line.waits) = (eyes, waits);
         }
     }
 
-    fn apply_seek(&mut self, env: &Env) {
-        match BackgroundJob::take_from(&mut self.seeking) {
-            Some(Ok(found)) => self.apply_found(found),
-            Some(Err(error)) => {
-                let path = self.path().to_owned();
-                let why = error.into();
-                let what = NoticeKind::RecordingRefused { path, why };
-                self.state.notices.push(self.state.now, what);
-            }
-            None => {}
+    /// Seeks to the latest target, one at a time.
+    fn seek(&mut self, env: &Env) {
+        if self.is_seeking() {
+            return;
         }
-        if self.seeking.is_none()
-            && let Some(target) = self.seek_target.take()
-        {
-            let file = Arc::clone(&self.file);
-            let seek = on_thread(move || find(&file, target));
-            let job = BackgroundJob::start(&env.runtime, &env.wake, seek);
-            self.seeking = Some(job);
-        }
-    }
-
-    fn apply_ahead(&mut self) {
-        let Some((until, job)) = self.reading.take() else {
+        let Some(target) = self.seek_target.take() else {
             return;
         };
-        let mut slot = Some(job);
-        match BackgroundJob::take_from(&mut slot) {
-            Some(Ok(entries)) => {
-                self.ahead.extend(entries);
-                self.ahead_until = until;
+        let file = Arc::clone(&self.file);
+        let seek = on_thread(move || find(&file, target));
+        let apply = |player: &mut Self, (): &mut (), found: io::Result<HandSnapshot>| match found {
+            Ok(found) => player.apply_found(found),
+            Err(error) => {
+                let path = player.path().to_owned();
+                let why = error.into();
+                player.notify(NoticeKind::RecordingRefused { path, why });
             }
-            Some(Err(_)) => self.ahead_until = until,
-            None => self.reading = slot.map(|job| (until, job)),
-        }
+        };
+        self.jobs
+            .start(PlayerJob::Seek, env.background(), seek, apply);
+    }
+
+    fn is_seeking(&self) -> bool {
+        self.jobs.is_running(&PlayerJob::Seek)
     }
 
     /// Advances by this much of the program's time.
     fn run(&mut self, passed: Duration) {
         let (ahead_until, last) = (self.ahead_until, self.file.last());
-        let is_seeking = self.seeking.is_some();
+        let is_seeking = self.is_seeking();
         let Some(line) = self.line().filter(|line| line.runs && !is_seeking) else {
             return;
         };
@@ -345,7 +340,8 @@ impl RecordingPlayer {
         };
         let read_until = line.at.plus(AHEAD.mul_f32(line.pace.max(1.0)));
         let read_until = read_until.min(self.file.last());
-        if self.reading.is_some() || self.seeking.is_some() || self.ahead_until >= read_until {
+        let is_reading = self.jobs.is_running(&PlayerJob::ReadAhead);
+        if is_reading || self.is_seeking() || self.ahead_until >= read_until {
             return;
         }
         let file = Arc::clone(&self.file);
@@ -364,8 +360,15 @@ impl RecordingPlayer {
             entries.sort_by_key(Entry::at);
             Ok(entries)
         });
-        let job = BackgroundJob::start(&env.runtime, &env.wake, read);
-        self.reading = Some((read_until, job));
+        self.jobs.start(
+            PlayerJob::ReadAhead,
+            env.background(),
+            read,
+            move |player, (), entries| {
+                player.ahead.extend(entries.into_iter().flatten());
+                player.ahead_until = read_until;
+            },
+        );
     }
 
     /// Handles the user's requests for the replayed recording.
@@ -401,9 +404,20 @@ impl RecordingPlayer {
                 }
             }
             RecordingAction::Beside(Some(path)) => {
-                self.beside = Some(beside::read(path.clone(), first, env));
+                self.jobs.start(
+                    PlayerJob::ReadBeside,
+                    env.background(),
+                    beside::read(path.clone(), first),
+                    |player, (), beside| match beside {
+                        Ok(beside) => player.state.beside = Some(beside),
+                        Err(refused) => player.notify(refused),
+                    },
+                );
             }
-            RecordingAction::Beside(None) => (self.beside, self.state.beside) = (None, None),
+            RecordingAction::Beside(None) => {
+                self.jobs.cancel(&PlayerJob::ReadBeside);
+                self.state.beside = None;
+            }
             RecordingAction::Align(own, other) => {
                 if let Some(beside) = &mut self.state.beside {
                     (beside.own, beside.other) = (*own, *other);

@@ -5,15 +5,15 @@ use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::recordings::about::RecordingAbout;
 use crate::app::recordings::budget::{self, PlannedDeletion, RecordingRoom};
-use crate::app::recordings::export::RunningExport;
+use crate::app::recordings::export::{RecordingExport, RunningExport};
 use crate::app::recordings::folder;
 use crate::app::recordings::item::RecordingItem;
 use crate::app::recordings::list::{self, FolderListing, OWN_MAX, OwnRecording, RecordingAction};
-use crate::app::replay::player::{self, OpenedRecording, RecordingPlayer};
+use crate::app::replay::player::{self, RecordingPlayer};
 use crate::app::state::State;
 use crate::hand::Moment;
 use crate::store::calendar::since_1970;
-use crate::store::{BackgroundJob, on_thread};
+use crate::store::{JobKind, Jobs, on_thread};
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,8 +23,7 @@ use std::sync::Arc;
 pub(crate) struct ReplayWork {
     /// Player of the replayed recording.
     pub(crate) player: Option<RecordingPlayer>,
-    opening: Option<BackgroundJob<Result<OpenedRecording, NoticeKind>>>,
-    scanning: Option<BackgroundJob<FolderListing>>,
+    jobs: Jobs<ReplayJob>,
     scan_again: bool,
     /// True if a recording has started since the last scan: deletions that are due make room for it.
     makes_room: bool,
@@ -32,13 +31,33 @@ pub(crate) struct ReplayWork {
     has_announced: bool,
     /// Files that the user opened last: the replayed one and the overlay.
     opened: [Option<PathBuf>; 2],
-    choosing_folder: Option<BackgroundJob<Result<PathBuf, NoticeKind>>>,
-    revealing: Option<BackgroundJob<Result<(), NoticeKind>>>,
     /// Exports in progress.
     exporting: Vec<RunningExport>,
+    /// Number of exports started in this run of the program.
+    exports: u64,
     /// Pending writes and deletions, performed in order: of two edits of a recording, the later must end up in its file.
     to_write: VecDeque<FileWork>,
-    writing: Option<FilesWritten>,
+}
+
+/// Background jobs on recordings.
+#[derive(Debug, PartialEq, Eq)]
+enum ReplayJob {
+    /// Scan the folder.
+    Scan,
+    /// Open a recording to replay it.
+    Open,
+    ChooseFolder,
+    /// Show a file in the file manager.
+    Reveal,
+    /// The export with this number; exports run side by side.
+    Export(u64),
+    /// Write or delete files.
+    Write,
+}
+
+impl JobKind for ReplayJob {
+    type State = ReplayWork;
+    type Ctx<'a> = State;
 }
 
 /// A file operation.
@@ -56,18 +75,16 @@ enum FileWork {
 impl ReplayWork {
     /// Applies completed operations, and advances the replay.
     pub(crate) fn tick(&mut self, state: &mut State, env: &Env) {
-        if let Some(listing) = BackgroundJob::take_from(&mut self.scanning) {
-            self.apply_listing(listing, state);
+        while let Some(effect) = self.jobs.next_ended() {
+            effect(self, state);
         }
         self.follow_recordings(state);
-        if self.scan_again && self.scanning.is_none() {
+        if self.scan_again && !self.jobs.is_running(&ReplayJob::Scan) {
             self.scan_again = false;
             self.scan(state, env);
         }
-        self.apply_opened(state);
-        self.apply_folder(state);
-        self.report_exports(state);
-        self.continue_writing(state, env);
+        self.follow_exports(state);
+        self.continue_writing(env);
         if let Some(player) = &mut self.player {
             player.tick(state, env);
         }
@@ -160,44 +177,58 @@ impl ReplayWork {
         })
     }
 
-    fn apply_opened(&mut self, state: &mut State) {
-        match BackgroundJob::take_from(&mut self.opening) {
-            Some(Ok(_)) if is_busy(state) => {
-                state.notices.push(state.now, NoticeKind::NotReplayedNow);
-            }
-            Some(Ok(opened)) => self.player = Some(RecordingPlayer::new(opened, state)),
-            Some(Err(refused)) => state.notices.push(state.now, refused),
-            None => {}
+    fn choose_folder(&mut self, typed: Option<PathBuf>, env: &Env) {
+        if self.jobs.is_running(&ReplayJob::ChooseFolder) {
+            return;
         }
+        self.jobs.start(
+            ReplayJob::ChooseFolder,
+            env.background(),
+            folder::choose(typed, env),
+            |work, state, chosen| match chosen {
+                Ok(folder) => work.record_into(Some(folder), state),
+                Err(why) => {
+                    state.recordings.asks_folder = true;
+                    state.notices.push(state.now, why);
+                }
+            },
+        );
     }
 
-    fn apply_folder(&mut self, state: &mut State) {
-        match BackgroundJob::take_from(&mut self.choosing_folder) {
-            Some(Ok(folder)) => self.record_into(Some(folder), state),
-            Some(Err(why)) => {
-                state.recordings.asks_folder = true;
-                state.notices.push(state.now, why);
-            }
-            None => {}
-        }
-        if let Some(Err(why)) = BackgroundJob::take_from(&mut self.revealing) {
-            state.notices.push(state.now, why);
-        }
+    fn reveal(&mut self, path: PathBuf, env: &Env) {
+        self.jobs.start(
+            ReplayJob::Reveal,
+            env.background(),
+            folder::reveal(path, env),
+            |_, state, revealed| {
+                if let Err(why) = revealed {
+                    state.notices.push(state.now, why);
+                }
+            },
+        );
     }
 
-    /// Shows notices of finished exports where the user will see them: in the live window or in the replay.
-    fn report_exports(&mut self, state: &mut State) {
-        let mut notices = Vec::new();
-        self.exporting.retain_mut(|running| {
-            notices.extend(BackgroundJob::take_from(&mut running.job));
-            running.job.is_some()
-        });
-        for notice in notices {
-            match &mut self.player {
+    /// Starts an export. Its notice is shown where the user will see it: in the live window or in the replay.
+    fn export(&mut self, export: RecordingExport, env: &Env) {
+        self.exports += 1;
+        let export = RunningExport::new(self.exports, export);
+        self.jobs.start(
+            ReplayJob::Export(export.number),
+            env.background(),
+            export.work(env),
+            |work, state, notice| match &mut work.player {
                 Some(player) => player.notify(notice),
                 None => state.notices.push(state.now, notice),
-            }
-        }
+            },
+        );
+        self.exporting.push(export);
+    }
+
+    /// Updates the list of exports in progress.
+    fn follow_exports(&mut self, state: &mut State) {
+        let is_running =
+            |export: &RunningExport| self.jobs.is_running(&ReplayJob::Export(export.number));
+        self.exporting.retain(is_running);
         let progress = self.exporting.iter().map(RunningExport::progress);
         state.recordings.exports = progress.collect();
     }
@@ -209,35 +240,35 @@ impl ReplayWork {
     }
 
     /// Continues with pending file operations, one at a time.
-    fn continue_writing(&mut self, state: &mut State, env: &Env) {
-        match BackgroundJob::take_from(&mut self.writing) {
-            Some(Ok(deleted)) => {
-                self.scan_again = true;
-                if deleted > 0 {
-                    let notice = NoticeKind::RecordingsDeleted {
-                        recordings: deleted,
-                    };
-                    state.notices.push(state.now, notice);
+    fn continue_writing(&mut self, env: &Env) {
+        if self.jobs.is_running(&ReplayJob::Write) {
+            return;
+        }
+        let Some(files) = self.to_write.pop_front() else {
+            return;
+        };
+        self.jobs.start(
+            ReplayJob::Write,
+            env.background(),
+            files.carry_out(),
+            |work, state, written| match written {
+                Ok(deleted) => {
+                    work.scan_again = true;
+                    if deleted > 0 {
+                        let notice = NoticeKind::RecordingsDeleted {
+                            recordings: deleted,
+                        };
+                        state.notices.push(state.now, notice);
+                    }
                 }
-            }
-            Some(Err(why)) => state.notices.push(state.now, why),
-            None => {}
-        }
-        if self.writing.is_none()
-            && let Some(work) = self.to_write.pop_front()
-        {
-            self.writing = Some(match work {
-                FileWork::Save(path, about) => save(path, about, env),
-                FileWork::Delete(path) => delete(path, env),
-                FileWork::MakeRoom(planned) => make_room(planned, env),
-                FileWork::Tell(folder, planned) => save_announced(folder, planned, env),
-            });
-        }
+                Err(why) => state.notices.push(state.now, why),
+            },
+        );
     }
 
     /// True once all user metadata has been written.
     pub(crate) fn is_written(&self) -> bool {
-        self.writing.is_none() && self.to_write.is_empty()
+        !self.jobs.is_running(&ReplayJob::Write) && self.to_write.is_empty()
     }
 
     /// Handles a user request.
@@ -248,13 +279,10 @@ impl ReplayWork {
                 state.settings.recordings.record_simulated = on;
                 state.settings.recordings.record |= on;
             }
-            RecordingAction::ChooseFolder(typed) => {
-                self.choosing_folder
-                    .get_or_insert_with(|| folder::choose(typed, env));
-            }
+            RecordingAction::ChooseFolder(typed) => self.choose_folder(typed, env),
             RecordingAction::DefaultFolder => self.record_into(None, state),
-            RecordingAction::Reveal(path) => self.revealing = Some(folder::reveal(path, env)),
-            RecordingAction::Export(export) => self.exporting.push(export.begin(env)),
+            RecordingAction::Reveal(path) => self.reveal(path, env),
+            RecordingAction::Export(export) => self.export(export, env),
             RecordingAction::Refresh => self.scan(state, env),
             RecordingAction::Open(path) => self.open(path, None, env),
             RecordingAction::OpenAt(path, stretch) => self.open(path, Some(stretch), env),
@@ -315,7 +343,18 @@ impl ReplayWork {
             return player.show_stretch(stretch, env);
         }
         self.opened = [Some(path.clone()), None];
-        self.opening = Some(player::open(path, stretch, env));
+        self.jobs.start(
+            ReplayJob::Open,
+            env.background(),
+            player::open(path, stretch),
+            |work, state, opened| match opened {
+                Ok(_) if is_busy(state) => {
+                    state.notices.push(state.now, NoticeKind::NotReplayedNow);
+                }
+                Ok(opened) => work.player = Some(RecordingPlayer::new(opened, state)),
+                Err(refused) => state.notices.push(state.now, refused),
+            },
+        );
     }
 
     /// Scans for recordings.
@@ -324,7 +363,12 @@ impl ReplayWork {
         state.recordings.folder.clone_from(&folder);
         if let Some(folder) = folder {
             state.recordings.is_scanning = true;
-            self.scanning = Some(list::scan(folder, Arc::clone(&state.recordings.items), env));
+            self.jobs.start(
+                ReplayJob::Scan,
+                env.background(),
+                list::scan(folder, Arc::clone(&state.recordings.items)),
+                |work, state, listing| work.apply_listing(listing, state),
+            );
         }
     }
 
@@ -349,45 +393,40 @@ impl ReplayWork {
     }
 }
 
-/// Yields the number of deleted recordings.
-type FilesWritten = BackgroundJob<Result<usize, NoticeKind>>;
-
-fn save(path: PathBuf, about: RecordingAbout, env: &Env) -> FilesWritten {
-    let place = RecordingAbout::path(&path);
-    let save = on_thread(move || about.save(&path).map(|()| 0));
-    let not_saved = move |error| NoticeKind::not_saved(place, &error);
-    let save = async move { save.await.map_err(not_saved) };
-    BackgroundJob::start(&env.runtime, &env.wake, save)
-}
-
-fn delete(path: PathBuf, env: &Env) -> FilesWritten {
-    let place = path.clone();
-    let delete = on_thread(move || budget::delete(&place).map(|()| 1));
-    let not_deleted = move |error| NoticeKind::not_deleted(path, &error);
-    let delete = async move { delete.await.map_err(not_deleted) };
-    BackgroundJob::start(&env.runtime, &env.wake, delete)
-}
-
-fn make_room(planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritten {
-    let delete = async move {
-        let mut deleted = 0;
-        for one in planned {
-            let path = one.path.clone();
-            let gone = on_thread(move || one.carry_out()).await;
-            let gone = gone.map_err(|error| NoticeKind::not_deleted(path, &error))?;
-            deleted += usize::from(gone);
+impl FileWork {
+    /// Yields the number of deleted recordings.
+    async fn carry_out(self) -> Result<usize, NoticeKind> {
+        match self {
+            Self::Save(path, about) => {
+                let place = RecordingAbout::path(&path);
+                let saved = on_thread(move || about.save(&path)).await;
+                saved.map_err(|error| NoticeKind::not_saved(place, &error))?;
+                Ok(0)
+            }
+            Self::Delete(path) => {
+                let place = path.clone();
+                let deleted = on_thread(move || budget::delete(&place)).await;
+                deleted.map_err(|error| NoticeKind::not_deleted(path, &error))?;
+                Ok(1)
+            }
+            Self::MakeRoom(planned) => {
+                let mut deleted = 0;
+                for one in planned {
+                    let path = one.path.clone();
+                    let gone = on_thread(move || one.carry_out()).await;
+                    let gone = gone.map_err(|error| NoticeKind::not_deleted(path, &error))?;
+                    deleted += usize::from(gone);
+                }
+                Ok(deleted)
+            }
+            Self::Tell(folder, planned) => {
+                let place = budget::announced_path(&folder);
+                let saved = on_thread(move || budget::save_announced(&folder, planned)).await;
+                saved.map_err(|error| NoticeKind::not_saved(place, &error))?;
+                Ok(0)
+            }
         }
-        Ok(deleted)
-    };
-    BackgroundJob::start(&env.runtime, &env.wake, delete)
-}
-
-fn save_announced(folder: PathBuf, planned: Vec<PlannedDeletion>, env: &Env) -> FilesWritten {
-    let place = budget::announced_path(&folder);
-    let save = on_thread(move || budget::save_announced(&folder, planned).map(|()| 0));
-    let not_saved = move |error| NoticeKind::not_saved(place, &error);
-    let save = async move { save.await.map_err(not_saved) };
-    BackgroundJob::start(&env.runtime, &env.wake, save)
+    }
 }
 
 /// True while a live hand needs the user's attention.

@@ -1,4 +1,4 @@
-//! Trial session folders: chosen, written and read in the background. The formats are defined in [`crate::trials::session`].
+//! Trial session folders: chosen, written and read off the window's thread. The formats are defined in [`crate::trials::session`].
 
 use crate::app::env::Env;
 use crate::app::env::day_folder;
@@ -9,11 +9,12 @@ use crate::app::trials::state::{
 };
 use crate::store;
 use crate::store::calendar::stamp;
-use crate::store::{BackgroundJob, FileCause, FileError, on_thread, read_text};
+use crate::store::{FileCause, FileError, on_thread, read_text};
 use crate::trials::recording::csv;
 use crate::trials::session::{SESSION_FILE, SessionHead, load};
 use crate::trials::session_writer::TrialSessionWriter;
 use crate::trials::{Criterion, TrialRecording, TrialSummary};
+use futures::FutureExt as _;
 use futures::future::BoxFuture;
 use std::future::ready;
 use std::io;
@@ -40,28 +41,31 @@ pub(crate) fn save(
     session: &TrialSession,
     criterion: Option<Criterion>,
     env: &Env,
-) -> Option<BackgroundJob<FilesEnd>> {
+) -> Option<impl Future<Output = FilesEnd> + Send + use<>> {
     let is_own = !matches!(session.origin, SessionOrigin::Folder(_));
-    is_own.then(|| save_in(session.clone(), criterion, env.files.folder(), env))
+    is_own.then(|| save_in(session.clone(), criterion, env.files.folder()))
 }
 
 /// Saves without asking: an unsaved session into a new folder in the folder of its day; of a saved one, the note and
 /// tags.
-pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<BackgroundJob<FilesEnd>> {
+pub(crate) fn keep(session: &TrialSession, env: &Env) -> Option<BoxFuture<'static, FilesEnd>> {
     match &session.origin {
         SessionOrigin::Folder(_) => None,
-        SessionOrigin::Saved(folder) => Some(keep_words(session, folder.clone(), env)),
+        SessionOrigin::Saved(folder) => Some(keep_words(session, folder.clone()).boxed()),
         SessionOrigin::Unsaved => {
             let documents = env.documents.as_deref()?;
             let folder = day_folder::of_day(documents, &session.head.day);
             let folder = Box::pin(ready(Some(folder)));
-            (!session.trials.is_empty()).then(|| save_in(session.clone(), None, folder, env))
+            (!session.trials.is_empty()).then(|| save_in(session.clone(), None, folder).boxed())
         }
     }
 }
 
 /// Reads the session folder at the typed path, else asks for its `session.toml`.
-pub(crate) fn open(typed: Option<PathBuf>, env: &Env) -> BackgroundJob<FilesEnd> {
+pub(crate) fn open(
+    typed: Option<PathBuf>,
+    env: &Env,
+) -> impl Future<Output = FilesEnd> + Send + use<> {
     open_file(typed, SESSION_FILE, env, |path| {
         let folder = if path.is_dir() {
             path
@@ -74,33 +78,33 @@ pub(crate) fn open(typed: Option<PathBuf>, env: &Env) -> BackgroundJob<FilesEnd>
 }
 
 /// Writes a session into a new folder inside the chosen one.
-fn save_in(
+async fn save_in(
     session: TrialSession,
     criterion: Option<Criterion>,
     chosen: BoxFuture<'static, Option<PathBuf>>,
-    env: &Env,
-) -> BackgroundJob<FilesEnd> {
-    BackgroundJob::start(&env.runtime, &env.wake, async move {
-        let folder = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
-        let name = folder_name(&session.head);
-        let (id, trials) = (session.id, session.trials.len());
-        let asked = folder.join(&name);
-        let work = move || {
-            // Two series that start in the same second get separate folders.
-            let place = day_folder::free_path(&folder, &name);
-            write(session, &place, criterion).map(|()| place)
-        };
-        let written = on_thread(work).await;
-        let folder = written.map_err(|error| NoticeKind::not_saved(asked, &error))?;
-        Ok(FilesDone::Saved(id, folder, trials))
-    })
+) -> FilesEnd {
+    let folder = chosen.await.ok_or(NoticeKind::NoFileChosen)?;
+    let name = folder_name(&session.head);
+    let (id, trials) = (session.id, session.trials.len());
+    let asked = folder.join(&name);
+    let work = move || {
+        // Two series that start in the same second get separate folders.
+        let place = day_folder::free_path(&folder, &name);
+        write(session, &place, criterion).map(|()| place)
+    };
+    let written = on_thread(work).await;
+    let folder = written.map_err(|error| NoticeKind::not_saved(asked, &error))?;
+    Ok(FilesDone::Saved(id, folder, trials))
 }
 
 /// Updates the note and tags in a session's file.
-fn keep_words(session: &TrialSession, folder: PathBuf, env: &Env) -> BackgroundJob<FilesEnd> {
+fn keep_words(
+    session: &TrialSession,
+    folder: PathBuf,
+) -> impl Future<Output = FilesEnd> + Send + use<> {
     let (id, trials) = (session.id, session.trials.len());
     let (note, tags) = (session.head.note.clone(), session.head.tags.clone());
-    BackgroundJob::start(&env.runtime, &env.wake, async move {
+    async move {
         let place = folder.clone();
         let work = move || {
             let mut file = load(&place)?;
@@ -112,7 +116,7 @@ fn keep_words(session: &TrialSession, folder: PathBuf, env: &Env) -> BackgroundJ
             Ok(()) => Ok(FilesDone::Saved(id, folder, trials)),
             Err(error) => Err(NoticeKind::not_saved(folder, &error)),
         }
-    })
+    }
 }
 
 /// Folder name `handscope-trials-2026-11-21-123456`, in UTC.

@@ -5,10 +5,9 @@ use crate::app::ctx::Ctx;
 use crate::app::notices::NoticeKind;
 use crate::hand::overshoot::OvershootMap;
 use crate::store::calendar::{day, since_1970};
-use crate::store::{BackgroundJob, on_thread};
+use crate::store::{JobKind, Jobs, on_thread};
 use crate::transport::Endpoint;
 use crate::trials::overshoot_file::{self, MeasuredClose};
-use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -20,9 +19,18 @@ pub struct HandOvershoot {
     of: Option<Endpoint>,
     /// Closes that are not in the file yet.
     waiting: Vec<MeasuredClose>,
-    under_way: Option<BackgroundJob<io::Result<OvershootMap>>>,
+    jobs: Jobs<SyncOvershoot>,
     /// True if the file must be cleared.
     forgets: bool,
+}
+
+/// Background job of the overshoot: synchronizing its file with the measurements.
+#[derive(Debug, PartialEq, Eq)]
+struct SyncOvershoot;
+
+impl JobKind for SyncOvershoot {
+    type State = HandOvershoot;
+    type Ctx<'a> = Ctx<'a>;
 }
 
 impl HandOvershoot {
@@ -58,23 +66,10 @@ impl HandOvershoot {
             };
             self.write(ctx);
         }
-        let end = BackgroundJob::take_from(&mut self.under_way);
-        let failed = match end {
-            None => None,
-            Some(Ok(map)) if !self.forgets => {
-                self.map = Arc::new(map);
-                let waiting = std::mem::take(&mut self.waiting);
-                self.count(&waiting);
-                self.waiting = waiting;
-                None
-            }
-            Some(end) => end.err(),
-        };
-        if let Some(error) = failed {
-            let file = self.file(ctx).unwrap_or_default();
-            ctx.notify(NoticeKind::not_saved(file, &error));
+        while let Some(effect) = self.jobs.next_ended() {
+            effect(self, ctx);
         }
-        if self.under_way.is_none() && (self.forgets || !self.waiting.is_empty()) {
+        if self.jobs.is_empty() && (self.forgets || !self.waiting.is_empty()) {
             self.write(ctx);
         }
     }
@@ -84,13 +79,28 @@ impl HandOvershoot {
         let closes = std::mem::take(&mut self.waiting);
         let forgets = std::mem::take(&mut self.forgets);
         let Some(file) = self.file(ctx) else { return };
+        let place = file.clone();
         let work = on_thread(move || {
             if forgets {
-                overshoot_file::forget(&file)?;
+                overshoot_file::forget(&place)?;
             }
-            overshoot_file::add(&file, &closes, &day(since_1970()))
+            overshoot_file::add(&place, &closes, &day(since_1970()))
         });
-        self.under_way = Some(BackgroundJob::start(&ctx.env.runtime, &ctx.env.wake, work));
+        self.jobs.start(
+            SyncOvershoot,
+            ctx.env.background(),
+            work,
+            move |overshoot, ctx, map| match map {
+                Ok(_) if overshoot.forgets => {}
+                Ok(map) => {
+                    overshoot.map = Arc::new(map);
+                    let waiting = std::mem::take(&mut overshoot.waiting);
+                    overshoot.count(&waiting);
+                    overshoot.waiting = waiting;
+                }
+                Err(error) => ctx.notify(NoticeKind::not_saved(file, &error)),
+            },
+        );
     }
 
     fn file(&self, ctx: &Ctx<'_>) -> Option<PathBuf> {

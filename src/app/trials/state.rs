@@ -205,8 +205,6 @@ pub struct TrialsState {
     pub refused: Option<NoticeKind>,
     /// True if opening a session failed: its path can be typed.
     pub asks_path: bool,
-    /// True while a session is being opened.
-    pub(crate) is_opening: bool,
     /// Sessions to save without asking, in order of request.
     pub(crate) to_keep: VecDeque<SessionId>,
     newest: u64,
