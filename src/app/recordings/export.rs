@@ -3,82 +3,20 @@
 use crate::app::env::{Env, day_folder};
 use crate::app::notices::NoticeKind;
 use crate::hand::Moment;
-use crate::record::export::lerobot::{EpisodeStart, LeRobotPlan};
-use crate::record::export::{
-    Destination, ExportError, ExportSource, csv, cut, lerobot, parquet, rosbag,
-};
+use crate::record::export::{Destination, ExportFormat, ExportOptions, ExportSource};
 use crate::record::file::RecordingFile;
 use crate::record::file::reader::TimeRange;
 use crate::store::{calendar, on_thread};
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
-
-/// Frame rate of a data set in frames per second; typical for cameras.
-const FPS: u32 = 30;
-
-/// Export format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RecordingForm {
-    /// Text table.
-    Csv,
-    /// Parquet table.
-    Parquet,
-    /// Folder for ROS 2.
-    Rosbag,
-    /// LeRobot data set folder, without video.
-    LeRobot,
-    /// Recording file, complete with its own index.
-    Mcap,
-}
-
-impl RecordingForm {
-    pub const ALL: [Self; 5] = [
-        Self::Csv,
-        Self::Parquet,
-        Self::Rosbag,
-        Self::LeRobot,
-        Self::Mcap,
-    ];
-
-    /// Suffix of the exported file's name.
-    const fn ending(self) -> &'static str {
-        match self {
-            Self::Csv => ".csv",
-            Self::Parquet => ".parquet",
-            Self::Rosbag => "-rosbag2",
-            Self::LeRobot => "-lerobot",
-            Self::Mcap => "-copy.mcap",
-        }
-    }
-
-    /// Writes the export and returns the number of rows, messages or frames.
-    fn write(self, source: ExportSource<'_>, to: &Path) -> Result<u64, ExportError> {
-        let place = Destination::from(to);
-        let written = match self {
-            Self::Csv => csv::write(source, &place),
-            Self::Parquet => parquet::write(source, &place),
-            Self::Rosbag => rosbag::write(source, to),
-            Self::Mcap => cut::write(source, &place),
-            Self::LeRobot => {
-                let plan = LeRobotPlan {
-                    fps: FPS,
-                    task: None,
-                    episodes: EpisodeStart::Gap,
-                };
-                return Ok(lerobot::write(&[source], to, &plan)?.frames());
-            }
-        };
-        Ok(written?.rows)
-    }
-}
 
 /// A requested export.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RecordingExport {
     pub path: PathBuf,
-    pub form: RecordingForm,
+    pub format: ExportFormat,
     /// Start and end of the time range; `None` = the whole recording.
     pub stretch: Option<(Moment, Moment)>,
 }
@@ -120,7 +58,13 @@ impl RecordingExport {
     fn file_name(&self) -> String {
         let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
         let part = if self.stretch.is_some() { "-part" } else { "" };
-        format!("{stem}{part}{}", self.form.ending())
+        let copy = if self.format == ExportFormat::Mcap {
+            "-copy"
+        } else {
+            ""
+        };
+        let ending = self.format.properties().ending;
+        format!("{stem}{part}{copy}{ending}")
     }
 
     /// Writes the export and returns the notice for the user.
@@ -138,7 +82,7 @@ impl RecordingExport {
         let stretch = TimeRange {
             from,
             to: until,
-            wire: self.form == RecordingForm::Mcap,
+            wire: self.format == ExportFormat::Mcap,
         };
         let watch = |share: f64| {
             #[expect(
@@ -153,10 +97,14 @@ impl RecordingExport {
             watch: &watch,
             ..ExportSource::new(&file, stretch)
         };
-        match self.form.write(source, &to) {
-            Ok(rows) => NoticeKind::Saved {
+        let place = Destination::Path(to.clone());
+        let written = self
+            .format
+            .write(&[source], &place, &ExportOptions::default());
+        match written {
+            Ok(written) => NoticeKind::Saved {
                 path: to,
-                entries: usize::try_from(rows).unwrap_or(usize::MAX),
+                entries: usize::try_from(written.rows()).unwrap_or(usize::MAX),
             },
             Err(error) => NoticeKind::NotExported { path, error },
         }

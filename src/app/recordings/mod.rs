@@ -11,7 +11,7 @@ pub mod recording;
 
 pub use crate::app::recordings::about::{RecordingAbout, RecordingNote};
 pub use crate::app::recordings::budget::PlannedDeletion;
-pub use crate::app::recordings::export::{ExportProgress, RecordingExport, RecordingForm};
+pub use crate::app::recordings::export::{ExportProgress, RecordingExport};
 pub use crate::app::recordings::holding::replay_of;
 pub use crate::app::recordings::item::RecordingItem;
 pub use crate::app::recordings::list::{OwnRecording, RecordingAction, RecordingsState, Timeline};

@@ -7,10 +7,9 @@ use crate::cli::recordings::picture;
 use crate::cli::recordings::recording_file::{
     self, FileArgs, StretchArgs, is_standard, lost, report_remarks,
 };
-use crate::record::export::lerobot::{EpisodeStart, LeRobotPlan, LeRobotSet};
-use crate::record::export::output::Folder;
 use crate::record::export::{
-    Destination, ExportError, ExportSource, Exported, csv, cut, lerobot, parquet, rosbag,
+    Destination, EpisodeCounts, EpisodeStart, ExportError, ExportFormat, ExportOptions,
+    ExportSource, ExportSummary, Exported, LeRobotPlan, OutputKind, cut,
 };
 use crate::record::file::RecordingFile;
 use crate::record::file::reader::TimeRange;
@@ -19,16 +18,13 @@ use serde_json::json;
 use std::io::{self, IsTerminal as _};
 use std::path::{Path, PathBuf};
 
-/// Frame rate in frames per second; typical for cameras.
-const FPS: u32 = 30;
-
 #[derive(Debug, clap::Args)]
 pub(crate) struct ExportArgs {
     /// Recording files, as 'handscope record' and the window write them; - reads one from standard input
     #[arg(value_name = "FILE.mcap", required = true, num_args = 1..)]
     files: Vec<PathBuf>,
     #[command(flatten)]
-    form: FormArgs,
+    output: ExportOutput,
     #[command(flatten)]
     stretch: StretchArgs,
     /// The file or folder to write, which must not exist yet; of several recordings a folder; - is standard output
@@ -55,75 +51,67 @@ enum Episodes {
     Notes,
 }
 
-/// The format, one of these.
-#[derive(Debug, clap::Args)]
-#[group(required = true, multiple = false)]
-struct FormArgs {
-    /// Comma-separated values, one line for each moment of receipt
-    #[arg(long)]
-    csv: bool,
-    /// A Parquet table, one row for each reading
-    #[arg(long)]
-    parquet: bool,
-    /// A rosbag2 folder for ROS 2
-    #[arg(long)]
-    rosbag: bool,
-    /// A recording file again, with its own index
-    #[arg(long)]
-    mcap: bool,
-    /// A LeRobot v3.0 data set without video
-    #[arg(long)]
-    lerobot: bool,
-    /// A picture of the window, its plots over the stretch
-    #[arg(long)]
-    png: bool,
-}
-
+/// The output, named by one flag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Form {
-    Csv,
-    Parquet,
-    Rosbag,
-    Mcap,
-    LeRobot,
-    Png,
+enum ExportOutput {
+    Format(ExportFormat),
+    /// A picture of the window.
+    Picture,
 }
 
-impl FormArgs {
-    fn form(&self) -> Form {
-        match self {
-            Self { csv: true, .. } => Form::Csv,
-            Self { parquet: true, .. } => Form::Parquet,
-            Self { rosbag: true, .. } => Form::Rosbag,
-            Self { lerobot: true, .. } => Form::LeRobot,
-            Self { png: true, .. } => Form::Png,
-            _ => Form::Mcap,
-        }
+impl ExportOutput {
+    /// All outputs, in the order of the help.
+    fn all() -> Vec<Self> {
+        let mut formats = ExportFormat::ALL.to_vec();
+        // The data set is last, because only it has options of its own.
+        formats.sort_by_key(|format| *format == ExportFormat::LeRobot);
+        let formats = formats.into_iter().map(Self::Format);
+        formats.chain([Self::Picture]).collect()
     }
-}
 
-impl Form {
-    /// File extension; `None` for folders.
-    const fn ending(self) -> Option<&'static str> {
+    /// Name of the flag.
+    const fn name(self) -> &'static str {
         match self {
-            Self::Csv => Some("csv"),
-            Self::Parquet => Some("parquet"),
-            Self::Mcap => Some("mcap"),
-            Self::Png => Some("png"),
-            Self::Rosbag | Self::LeRobot => None,
+            Self::Format(format) => format.properties().name,
+            Self::Picture => "png",
         }
     }
 
-    /// Unit of the reported count.
-    const fn rows(self) -> &'static str {
-        match self {
-            Self::Csv => "lines",
-            Self::Parquet => "rows",
-            Self::Rosbag => "messages",
-            Self::Mcap => "entries",
-            Self::LeRobot => "frames",
-            Self::Png => "picture",
-        }
+    fn flag(self) -> clap::Arg {
+        let help = match self {
+            Self::Format(format) => format.properties().description,
+            Self::Picture => "A picture of the window, its plots over the stretch",
+        };
+        let flag = clap::Arg::new(self.name()).long(self.name()).help(help);
+        flag.action(clap::ArgAction::SetTrue)
+    }
+}
+
+impl clap::Args for ExportOutput {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        let all = Self::all();
+        let group = clap::ArgGroup::new("output").required(true);
+        let group = group.args(all.iter().map(|output| output.name()));
+        let flags = all.into_iter().map(Self::flag);
+        command.args(flags).group(group)
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_args(command)
+    }
+}
+
+impl clap::FromArgMatches for ExportOutput {
+    fn from_arg_matches(matches: &clap::ArgMatches) -> Result<Self, clap::Error> {
+        let named = Self::all()
+            .into_iter()
+            .find(|output| matches.get_flag(output.name()));
+        named.ok_or_else(|| clap::Error::new(clap::error::ErrorKind::MissingRequiredArgument))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &clap::ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
     }
 }
 
@@ -140,8 +128,7 @@ pub(crate) struct RecoverArgs {
 }
 
 pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
-    let form = args.form.form();
-    args.check(form)?;
+    args.check()?;
     let mut files: Vec<RecordingFile> = Vec::new();
     for path in &args.files {
         // Several files of one recording, as matched by a pattern like *.mcap, are one recording.
@@ -159,43 +146,58 @@ pub(crate) fn run(out: &mut Out, args: &ExportArgs) -> anyhow::Result<()> {
         stretch => stretch,
     };
     let stretches: Vec<TimeRange> = files.iter().map(named).collect::<anyhow::Result<_>>()?;
-    if form == Form::Png {
-        let (Some(file), Some(stretch)) = (files.first(), stretches.first()) else {
-            return Ok(());
-        };
-        return picture(out, args, file, *stretch);
-    }
-    let to_stdout = is_standard(&args.out);
+    let format = match args.output {
+        ExportOutput::Format(format) => format,
+        ExportOutput::Picture => {
+            let (Some(file), Some(stretch)) = (files.first(), stretches.first()) else {
+                return Ok(());
+            };
+            return picture(out, args, file, *stretch);
+        }
+    };
+    let summary = write(args, format, &files, &stretches)?;
+    report(out, args, format, &files, &summary)
+}
+
+/// Writes the export, with progress over all recordings.
+fn write(
+    args: &ExportArgs,
+    format: ExportFormat,
+    files: &[RecordingFile],
+    stretches: &[TimeRange],
+) -> anyhow::Result<ExportSummary> {
     // Standard output leaves no partial file, and its reader may stop reading.
-    let wished = if to_stdout {
-        EndFlag::never()
+    let (to, wished) = if is_standard(&args.out) {
+        (Destination::Stdout, EndFlag::never())
     } else {
-        EndFlag::listen()?
+        (Destination::Path(args.out.clone()), EndFlag::listen()?)
     };
-    let work = ExportJob {
-        files: &files,
-        stretches: &stretches,
-        form,
-        wished,
-        progress: Progress::new(),
+    let progress = Progress::new();
+    let watch = |number: usize| {
+        let (progress, wished) = (&progress, &wished);
+        move |share: f64| {
+            progress.report(share_of_all(number, share, files.len()));
+            wished.flow()
+        }
     };
-    let done = match form {
-        Form::LeRobot => work.lerobot(&args.out, &args.plan()),
-        _ if to_stdout => work.one_by_one(&[Destination::Stdout]),
-        _ if files.len() == 1 => work.one_by_one(&[Destination::Path(args.out.clone())]),
-        _ => work.to_folder(&args.out),
-    };
-    drop(work.progress);
-    let done = done.map_err(explained)?;
-    done.report(out, args, &files)
+    let watches: Vec<_> = (0..files.len()).map(watch).collect();
+    let sources = files.iter().zip(stretches).zip(&watches);
+    let sources = sources.map(|((file, stretch), watch)| ExportSource {
+        file,
+        stretch: *stretch,
+        watch,
+    });
+    let sources: Vec<ExportSource<'_>> = sources.collect();
+    let written = format.write(&sources, &to, &args.options());
+    written.map_err(explained)
 }
 
 impl ExportArgs {
     /// Checks that clap cannot do.
-    fn check(&self, form: Form) -> anyhow::Result<()> {
+    fn check(&self) -> anyhow::Result<()> {
         // clap does not require a flag that conflicts with another one of its group.
         let of_sets = self.fps.is_some() || self.task.is_some() || self.episode.is_some();
-        if form != Form::LeRobot && of_sets {
+        if self.output != ExportOutput::Format(ExportFormat::LeRobot) && of_sets {
             return Err(WrongUsage::error(
                 "--fps, --task and --episode are for --lerobot; leave them out, or export with --lerobot",
             ));
@@ -206,7 +208,7 @@ impl ExportArgs {
                 "standard input holds one file: write - once",
             ));
         }
-        if form == Form::Png && (self.files.len() > 1 || from_stdin > 0) {
+        if self.output == ExportOutput::Picture && (self.files.len() > 1 || from_stdin > 0) {
             return Err(WrongUsage::error(
                 "--png draws one recording: name its file",
             ));
@@ -214,140 +216,39 @@ impl ExportArgs {
         if !is_standard(&self.out) {
             return Ok(());
         }
-        let why = match form {
+        let kind = match self.output {
+            ExportOutput::Format(format) => Some(format.properties().kind),
+            ExportOutput::Picture => None,
+        };
+        let why = match kind {
             _ if self.files.len() > 1 => {
                 "of several recordings a folder is made: name it with --out"
             }
-            Form::Rosbag | Form::LeRobot => "this format is a folder: name it with --out",
-            Form::Png => "a picture is a file: name it with --out",
+            Some(OutputKind::Folder) => "this format is a folder: name it with --out",
+            None => "a picture is a file: name it with --out",
             _ if self.json => "standard output holds what is exported: leave out --json",
-            Form::Csv => return Ok(()),
-            _ if io::stdout().is_terminal() => {
+            Some(OutputKind::Text) => return Ok(()),
+            Some(OutputKind::Binary) if io::stdout().is_terminal() => {
                 "this format is no text for a terminal: pipe it into a program, or name a file with --out"
             }
-            _ => return Ok(()),
+            Some(OutputKind::Binary) => return Ok(()),
         };
         Err(WrongUsage::error(why))
     }
 
-    fn plan(&self) -> LeRobotPlan {
-        LeRobotPlan {
-            fps: self.fps.unwrap_or(FPS),
-            task: self.task.clone(),
-            episodes: match self.episode {
-                Some(Episodes::Notes) => EpisodeStart::Note,
-                Some(Episodes::Gaps) | None => EpisodeStart::Gap,
+    fn options(&self) -> ExportOptions {
+        let default = LeRobotPlan::default();
+        ExportOptions {
+            lerobot: LeRobotPlan {
+                fps: self.fps.unwrap_or(default.fps),
+                task: self.task.clone(),
+                episodes: match self.episode {
+                    Some(Episodes::Notes) => EpisodeStart::Note,
+                    Some(Episodes::Gaps) => EpisodeStart::Gap,
+                    None => default.episodes,
+                },
             },
         }
-    }
-}
-
-/// A complete export job.
-struct ExportJob<'a> {
-    files: &'a [RecordingFile],
-    stretches: &'a [TimeRange],
-    form: Form,
-    wished: EndFlag,
-    progress: Progress,
-}
-
-struct ExportedFiles {
-    recordings: Vec<Exported>,
-    set: Option<LeRobotSet>,
-}
-
-impl ExportJob<'_> {
-    /// Passes a recording to `give`, with progress over all recordings.
-    fn watched<T>(
-        &self,
-        number: usize,
-        give: impl FnOnce(ExportSource<'_>) -> Result<T, ExportError>,
-    ) -> Option<Result<T, ExportError>> {
-        let (file, stretch) = (self.files.get(number)?, self.stretches.get(number)?);
-        let watch = |share: f64| {
-            self.progress
-                .report(share_of_all(number, share, self.files.len()));
-            self.wished.flow()
-        };
-        Some(give(ExportSource {
-            file,
-            stretch: *stretch,
-            watch: &watch,
-        }))
-    }
-
-    fn one_by_one(&self, places: &[Destination]) -> Result<ExportedFiles, ExportError> {
-        let mut recordings = Vec::new();
-        for (number, to) in places.iter().enumerate() {
-            let export = |source: ExportSource<'_>| match (self.form, to) {
-                (Form::Csv, _) => csv::write(source, to),
-                (Form::Parquet, _) => parquet::write(source, to),
-                (Form::Rosbag, Destination::Path(path)) => rosbag::write(source, path),
-                _ => cut::write(source, to),
-            };
-            recordings.extend(match self.watched(number, export) {
-                // Other recordings may have data if this one has none.
-                Some(Err(ExportError::Empty)) if places.len() > 1 => Some(Exported::default()),
-                exported => exported.transpose()?,
-            });
-        }
-        Ok(ExportedFiles {
-            recordings,
-            set: None,
-        })
-    }
-
-    /// Writes each recording into a file of its own, named after it.
-    fn to_folder(&self, out: &Path) -> Result<ExportedFiles, ExportError> {
-        let folder = Folder::new(out)?;
-        let mut places: Vec<Destination> = Vec::new();
-        for name in self.files.iter().map(RecordingFile::path) {
-            let stem = if is_standard(name) {
-                "stdin".into()
-            } else {
-                name.file_stem().unwrap_or_default().to_string_lossy()
-            };
-            let ending = self.form.ending().map(|ending| format!(".{ending}"));
-            let ending = ending.unwrap_or_default();
-            let named = |number: usize| match number {
-                1 => format!("{stem}{ending}"),
-                more => format!("{stem}-{more}{ending}"),
-            };
-            // Recordings of different days may share a name.
-            let free = (1..).map(|number| Destination::Path(folder.path().join(named(number))));
-            places.extend(
-                free.filter(|place| !places.contains(place))
-                    .take(1)
-                    .collect::<Vec<_>>(),
-            );
-        }
-        let done = self.one_by_one(&places)?;
-        folder.finish(done.recordings.iter().map(|one| one.rows).sum())?;
-        Ok(done)
-    }
-
-    fn lerobot(&self, out: &Path, plan: &LeRobotPlan) -> Result<ExportedFiles, ExportError> {
-        let shares = (0..self.files.len()).map(|number| {
-            move |share: f64| {
-                self.progress
-                    .report(share_of_all(number, share, self.files.len()));
-                self.wished.flow()
-            }
-        });
-        let watches: Vec<_> = shares.collect();
-        let recordings = self.files.iter().zip(self.stretches).zip(&watches);
-        let sources: Vec<ExportSource<'_>> = recordings
-            .map(|((file, stretch), watch)| ExportSource {
-                file,
-                stretch: *stretch,
-                watch,
-            })
-            .collect();
-        let set = lerobot::write(&sources, out, plan)?;
-        Ok(ExportedFiles {
-            recordings: set.recordings.clone(),
-            set: Some(set),
-        })
     }
 }
 
@@ -357,59 +258,57 @@ fn share_of_all(number: usize, share: f64, all: usize) -> f64 {
     (count(number) + share) / count(all.max(1))
 }
 
-impl ExportedFiles {
-    fn report(
-        &self,
-        out: &mut Out,
-        args: &ExportArgs,
-        files: &[RecordingFile],
-    ) -> anyhow::Result<()> {
-        let form = args.form.form();
-        let mut all = Exported::default();
-        for (file, recording) in files.iter().zip(&self.recordings) {
-            if let Some(words) = lost(&recording.damage) {
-                notify(&format!("{} is damaged: {words}", file.path().display()));
-            }
-            if recording.rows == 0 && files.len() > 1 {
-                notify(&format!(
-                    "there is nothing to export of {}",
-                    file.path().display()
-                ));
-            }
-            all.rows += recording.rows;
-            all.readings = recording.readings;
-            all.damage.add(&recording.damage);
+fn report(
+    out: &mut Out,
+    args: &ExportArgs,
+    format: ExportFormat,
+    files: &[RecordingFile],
+    summary: &ExportSummary,
+) -> anyhow::Result<()> {
+    let mut all = Exported::default();
+    for (file, recording) in files.iter().zip(&summary.recordings) {
+        if let Some(words) = lost(&recording.damage) {
+            notify(&format!("{} is damaged: {words}", file.path().display()));
         }
-        let mut line = format!("{} {} in {}", all.rows, form.rows(), args.out.display());
-        let mut object = as_json(&args.out, &all);
-        if let Some(set) = &self.set {
-            line = format!("{line}, {} episodes", set.episodes);
-            if let Some(fields) = object.as_object_mut() {
-                fields.insert("episodes".into(), set.episodes.into());
-                fields.insert("action_read_back_frames".into(), set.read_back.into());
-            }
-            warn_read_back(set);
+        if recording.rows == 0 && files.len() > 1 {
+            notify(&format!(
+                "there is nothing to export of {}",
+                file.path().display()
+            ));
         }
-        if is_standard(&args.out) {
-            notify(&format!("{} {}", all.rows, form.rows()));
-        } else {
-            out.result(args.json, &object, [line])?;
-        }
-        if all.readings == Some(0) {
-            bail!(
-                "the hand was not read in this stretch, so what was exported has no readings; 'handscope info' shows where that is so"
-            );
-        }
-        Ok(())
+        all.rows += recording.rows;
+        all.readings = recording.readings;
+        all.damage.add(&recording.damage);
     }
+    let unit = format.properties().unit;
+    let mut line = format!("{} {unit} in {}", all.rows, args.out.display());
+    let mut object = as_json(&args.out, &all);
+    if let Some(counts) = &summary.episodes {
+        line = format!("{line}, {} episodes", counts.episodes);
+        if let Some(fields) = object.as_object_mut() {
+            fields.insert("episodes".into(), counts.episodes.into());
+            fields.insert("action_read_back_frames".into(), counts.read_back.into());
+        }
+        warn_read_back(counts, all.rows);
+    }
+    if is_standard(&args.out) {
+        notify(&format!("{} {unit}", all.rows));
+    } else {
+        out.result(args.json, &object, [line])?;
+    }
+    if all.readings == Some(0) {
+        bail!(
+            "the hand was not read in this stretch, so what was exported has no readings; 'handscope info' shows where that is so"
+        );
+    }
+    Ok(())
 }
 
-fn warn_read_back(set: &LeRobotSet) {
-    if set.read_back > 0 {
+fn warn_read_back(counts: &EpisodeCounts, frames: u64) {
+    if counts.read_back > 0 {
         notify(&format!(
-            "in {} of {} frames something else than the recorded commands set a target, another controller or the hand itself for a gesture: 'action' is there what the hand held when it was read, up to half a second late",
-            set.read_back,
-            set.frames()
+            "in {} of {frames} frames something else than the recorded commands set a target, another controller or the hand itself for a gesture: 'action' is there what the hand held when it was read, up to half a second late",
+            counts.read_back
         ));
     }
 }

@@ -23,7 +23,7 @@ pub(crate) const UNDOCUMENTED: &str = "undocumented";
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
-pub fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
+pub(crate) fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
     let output = Unfinished::new(to)?;
     let mut to = output.file()?;
     let stretch = source.stretch;

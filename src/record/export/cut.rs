@@ -16,7 +16,7 @@ const ENTRIES_AT_ONCE: u64 = 1024;
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
-pub fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
+pub(crate) fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
     put(source, to, |_| None)
 }
 

@@ -9,7 +9,9 @@ use crate::record::export::columns::{self, ParquetCell, ParquetColumn, Values};
 use crate::record::export::frames::{
     DatasetFrame, DatasetFrames, FramePlan, frame_parts, has_touch,
 };
-use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
+use crate::record::export::output::{
+    Destination, EpisodeCounts, ExportError, ExportSummary, Exported, Sink, Unfinished,
+};
 use crate::record::export::source::{Broken, ExportSource};
 use crate::record::export::statistics::Statistics;
 use crate::record::file::RecordingFile;
@@ -26,6 +28,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use std::sync::Arc;
 
+/// Default frame rate in frames per second; typical for cameras.
+const FPS: u32 = 30;
 /// Maximum number of frames of an episode in memory: half an hour at 30 a second. A longer one is written as several row groups.
 const GROUP_FRAMES: u64 = 65_536;
 /// Path of each kind's only file; LeRobot numbers files with three digits.
@@ -54,21 +58,13 @@ pub struct LeRobotPlan {
     pub episodes: EpisodeStart,
 }
 
-/// Summary of a data set.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct LeRobotSet {
-    /// Number of frames, and damage, of each recording.
-    pub recordings: Vec<Exported>,
-    /// Number of episodes.
-    pub episodes: u64,
-    /// Number of frames whose action was not sent, but read back from the hand.
-    pub read_back: u64,
-}
-
-impl LeRobotSet {
-    /// Number of frames of all recordings.
-    pub fn frames(&self) -> u64 {
-        self.recordings.iter().map(|recording| recording.rows).sum()
+impl Default for LeRobotPlan {
+    fn default() -> Self {
+        Self {
+            fps: FPS,
+            task: None,
+            episodes: EpisodeStart::Gap,
+        }
     }
 }
 
@@ -76,17 +72,17 @@ impl LeRobotSet {
 ///
 /// # Errors
 /// [`ExportError`]; then there is no folder.
-pub fn write(
+pub(crate) fn write(
     sources: &[ExportSource<'_>],
-    to: &Path,
+    to: &Destination,
     plan: &LeRobotPlan,
-) -> Result<LeRobotSet, ExportError> {
+) -> Result<ExportSummary, ExportError> {
     let mut sides = sources.iter().map(|source| source.file.opening().side);
     let side = sides.next().unwrap_or(Side::Right);
     if sides.any(|other| other != side) {
         return Err(ExportError::BothSides);
     }
-    let output = Unfinished::new(&Destination::from(to))?;
+    let output = Unfinished::new(to)?;
     let folder = output.folder()?.to_owned();
     let error = |error: io::Error| output.error(&error);
     for part in ["data/chunk-000", "meta/episodes/chunk-000"] {
@@ -119,14 +115,16 @@ pub fn write(
         ended: &ended,
     };
     meta.write(&folder.join("meta")).map_err(error)?;
-    let made = LeRobotSet {
-        recordings,
+    let episodes = EpisodeCounts {
         episodes: u64::try_from(ended.episodes.len()).unwrap_or(u64::MAX),
         read_back: ended.episodes.iter().map(|episode| episode.read_back).sum(),
     };
     output.sync(ended.data)?;
     output.finish(ended.index)?;
-    Ok(made)
+    Ok(ExportSummary {
+        recordings,
+        episodes: Some(episodes),
+    })
 }
 
 /// Adds the frames of one recording. It is read from its start, because earlier commands are still in effect in the range.

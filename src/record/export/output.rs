@@ -50,6 +50,31 @@ pub struct Exported {
     pub damage: Damage,
 }
 
+/// Summary of an export.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ExportSummary {
+    /// Summary of each recording, in the order of the sources.
+    pub recordings: Vec<Exported>,
+    /// `None` if the format has no episodes.
+    pub episodes: Option<EpisodeCounts>,
+}
+
+/// Counts of a data set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EpisodeCounts {
+    /// Number of episodes.
+    pub episodes: u64,
+    /// Number of frames whose action was not sent, but read back from the hand.
+    pub read_back: u64,
+}
+
+impl ExportSummary {
+    /// Number of rows of all recordings, in the unit of the format.
+    pub fn rows(&self) -> u64 {
+        self.recordings.iter().map(|recording| recording.rows).sum()
+    }
+}
+
 /// Destination of an export.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Destination {
@@ -61,6 +86,19 @@ pub enum Destination {
 impl From<&Path> for Destination {
     fn from(path: &Path) -> Self {
         Self::Path(path.to_owned())
+    }
+}
+
+impl Destination {
+    /// Path of an export that is a folder, which standard output cannot be.
+    pub(crate) fn folder_path(&self) -> Result<&Path, ExportError> {
+        match self {
+            Self::Path(path) => Ok(path),
+            Self::Stdout => Err(ExportError::Unwritable {
+                path: "standard output".into(),
+                error: io::Error::from(io::ErrorKind::NotADirectory).into(),
+            }),
+        }
     }
 }
 
@@ -157,6 +195,7 @@ impl Unfinished {
 
     /// Creates the folder at its temporary path.
     pub(crate) fn folder(&self) -> Result<&Path, ExportError> {
+        self.wanted.folder_path()?;
         let mut folder = DirBuilder::new();
         #[cfg(unix)]
         folder.mode(0o700);
@@ -205,29 +244,23 @@ impl Drop for Unfinished {
 
 /// A folder of several exports, which appears only when complete.
 #[derive(Debug)]
-pub struct Folder(Unfinished);
+pub(crate) struct Folder(Unfinished);
 
 impl Folder {
     /// Prepares this destination, which must not exist.
-    ///
-    /// # Errors
-    /// [`ExportError`].
-    pub fn new(wanted: &Path) -> Result<Self, ExportError> {
-        let folder = Unfinished::new(&Destination::from(wanted))?;
+    pub(crate) fn new(wanted: &Destination) -> Result<Self, ExportError> {
+        let folder = Unfinished::new(wanted)?;
         folder.folder()?;
         Ok(Self(folder))
     }
 
     /// Temporary path of the folder.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.0.beside
     }
 
     /// Renames to the destination.
-    ///
-    /// # Errors
-    /// [`ExportError`]; then there is no folder.
-    pub fn finish(self, rows: u64) -> Result<(), ExportError> {
+    pub(crate) fn finish(self, rows: u64) -> Result<(), ExportError> {
         self.0.finish(rows)
     }
 }

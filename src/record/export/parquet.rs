@@ -32,7 +32,7 @@ const CHANNELS: u8 = 8;
 ///
 /// # Errors
 /// [`ExportError`]; then there is no file.
-pub fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
+pub(crate) fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
     let output = Unfinished::new(to)?;
     let error = |error: ParquetError| output.parquet_error(error);
     let mut table = ParquetTable::new(source, output.file()?).map_err(error)?;

@@ -8,7 +8,6 @@ use crate::record::file::writer::Counted;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, BufWriter};
-use std::path::Path;
 
 /// Version of `metadata.yaml`: the oldest with the times of each file; newer readers accept it.
 const VERSION: u32 = 5;
@@ -17,10 +16,14 @@ const VERSION: u32 = 5;
 ///
 /// # Errors
 /// [`ExportError`]; then there is no folder.
-pub fn write(source: ExportSource<'_>, path: &Path) -> Result<Exported, ExportError> {
-    let output = Unfinished::new(&Destination::from(path))?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
+pub(crate) fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
+    let name = to
+        .folder_path()?
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy();
     let name = format!("{name}_0.mcap");
+    let output = Unfinished::new(to)?;
     let folder = output.folder()?;
     let error = |error: io::Error| output.error(&error);
     let made = Sink::File(fs::File::create_new(folder.join(&name)).map_err(error)?);

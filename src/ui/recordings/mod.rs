@@ -143,8 +143,8 @@ fn exports_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     for running in &pane.state.recordings.exports {
         let name = title_of(look, pane.state, &running.export.path);
-        let form = look.tr(recordings::form(running.export.form));
-        let name = look.pair(&name, form);
+        let format = look.tr(recordings::export_format(running.export.format));
+        let name = look.pair(&name, format);
         let words = look.fill(recordings::EXPORTING, &[&name, &running.percent]);
         ui.horizontal(|ui| {
             let bar = ProgressBar::new(f32::from(running.percent) / 100.0);

@@ -1,9 +1,10 @@
 //! The table of recordings: a row each, with its actions at the end.
 
 use crate::app::action::Action;
-use crate::app::recordings::{RecordingAction, RecordingExport, RecordingForm, RecordingItem};
+use crate::app::recordings::{RecordingAction, RecordingExport, RecordingItem};
 use crate::hand::{Moment, PerDof};
 use crate::record::EventKind;
+use crate::record::export::ExportFormat;
 use crate::ui::hand::tile;
 use crate::ui::kit::{self, Button, Label, Look, Pane, TextField, ViewRequest, Weight, format};
 use crate::ui::plots::times::length;
@@ -179,7 +180,7 @@ impl RecordingTable<'_> {
         let menu = menu
             .at_pointer_fixed()
             .layout(Layout::top_down_justified(Align::Min));
-        menu.show(|ui| self.forms_ui(ui, pane, item));
+        menu.show(|ui| self.formats_ui(ui, pane, item));
         let pointed = response.hover_pos().map(|at| part(at.x));
         if let Some(part) = pointed.filter(|_| !response.dragged()) {
             response.on_hover_ui_at_pointer(|ui| moment_ui(ui, look, item, part));
@@ -194,7 +195,7 @@ impl RecordingTable<'_> {
     }
 
     /// Draws the export formats of a recording, or of its marked range.
-    fn forms_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
+    fn formats_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, item: &RecordingItem) {
         let look = pane.look;
         let marked = self.of(item);
         let title = match marked {
@@ -205,11 +206,14 @@ impl RecordingTable<'_> {
             None => look.tr(recordings::EXPORT).to_owned(),
         };
         ui.label(title);
-        for form in RecordingForm::ALL {
-            if ui.button(look.tr(recordings::form(form))).clicked() {
+        for &format in ExportFormat::ALL {
+            if ui
+                .button(look.tr(recordings::export_format(format)))
+                .clicked()
+            {
                 let export = RecordingExport {
                     path: item.path.clone(),
-                    form,
+                    format,
                     stretch: marked.map(|marked| marked.stretch(item)),
                 };
                 pane.actions
@@ -246,7 +250,7 @@ impl RecordingTable<'_> {
                 ui.close();
             }
             ui.separator();
-            self.forms_ui(ui, pane, item);
+            self.formats_ui(ui, pane, item);
             ui.separator();
             if kit::entry_ui(ui, look, recordings::COPY_PATH) {
                 ui.copy_text(item.path.display().to_string());

@@ -1,10 +1,11 @@
 //! Sentences of recordings: the list, the timeline, the lamp in the header.
 
-use crate::app::recordings::{RecordingForm, RecordingItem};
+use crate::app::recordings::RecordingItem;
 use crate::app::settings::{Language, Settings};
 use crate::app::state::State;
 use crate::hand::kinematics::Side;
 use crate::record::EventKind;
+use crate::record::export::ExportFormat;
 use crate::store::calendar;
 use crate::ui::style::Look;
 use crate::ui::style::phrase::texts;
@@ -120,12 +121,12 @@ texts! {
     SIM_TOO: "Record built-in hands, too", "也录制仿真手", "Simulated hands are recorded, too, and their recordings are marked.", "仿真手也会被录制，其录制会有标记。";
 
     /// Export formats of a recording.
-    fn form(RecordingForm) {
-        RecordingForm::Csv => "Table (CSV)", "表格（CSV）";
-        RecordingForm::Parquet => "Table (Parquet)", "表格（Parquet）";
-        RecordingForm::Rosbag => "Folder for ROS 2 (rosbag2)", "ROS 2 文件夹（rosbag2）";
-        RecordingForm::LeRobot => "Data set (LeRobot)", "数据集（LeRobot）";
-        RecordingForm::Mcap => "Recording file (MCAP)", "录制文件（MCAP）";
+    fn export_format(ExportFormat) {
+        ExportFormat::Csv => "Table (CSV)", "表格（CSV）";
+        ExportFormat::Parquet => "Table (Parquet)", "表格（Parquet）";
+        ExportFormat::Rosbag => "Folder for ROS 2 (rosbag2)", "ROS 2 文件夹（rosbag2）";
+        ExportFormat::LeRobot => "Data set (LeRobot)", "数据集（LeRobot）";
+        ExportFormat::Mcap => "Recording file (MCAP)", "录制文件（MCAP）";
     }
 }
 

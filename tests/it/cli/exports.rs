@@ -4,7 +4,11 @@ use crate::setup::process::{Ended, handscope, listen, run, start};
 use handscope::hand::command::HandCommand;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Reply, Span, Target, register};
+use handscope::record::export::{
+    Destination, ExportFormat, ExportOptions, ExportSource, OutputKind,
+};
 use handscope::record::file::Opening;
+use handscope::record::file::reader::{RecordingFile, TimeRange};
 use handscope::record::file::writer::RecordingWriter;
 use handscope::record::{
     Entry, Event, EventKind, LinkState, Record, WriteCause, WriteFate, WrittenMemory,
@@ -403,6 +407,54 @@ fn several_sessions_make_one_set_whose_episodes_begin_at_gaps_or_notes() {
         refused(&place.export(files, more, "none"), code, words);
     }
     assert_eq!(place.names(), names);
+}
+
+#[test]
+fn every_format_has_a_flag_and_writes_what_its_properties_name() {
+    let place = Place::new();
+    for name in ["a.mcap", "b.mcap"] {
+        commanded().write(&place.path(name), Side::Right);
+    }
+    let help = run(&["export", "--help"]).ok().out;
+    let help: Vec<&str> = help.split_whitespace().collect();
+    let help = help.join(" ");
+    let file = RecordingFile::open(&place.path("a.mcap")).unwrap();
+    let source = ExportSource::new(&file, TimeRange::WHOLE);
+    for &format in ExportFormat::ALL {
+        let properties = format.properties();
+        let (name, ending) = (properties.name, properties.ending);
+        let flag = format!("--{name}");
+        let is_folder = properties.kind == OutputKind::Folder;
+        assert!(help.contains(&format!("{flag} {}", properties.description)));
+
+        let direct = place.path(&format!("direct-{name}{ending}"));
+        let write = |to: &Destination| format.write(&[source], to, &ExportOptions::default());
+        let rows = write(&Destination::from(direct.as_path())).unwrap().rows();
+        assert_eq!((direct.is_dir(), direct.is_file()), (is_folder, !is_folder));
+
+        let one = place.export(&["a.mcap"], &[&flag], &format!("one-{name}{ending}"));
+        let line = format!("{rows} {} in ", properties.unit);
+        let out = one.ok().out;
+        assert!(rows > 10 && out.starts_with(&line), "{line}: {out}");
+
+        let both = format!("both-{name}");
+        let told = place.export(&["a.mcap", "b.mcap"], &[&flag, "--json"], &both);
+        assert_eq!(told.ok().lines()[0]["rows"], 2 * rows, "{name}");
+        let parts = match (format, is_folder) {
+            (ExportFormat::LeRobot, _) => ["data".to_owned(), "meta".to_owned()],
+            (_, true) => ["a".to_owned(), "b".to_owned()],
+            (_, false) => ["a", "b"].map(|stem| format!("{stem}{ending}")),
+        };
+        let found = std::fs::read_dir(place.path(&both)).unwrap();
+        let mut found: Vec<_> = found.map(|part| part.unwrap().file_name()).collect();
+        found.sort();
+        assert_eq!(found, parts, "{name}");
+
+        if is_folder {
+            let refused = write(&Destination::Stdout).unwrap_err().to_string();
+            assert!(refused.contains("standard output"), "{name}: {refused}");
+        }
+    }
 }
 
 #[test]

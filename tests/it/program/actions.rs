@@ -15,7 +15,7 @@ use handscope::app::layout::Layout;
 use handscope::app::params::ParamAction;
 use handscope::app::procedures::ProcedureAction;
 use handscope::app::readings::faults::FaultKind;
-use handscope::app::recordings::{RecordingAction, RecordingExport, RecordingForm};
+use handscope::app::recordings::{RecordingAction, RecordingExport};
 use handscope::app::scan::ScanTarget;
 use handscope::app::settings::{AngleUnit, Language, PlotKind, PlotWindow, Theme, Zoom};
 use handscope::app::trials::{SeriesKind, SessionId, TrialAction};
@@ -34,6 +34,7 @@ use handscope::params::values::Params;
 use handscope::poses::edit::LibraryEdit;
 use handscope::poses::library::{EntryId, PoseId, SequenceId};
 use handscope::poses::{Play, Preset};
+use handscope::record::export::ExportFormat;
 use handscope::sim::JournalEntry;
 use handscope::transport::Endpoint;
 use std::collections::BTreeSet;
@@ -139,7 +140,7 @@ fn sessions() -> Vec<RecordingAction> {
         RecordingAction::Reveal(path()),
         RecordingAction::Export(RecordingExport {
             path: path(),
-            form: RecordingForm::Csv,
+            format: ExportFormat::Csv,
             stretch: None,
         }),
         RecordingAction::Name(path(), "name".into()),

@@ -7,8 +7,8 @@ use handscope::hand::kinematics::Side;
 use handscope::hand::{
     Dof, Finger, Group, Groups, HandSample, Moment, Reply, Span, Target, register,
 };
-use handscope::record::export::{Destination, ExportSource};
-use handscope::record::export::{csv, cut};
+use handscope::record::export::cut;
+use handscope::record::export::{Destination, ExportFormat, ExportOptions, ExportSource};
 use handscope::record::file::reader::{RecordingFile, TimeRange};
 use handscope::record::file::writer::RecordingWriter;
 use handscope::record::file::{Counts, Opening};
@@ -137,7 +137,9 @@ impl Trial {
     fn values(&self, recording: &str, csv: &str) -> String {
         let file = RecordingFile::open(&self.path(recording)).unwrap();
         let source = ExportSource::new(&file, TimeRange::WHOLE);
-        csv::write(source, &Destination::Path(self.path(csv))).unwrap();
+        let to = Destination::Path(self.path(csv));
+        let options = ExportOptions::default();
+        ExportFormat::Csv.write(&[source], &to, &options).unwrap();
         std::fs::read_to_string(self.path(csv)).unwrap()
     }
 

@@ -9,15 +9,14 @@ use handscope::app::hands::list::HandsAction;
 use handscope::app::inputs::{InputAction, InputSource};
 use handscope::app::notices::NoticeKind;
 use handscope::app::recordings::recording::HandRecording;
-use handscope::app::recordings::{
-    RecordingAbout, RecordingAction, RecordingExport, RecordingForm, RecordingItem,
-};
+use handscope::app::recordings::{RecordingAbout, RecordingAction, RecordingExport, RecordingItem};
 use handscope::app::settings::Theme;
 use handscope::hand::{Angle, Dof, Moment};
 use handscope::inputs::mirror::MirrorScale;
 use handscope::record::Entry;
 use handscope::record::EventKind;
 use handscope::record::Rest;
+use handscope::record::export::ExportFormat;
 use handscope::record::file::reader::TimeRange;
 use handscope::record::file::{OpenError, RecordingFile};
 use handscope::sim::{Scenario, SimConfig};
@@ -281,29 +280,37 @@ fn a_replay_tells_speed_force_target_and_mover_as_they_were() {
 fn a_whole_session_is_exported_in_every_format_and_told_with_its_path() {
     let mut bench = bench(Scenario::Grasp);
     let path = ended(&mut bench);
-    for form in RecordingForm::ALL {
+    for &format in ExportFormat::ALL {
         let saved = |bench: &Bench| {
             let notices = bench.state().notices.iter();
             let paths = notices.filter_map(|notice| match &notice.what {
                 NoticeKind::Saved { path, entries } => Some((path.clone(), *entries)),
-                NoticeKind::NotSaved { error, .. } => panic!("{form:?}: {error:?}"),
+                NoticeKind::NotSaved { error, .. } => panic!("{format:?}: {error:?}"),
                 _ => None,
             });
             paths.collect::<Vec<_>>()
         };
         let before = saved(&bench).len();
-        recording(&mut bench, export(&path, form, None));
+        recording(&mut bench, export(&path, format, None));
         settle(&mut bench, |bench| saved(bench).len() > before);
         let (to, entries) = saved(&bench).remove(0);
-        assert!(to.exists() && entries > 10, "{form:?}: {entries} in {to:?}");
+        assert!(
+            to.exists() && entries > 10,
+            "{format:?}: {entries} in {to:?}"
+        );
+        let ending = match format {
+            ExportFormat::Mcap => "-copy.mcap",
+            format => format.properties().ending,
+        };
+        assert!(to.to_string_lossy().ends_with(ending), "{to:?}");
     }
 }
 
-fn export(path: &Path, form: RecordingForm, stretch: Option<(Moment, Moment)>) -> RecordingAction {
+fn export(path: &Path, format: ExportFormat, stretch: Option<(Moment, Moment)>) -> RecordingAction {
     let path = path.to_owned();
     RecordingAction::Export(RecordingExport {
         path,
-        form,
+        format,
         stretch,
     })
 }
@@ -352,7 +359,7 @@ fn an_export_that_fails_says_why() {
     let path = ended(&mut bench);
     let first = read_item(&path).unwrap().first;
     let nothing = Some((first, first));
-    recording(&mut bench, export(&path, RecordingForm::LeRobot, nothing));
+    recording(&mut bench, export(&path, ExportFormat::LeRobot, nothing));
     settle(&mut bench, |bench| {
         let told = bench.texts_with("Not exported: ");
         told.iter()
