@@ -89,18 +89,19 @@ impl Subject {
 
     /// The name, unit, ranges and advice of this subject.
     pub const fn row(self) -> SubjectRow {
-        const CLEAN: &str = "look for something in the joint's way, clean it, and check again; if it stays, have the drive looked at";
-        const DRIVE: &str = "have the drive looked at";
+        const CLEAN: &str = "look for something in the joint's way, clean it, and check again; if it persists, have the drive inspected";
+        const DRIVE: &str = "have the drive inspected";
         const LINKAGE: &str =
-            "look at the linkage of the finger: worn pins and loose screws do this";
+            "inspect the linkage of the finger: worn pins and loose screws do this";
         const SUPPLY: &str =
-            "look at the 24 V supply, its cable and its plug: the hand draws up to 2 A";
+            "check the 24 V supply, its cable and its plug: the hand draws up to 2 A";
         const ZERO: &str = "calibrate the force sensors with an empty hand (Hand > Device)";
-        const NOISE: &str = "look at the hand's ground and shield, and for a motor close by";
+        const NOISE: &str = "check the hand's ground and shield, and look for a motor nearby";
         const DRIFT: &str = "let the hand warm up, calibrate the force sensors, and check again";
         const WARM: &str =
-            "let the hand cool, and check again; if it stays, have the drive looked at";
-        const TIP: &str = "clean the fingertip, look at its cable, and have it changed if it stays";
+            "let the hand cool, and check again; if it persists, have the drive inspected";
+        const TIP: &str =
+            "clean the fingertip, check its cable, and have it replaced if this persists";
         match self {
             Self::OpenEnd => row("angle at the open end", CLEAN)
                 .good(985.0, 1000.0)

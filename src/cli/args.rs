@@ -32,7 +32,7 @@ use clap::{Args, Parser, Subcommand};
 
 /// Watch, drive and tune the FTP series tactile hand.
 ///
-/// Without a command the window opens, on the hand of last time or on the built-in simulated one.
+/// Without a command the window opens, on the last hand or on the built-in simulated one.
 #[derive(Debug, Parser)]
 #[command(name = "handscope", version, args_conflicts_with_subcommands = true, disable_help_subcommand = true, after_help = after_help())]
 pub(crate) struct Cli {
@@ -61,7 +61,7 @@ pub(crate) enum CliCommand {
         after_help = "Examples:\n  handscope read ANGLE_ACT TEMP --hand rs485:/dev/ttyUSB0\n  handscope read HAND_ID --hand tcp:192.168.11.210 --json\n\n'handscope registers' lists the names."
     )]
     Read(ReadArgs),
-    /// Find hands on all serial ports and CAN interfaces, or only where you say
+    /// Find hands on all serial ports and CAN interfaces, or only on those named
     #[command(
         after_help = "Examples:\n  handscope scan\n  handscope scan --serial /dev/ttyUSB0 --all-ids\n  handscope scan --tcp 192.168.11.210 --tcp 192.168.11.0/24 --json\n\nOn serial ports both protocols and all four speeds are tried, the likely ones first. Each port is opened and asked for HAND_ID; nothing is written. Only network addresses that you name are tried. Ctrl-C ends the scan with what was found.\n\nExit status: 0 hands found, or every place checked; 1 nothing found and a place could not be checked; 2 wrong usage."
     )]
@@ -83,12 +83,12 @@ pub(crate) enum CliCommand {
     Params(ParamsArgs),
     /// Let visitors of a booth play with a hand: full screen, one page, left with a PIN only
     #[command(
-        after_help = "Examples:\n  handscope exhibit\n  handscope exhibit booth.toml --hand rs485:/dev/ttyUSB0\n  handscope exhibit booth.toml --check\n\nNothing moves before staff arm with their PIN. Visitors can play what FILE names, within its limits, and press STOP. 'handscope help exhibit' describes FILE, the day's report, and how the program starts again by itself.\n\nExit status: 0 staff left, or FILE is well; 1 FILE cannot be taken, or no window opens; 2 wrong usage."
+        after_help = "Examples:\n  handscope exhibit\n  handscope exhibit booth.toml --hand rs485:/dev/ttyUSB0\n  handscope exhibit booth.toml --check\n\nNothing moves before staff arm with their PIN. Visitors can play what FILE names, within its limits, and press STOP. 'handscope help exhibit' describes FILE, the day's report, and how the program starts again by itself.\n\nExit status: 0 staff left, or FILE is valid; 1 FILE is not valid, or no window opens; 2 wrong usage."
     )]
     Exhibit(ExhibitArgs),
     /// List gamepads, or print what one does as it is moved, without a hand
     #[command(
-        after_help = "Examples:\n  handscope inputs\n  handscope inputs --watch\n  handscope inputs --watch --map my-pad.toml --json\n\nNothing moves. 'handscope help gamepad' describes the controls and the file. Linux only.\n\nExit status: 0 done, also where no gamepad is there; 1 gamepads cannot be read, or FILE cannot be taken; 2 wrong usage."
+        after_help = "Examples:\n  handscope inputs\n  handscope inputs --watch\n  handscope inputs --watch --map my-pad.toml --json\n\nNothing moves. 'handscope help gamepad' describes the controls and the file. Linux only.\n\nExit status: 0 done, also where no gamepad is there; 1 gamepads cannot be read, or FILE is not valid; 2 wrong usage."
     )]
     Inputs(InputsArgs),
     /// Close joints on an object repeatedly, and measure each grasp
@@ -98,40 +98,40 @@ pub(crate) enum CliCommand {
     Trial(TrialArgs),
     /// Find the fastest close on an object whose peak stays under a limit, and confirm it
     #[command(
-        after_help = "Examples:\n  handscope tune --hand rs485:/dev/ttyUSB0 --joint index --limit 500 --arm\n  handscope tune --hand tcp:192.168.11.210 --joint index,thumb_bend --pose thumb_rotate=300 --limit 300 --hold 150 --arm --out egg\n  handscope tune --hand rs485:/dev/ttyUSB0 --joint index --limit 500 --closes 22 --distribution-free --arm --json\n\nThis moves the hand, and only with --arm: put the object in its place, and keep everything else out of its way. Two slow closes find the object, then each is faster as far as what was measured allows, then 59 tell how late stops are, the last of them at the setting that was found: about 65 closes in five minutes (with --closes 10 about twenty in two, for a claim that holds only if the peaks vary normally). Each close is a trial as of 'handscope trial', with the same limits. Ctrl-C stops the hand, and the program stays until feedback shows rest; so it does after a fault, too much heat or force, or a lost link. 'handscope help tune' tells what the result means.\n\nExit status: 0 a setting was confirmed; 1 ended early, or none could be; 2 wrong usage."
+        after_help = "Examples:\n  handscope tune --hand rs485:/dev/ttyUSB0 --joint index --limit 500 --arm\n  handscope tune --hand tcp:192.168.11.210 --joint index,thumb_bend --pose thumb_rotate=300 --limit 300 --hold 150 --arm --out egg\n  handscope tune --hand rs485:/dev/ttyUSB0 --joint index --limit 500 --closes 22 --distribution-free --arm --json\n\nThis moves the hand, and only with --arm: put the object in its place, and keep everything else out of its way. Two slow closes find the object, then each is faster as far as what was measured allows, then 59 tell how late stops are, the last of them at the setting that was found: about 65 closes in five minutes (with --closes 10 about twenty in two, for a claim that holds only if the peaks vary normally). Each close is a trial as of 'handscope trial', with the same limits. Ctrl-C stops the hand, and the program stays until feedback shows rest; so it does after a fault, too much heat or force, or a lost link. 'handscope help tune' explains the result.\n\nExit status: 0 a setting was confirmed; 1 ended early, or none could be; 2 wrong usage."
     )]
     Tune(TuneArgs),
     /// Show what trials measured of a hand: how far its fingers went past their thresholds
     #[command(
-        after_help = "Examples:\n  handscope overshoot --hand rs485:/dev/ttyUSB0\n  handscope overshoot --hand tcp:192.168.11.210 --out overshoot.csv\n  handscope overshoot --hand rs485:/dev/ttyUSB0 --forget\n\nNo hand is asked. Each close of 'handscope trial', 'handscope tune' and the window's Tune that its threshold stopped is counted by joint, speed, threshold and stiffness of the object. The warnings of hard contacts use it in place of what was measured on another hand."
+        after_help = "Examples:\n  handscope overshoot --hand rs485:/dev/ttyUSB0\n  handscope overshoot --hand tcp:192.168.11.210 --out overshoot.csv\n  handscope overshoot --hand rs485:/dev/ttyUSB0 --forget\n\nNo hand is contacted. Each close of 'handscope trial', 'handscope tune' and the window's Tune that its threshold stopped is counted by joint, speed, threshold and stiffness of the object. The warnings of hard contacts use it in place of what was measured on another hand."
     )]
     Overshoot(OvershootArgs),
     /// Write the hand as a model for simulators and viewers: URDF, MJCF, and a table of joints
     #[command(
-        after_help = "Examples:\n  handscope model --urdf --out model\n  handscope model --urdf --mjcf --side left --out model\n\nNo hand is asked. The table tells for each joint its name, its drive, its place in the registers, and how counts and radians go together. 'handscope help dds' tells what the files hold."
+        after_help = "Examples:\n  handscope model --urdf --out model\n  handscope model --urdf --mjcf --side left --out model\n\nNo hand is contacted. The table lists for each joint its name, its drive, its place in the registers, and the conversion of counts to radians. 'handscope help dds' describes the files."
     )]
     Model(ModelArgs),
-    /// Print what lets a shell complete commands and options: bash, zsh, fish, ...
+    /// Print the shell completion script for commands and options: bash, zsh, fish, ...
     #[command(
-        after_help = "Examples:\n  handscope completions bash > ~/.local/share/bash-completion/completions/handscope\n  handscope completions fish > ~/.config/fish/completions/handscope.fish\n\nThe package brings them along; this is for a program that was built from source."
+        after_help = "Examples:\n  handscope completions bash > ~/.local/share/bash-completion/completions/handscope\n  handscope completions fish > ~/.config/fish/completions/handscope.fish\n\nThe package includes them; this is for a program that was built from source."
     )]
     Completions(CompletionsArgs),
     /// Write the manual pages, for packages
     #[command(hide = true)]
     Man(ManArgs),
-    /// Close thumb and index to a gap in mm, or on what stands between them
+    /// Close thumb and index to a gap in mm, or on an object between them
     #[command(
-        after_help = "Examples:\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 30 --arm\n  handscope grip --hand tcp:192.168.11.210 --kind pinch --gap 12.5 --speed 100 --force 300 --arm --json\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 120 --arm\n\nThe hand opens, and closes along the path on which the pads of thumb and index meet. It ends where the hand rests: at the gap, or on what it holds, whose size is told by the model. Ctrl-C stops the hand. 'handscope help grip' tells more.\n\nExit status: 0 at the gap, or something is held; 1 ended early, or stopped by something that is not held; 2 wrong usage."
+        after_help = "Examples:\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 30 --arm\n  handscope grip --hand tcp:192.168.11.210 --kind pinch --gap 12.5 --speed 100 --force 300 --arm --json\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 120 --arm\n\nThe hand opens, and closes along the path on which the pads of thumb and index meet. It ends where the hand rests: at the gap, or on what it holds, whose size the model gives. Ctrl-C stops the hand. 'handscope help grip' describes it.\n\nExit status: 0 at the gap, or something is held; 1 ended early, or stopped by something that is not held; 2 wrong usage."
     )]
     Grip(GripArgs),
     /// Check an empty hand: strokes, backlash, friction, speed, forces, fingertips, supply
     #[command(
-        after_help = "Examples:\n  handscope check --hand rs485:/dev/ttyUSB0 --arm\n  handscope check --hand tcp:192.168.11.210 --arm --out checked\n  handscope check --hand rs485:/dev/ttyUSB0 --arm --json\n\nThis moves the hand, and only with --arm: take everything out of it and out of its way. Each joint bends and opens alone, at speeds 200 and 500, then all six open and close a little, in about 80 seconds. Each joint stops by itself at 150 g; the hand is stopped at 300 g or 60 degrees, and where it is not empty. With --press it asks for a press of each fingertip at the end, when nothing moves any more. Ctrl-C stops the hand, and the program stays until feedback shows rest. 'handscope help check' tells what each figure means, and what is kept of it.\n\nExit status: 0 nothing is to be done; 1 something is, or it ended early; 2 wrong usage."
+        after_help = "Examples:\n  handscope check --hand rs485:/dev/ttyUSB0 --arm\n  handscope check --hand tcp:192.168.11.210 --arm --out checked\n  handscope check --hand rs485:/dev/ttyUSB0 --arm --json\n\nThis moves the hand, and only with --arm: take everything out of it and out of its way. Each joint bends and opens alone, at speeds 200 and 500, then all six open and close a little, in about 80 seconds. Each joint stops by itself at 150 g; the hand is stopped at 300 g or 60 degrees, and where it is not empty. With --press it asks for a press of each fingertip at the end, when nothing moves. Ctrl-C stops the hand, and the program stays until feedback shows rest. 'handscope help check' explains each figure, and what is stored.\n\nExit status: 0 no action needed; 1 action needed, or it ended early; 2 wrong usage."
     )]
     Check(CheckArgs),
     /// Let a hand follow another program: hand tracking, a glove, a script
     #[command(
-        after_help = "Examples:\n  handscope follow --hand sim: --udp 127.0.0.1:6010\n  handscope follow --hand rs485:/dev/ttyUSB0 --udp 127.0.0.1:6010 --arm\n  handscope follow --hand tcp:192.168.11.210 --dds --arm\n  handscope follow --hand rs485:/dev/ttyUSB0 --mirror rs485:/dev/ttyUSB1 --scale 0.5 --arm\n\nEach line is one object, {\"seq\":1,\"right\":[six of 0..1 or null]}, 0 bent, 1 open ('handscope help stream'). With --dds it takes what Unitree's programs send, and tells them the hand's state ('handscope help dds'); nobody else is contacted unless you name an interface.\n\nThis moves the hand, and only with --arm. It begins where the hand is, and stays within --lead and --rate. Without a fresh line for 200 ms the hand is held, after 1 s it is stopped and disarmed: press Enter to let it move again. Ctrl-C stops the hand, and the program stays until feedback shows rest.\n\nExit status: 0 a person ended it; 1 it ended otherwise; 2 wrong usage."
+        after_help = "Examples:\n  handscope follow --hand sim: --udp 127.0.0.1:6010\n  handscope follow --hand rs485:/dev/ttyUSB0 --udp 127.0.0.1:6010 --arm\n  handscope follow --hand tcp:192.168.11.210 --dds --arm\n  handscope follow --hand rs485:/dev/ttyUSB0 --mirror rs485:/dev/ttyUSB1 --scale 0.5 --arm\n\nEach line is one object, {\"seq\":1,\"right\":[six of 0..1 or null]}, 0 bent, 1 open ('handscope help stream'). With --dds it accepts what Unitree's programs send, and publishes the hand's state to them ('handscope help dds'); no other computer is contacted unless you name an interface.\n\nThis moves the hand, and only with --arm. It begins where the hand is, and stays within --lead and --rate. Without a fresh line for 200 ms the hand is held, after 1 s it is stopped and disarmed: press Enter to let it move again. Ctrl-C stops the hand, and the program stays until feedback shows rest.\n\nExit status: 0 ended by the user; 1 ended otherwise; 2 wrong usage."
     )]
     Follow(FollowArgs),
     /// Record everything a hand reports into a recording file
@@ -139,39 +139,39 @@ pub(crate) enum CliCommand {
         after_help = "Examples:\n  handscope record --hand rs485:/dev/ttyUSB0\n  handscope record --hand tcp:192.168.11.210 --for 60 --out grasp.mcap\n\nIt only reads. Ctrl-C ends the recording and closes the file; the last line on standard output is one JSON object of statistics. No file is overwritten. After a crash the file still opens: 'handscope info' says what is missing.\n\nThe file is MCAP with ROS 2 messages ('handscope help sessions')."
     )]
     Record(RecordArgs),
-    /// Tell what a recording file holds, and what of it is missing
+    /// Show what a recording file holds, and what is missing from it
     #[command(
-        after_help = "Examples:\n  handscope info grasp.mcap\n  handscope info grasp.mcap --json\n\nThe file is read to its end, so that every checksum is looked at. Exit status: 0 the file could be read, complete or not; 1 it could not; 2 wrong usage."
+        after_help = "Examples:\n  handscope info grasp.mcap\n  handscope info grasp.mcap --json\n\nThe file is read to its end, so that every checksum is checked. Exit status: 0 the file could be read, complete or not; 1 it could not; 2 wrong usage."
     )]
     Info(InfoArgs),
-    /// Turn a recording file, or a stretch of it, into CSV, Parquet, a rosbag2 folder, LeRobot, or a shorter recording file
+    /// Convert a recording file, or a part of it, into CSV, Parquet, a rosbag2 folder, LeRobot, or a shorter recording file
     #[command(
-        after_help = "Examples:\n  handscope export grasp.mcap --csv --out grasp.csv\n  handscope export grasp.mcap --parquet --from 12.5 --to 20 --out grasp.parquet\n  handscope export grasp.mcap --rosbag --out grasp\n  handscope export long.mcap --mcap --from 600 --to 660 --out minute.mcap\n  handscope export grasp.mcap --lerobot --fps 30 --task 'close on an egg' --out egg\n  handscope export mon.mcap tue.mcap --lerobot --episode notes --out eggs\n  handscope export grasp.mcap --csv --from -10 --out - | gzip > end.csv.gz\n\nNothing is overwritten, and nothing half written stays. 'handscope help sessions' lists the columns."
+        after_help = "Examples:\n  handscope export grasp.mcap --csv --out grasp.csv\n  handscope export grasp.mcap --parquet --from 12.5 --to 20 --out grasp.parquet\n  handscope export grasp.mcap --rosbag --out grasp\n  handscope export long.mcap --mcap --from 600 --to 660 --out minute.mcap\n  handscope export grasp.mcap --lerobot --fps 30 --task 'close on an egg' --out egg\n  handscope export mon.mcap tue.mcap --lerobot --episode notes --out eggs\n  handscope export grasp.mcap --csv --from -10 --out - | gzip > end.csv.gz\n\nNothing is overwritten, and no partial file is left. 'handscope help sessions' lists the columns."
     )]
     Export(ExportArgs),
-    /// Write a whole copy of a recording file that is damaged or was not closed
+    /// Write a repaired copy of a recording file that is damaged or was not closed
     #[command(
         after_help = "Examples:\n  handscope recover crashed.mcap\n  handscope recover damaged.mcap --out whole.mcap\n\nThe file itself stays as it is. The copy holds all that can be read, and a note of what was lost."
     )]
     Recover(RecoverArgs),
     /// Make a recording file of the values that 'export --csv' wrote
     #[command(
-        after_help = "Examples:\n  handscope import grasp.csv\n  handscope import grasp.csv --out again.mcap\n  handscope import monday.csv tuesday.csv\n\nColumns are known by their names, in any order; others are skipped and named. What no column says stays unknown: the day, the hand, what it kept, the bytes on the wire."
+        after_help = "Examples:\n  handscope import grasp.csv\n  handscope import grasp.csv --out again.mcap\n  handscope import monday.csv tuesday.csv\n\nColumns are known by their names, in any order; others are skipped and named. What no column gives stays unknown: the day, the hand, its parameters, the bytes on the wire."
     )]
     Import(ImportArgs),
-    /// Be a hand that says what was recorded, on the wires of 'handscope sim'
+    /// Act as a hand that replays a recording, on the wires of 'handscope sim'
     #[command(
         after_help = "Examples:\n  handscope replay grasp.mcap --tcp 127.0.0.1:6000\n  handscope replay grasp.mcap --rs485 /tmp/hand --speed 0.5 --loop\n\nEach wire is announced as 'ready KIND PLACE'. Writes are acknowledged and change nothing. While the link was down the hand is silent. It ends with the recording, or at Ctrl-C."
     )]
     Replay(ReplayArgs),
     /// Let several programs use one hand at a time, over Modbus TCP, and show it to live viewers
     #[command(
-        after_help = "Examples:\n  handscope share --hand rs485:/dev/ttyUSB0 --tcp 127.0.0.1:6001\n  handscope share --hand tcp:192.168.11.210 --tcp 127.0.0.1:6001 --writers\n  handscope share --hand sim: --dds\n  handscope share --hand sim: --foxglove 127.0.0.1:8765\n  handscope share --hand sim: --stdio\n\nIt prints 'ready tcp ADDRESS', 'ready foxglove ADDRESS' or 'ready dds ADDRESS' and runs until Ctrl-C, with --stdio until standard input ends. With --dds the hand's state is told as Unitree's driver does it, and to ROS 2 ('handscope help dds'); no other computer is contacted unless you name an interface. Programs find the registers where the hand itself has them, at every unit id. Their reads are answered from what is read anyway. Without --writers nobody can move the hand; with it the first that writes can, and the hand is stopped when that ends. 'handscope help share' tells what may be written.\n\nExit status: 0 ended by Ctrl-C; 1 no hand, or the address cannot be served; 2 wrong usage."
+        after_help = "Examples:\n  handscope share --hand rs485:/dev/ttyUSB0 --tcp 127.0.0.1:6001\n  handscope share --hand tcp:192.168.11.210 --tcp 127.0.0.1:6001 --writers\n  handscope share --hand sim: --dds\n  handscope share --hand sim: --foxglove 127.0.0.1:8765\n  handscope share --hand sim: --stdio\n\nIt prints 'ready tcp ADDRESS', 'ready foxglove ADDRESS' or 'ready dds ADDRESS' and runs until Ctrl-C, with --stdio until standard input ends. With --dds the hand's state is published as Unitree's driver does it, and for ROS 2 ('handscope help dds'); no other computer is contacted unless you name an interface. Programs find the registers where the hand itself has them, at every unit id. Their reads are answered from what is read anyway. Without --writers no client can move the hand; with it the first that writes can, and the hand is stopped when that ends. 'handscope help share' lists what may be written.\n\nExit status: 0 ended by Ctrl-C; 1 no hand, or the address cannot be served; 2 wrong usage."
     )]
     Share(ShareArgs),
     /// List the hands that other Handscopes share, as they come and go
     #[command(
-        after_help = "Examples:\n  handscope fleet\n  handscope fleet eth0 --for 3 --json\n\nIt listens on DDS for who shares a hand with 'share --dds' or with 'Join' in its window ('handscope help dds'), and connects to none. A line says the computer, the hand, how it is, who moves it, and the URL to watch it at.\n\nExit status: 0 ended by Ctrl-C or by --for; 1 there is no such interface; 2 wrong usage."
+        after_help = "Examples:\n  handscope fleet\n  handscope fleet eth0 --for 3 --json\n\nIt listens on DDS for hands shared with 'share --dds' or with 'Join' in a window ('handscope help dds'), and connects to none. Each line gives the computer, the hand, its state, who moves it, and the URL to watch it at.\n\nExit status: 0 ended by Ctrl-C or by --for; 1 there is no such interface; 2 wrong usage."
     )]
     Fleet(FleetArgs),
     /// Simulate a hand for other programs, on pseudo-terminals, TCP and CAN
@@ -179,7 +179,7 @@ pub(crate) enum CliCommand {
         after_help = sim::help()
     )]
     Sim(SimArgs),
-    /// Hold a hand if the program that started this one dies: started by whatever arms a hand, tied by its standard input
+    /// Hold a hand if the program that started this one dies: started by each program that arms a hand, connected by its standard input
     #[command(hide = true)]
     Hold(HoldArgs),
     /// Print the register map

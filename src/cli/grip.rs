@@ -46,7 +46,7 @@ fn kind(text: &str) -> Result<GripKind, String> {
     let named = GripKind::ALL.into_iter().find(|kind| kind.name() == text);
     let kind = named.ok_or_else(|| {
         let known = GripKind::ALL.map(GripKind::name).join(", ");
-        format!("it is none of {known}")
+        format!("it is not one of {known}")
     })?;
     kind.offered().map_err(|why| why.to_string())?;
     Ok(kind)
@@ -107,7 +107,7 @@ fn blocks(hand: &Endpoint) -> SizeBlocks {
 /// Describes the object between the pads, and the shape that its size refers to.
 fn held(report: &GripReport, blocks: &SizeBlocks) -> String {
     let Some(gap) = report.gap else {
-        return "how far the pads are apart is not known".into();
+        return "the distance between the pads is unknown".into();
     };
     let pads = format!("the pads are about {:.0} mm apart, by the model", gap.mm);
     match blocks.size(gap) {
@@ -135,9 +135,7 @@ fn outcome(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Result<
         Err(why @ Abort::OtherController { .. }) => {
             Err(format!("{why}: let one of them move the hand"))
         }
-        Err(why @ Abort::Fault { .. }) => {
-            Err(format!("{why}: 'handscope doctor' says what it means"))
-        }
+        Err(why @ Abort::Fault { .. }) => Err(format!("{why}: 'handscope doctor' explains it")),
         Err(Abort::LinkLost) => Err(STOP_LOST.into()),
         Err(why) => Err(why.to_string()),
     }

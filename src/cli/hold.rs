@@ -101,14 +101,14 @@ pub(crate) async fn run(args: &HoldArgs) -> anyhow::Result<()> {
             Ok(()) => {
                 let ms = died.elapsed().as_millis();
                 notify(&format!(
-                    "the program that moved {hand} ended without a word; the hand was stopped, and rests since {ms} ms after"
+                    "the program that moved {hand} terminated unexpectedly; the hand was stopped and at rest {ms} ms later"
                 ));
                 return Ok(());
             }
         },
     };
     notify(&format!(
-        "the program that moved {hand} ended without a word, and the hand: {how}"
+        "the program that moved {hand} terminated unexpectedly, and the hand: {how}"
     ));
     Err(AlreadyReported.into())
 }

@@ -87,7 +87,7 @@ fn report_panics() {
         let (place, words) = (place.unwrap_or_default(), panic.payload_as_str());
         let words = words.unwrap_or("no words").replace('\n', " ");
         out::notify(&format!(
-            "a fault of this program, please report it ({place}: {words}); each hand that it moved is told to stop"
+            "internal error, please report it ({place}: {words}); each hand that it moved is being stopped"
         ));
     }));
 }
@@ -157,7 +157,7 @@ fn has_room_for_files() -> anyhow::Result<()> {
     match opened {
         Ok(_all) => Ok(()),
         Err(error) => Err(anyhow::anyhow!(
-            "cannot begin: too few files may be open at once ({error}); raise the limit with 'ulimit -n 1024'"
+            "cannot start: the limit on open files is too low ({error}); raise it with 'ulimit -n 1024'"
         )),
     }
 }

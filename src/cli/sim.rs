@@ -45,7 +45,7 @@ pub(crate) struct SimArgs {
 }
 
 const SIM_HELP: &str = "\
-Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n  handscope sim --print-body > worn.toml\n  handscope sim --tcp 127.0.0.1:6000 --body worn.toml\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix, SIGUSR1 switches them off for a second, and 'power cycled' is printed once they are back; what was not saved is gone. SIGUSR2 lets their readings stand still while their joints go on, and the next one undoes it; 'feedback frozen' and 'feedback live' are printed.
+Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n  handscope sim --print-body > worn.toml\n  handscope sim --tcp 127.0.0.1:6000 --body worn.toml\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix, SIGUSR1 switches them off for a second, and 'power cycled' is printed once they are back; what was not saved is gone. SIGUSR2 freezes their readings while their joints keep moving, and the next one undoes it; 'feedback frozen' and 'feedback live' are printed.
 On Modbus TCP the unit id selects the hand; 255 means the first, and a single hand answers to every id.";
 
 /// Text below the list of options.

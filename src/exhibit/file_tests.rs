@@ -162,14 +162,14 @@ const WRONG: &[(&str, &str, usize, &str, &str)] = &[
         "poses.toml\"\nposes = \"x\"",
         7,
         "poses",
-        "this key stands here twice",
+        "duplicate key",
     ),
     (
         "tiles = ",
         "tilse = ",
         8,
         "tilse",
-        "there is no such key here",
+        "unknown key, known here",
     ),
     (
         "\"Fist\", ",
@@ -303,7 +303,7 @@ const WRONG: &[(&str, &str, usize, &str, &str)] = &[
         "rest = 30",
         17,
         "rest",
-        "there is no such key here",
+        "unknown key, known here",
     ),
 ];
 

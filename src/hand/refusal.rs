@@ -115,7 +115,7 @@ pub enum Refusal {
     PackingUnsafe,
     /// Nothing was sent: too little was read to identify this as a hand of the manual's series.
     #[error(
-        "it is not known yet whether this is a hand of this series, and nothing is written before"
+        "whether this is a hand of this series is not known yet; nothing is written until it is"
     )]
     NotIdentified,
 }

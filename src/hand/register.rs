@@ -239,7 +239,7 @@ pub const SAVE: Register = Register {
 };
 /// RESET_PARA.
 pub const RESET_PARA: Register = Register {
-    meaning: "1 returns all parameters to the factory's.",
+    meaning: "1 resets all parameters to the factory values.",
     ..byte("RESET_PARA", 1006, "2.6.5")
 };
 /// GESTURE_NO_SET, whose address the manual does not give.
@@ -247,7 +247,7 @@ pub const GESTURE_NO_SET: Register = Register {
     range: Some((1, 40)),
     default: Some(255),
     origin: Origin::Field,
-    meaning: "Makes the hand take a stored pose: 1 to 13 fixed, 14 to 40 the user's. Address not in the manual's table.",
+    meaning: "Moves the hand to a stored pose: 1 to 13 fixed, 14 to 40 the user's. Address not in the manual's table.",
     ..byte("GESTURE_NO_SET", 1008, "2.6.7")
 };
 /// GESTURE_FORCE_CLB.
@@ -285,7 +285,7 @@ pub const POS_SET: Register = Register {
     access: Access::ReadWrite,
     also: Some(-1),
     persistence: Persistence::Volatile,
-    meaning: "Drive positions wanted, 0 open to 2000 bent, -1 no action. The manual advises against writing it.",
+    meaning: "Target drive positions, 0 open to 2000 bent, -1 no action. The manual advises against writing it.",
     ..six("POS_SET", 1474, (0, 2000), "2.6.10")
 };
 /// ANGLE_SET(m).
@@ -293,7 +293,7 @@ pub const ANGLE_SET: Register = Register {
     access: Access::ReadWrite,
     also: Some(-1),
     persistence: Persistence::Volatile,
-    meaning: "Angles wanted, 0 bent to 1000 open, -1 no action; acts at once.",
+    meaning: "Target angles, 0 bent to 1000 open, -1 no action; acts at once.",
     ..six("ANGLE_SET", 1486, (0, 1000), "2.6.11")
 };
 /// FORCE_SET(m).

@@ -10,7 +10,7 @@ pub(crate) const ROUNDING: f64 = 1e-6;
 /// Error in a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
 pub enum FieldFault {
-    #[error("is there twice")]
+    #[error("is duplicated")]
     Twice,
     #[error("has another type")]
     Type,

@@ -111,13 +111,13 @@ pub enum StreamLineFault {
     #[error("longer than {LINE_MAX} bytes")]
     TooLong,
     /// A number is NaN or infinite.
-    #[error("a number is NaN or infinite: send null to leave a joint alone")]
+    #[error("a number is NaN or infinite: send null to leave a joint unchanged")]
     NotFinite,
     /// Not an object of this kind.
-    #[error("not a line of JSON as 'handscope help stream' has it")]
+    #[error("not a line of JSON as 'handscope help stream' describes it")]
     Malformed,
     /// A field has the wrong type.
-    #[error("not of the type that 'handscope help stream' has")]
+    #[error("not of the type that 'handscope help stream' gives")]
     Type,
     /// A field occurs twice.
     #[error("there twice")]
@@ -138,10 +138,10 @@ pub enum StreamLineFault {
     #[error("not from {} to {} mm", Gap::MIN.mm(), Gap::MAX.mm())]
     Gap,
     /// Both a gap and values are given.
-    #[error("grip_mm stands beside six values: send one of them")]
+    #[error("grip_mm together with six values: send one of them")]
     Both,
     /// The sequence number is not above the previous one.
-    #[error("late or doubled: not above the one before")]
+    #[error("late or duplicate: not above the previous one")]
     Late,
     /// Another sender is being followed.
     #[error("another sender is followed until it is silent")]

@@ -91,10 +91,10 @@ pub struct LeaseHolder {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum LeaseRefusal {
     /// Another owner has the lease.
-    #[error("another may move the hand now: nothing was sent")]
+    #[error("another controller has control; nothing was sent")]
     Taken(Owner),
     /// The lease ended, and the user has to grant it again.
-    #[error("nobody may move the hand now, a person has to grant it: nothing was sent")]
+    #[error("no one has control: grant it first; nothing was sent")]
     Ended(Disarmed),
 }
 

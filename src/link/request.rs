@@ -72,13 +72,13 @@ pub enum RequestError {
     #[error("{0}: nothing was sent")]
     NotNow(NotSent),
     /// The request queue is full.
-    #[error("{limit} requests wait already: nothing was sent")]
+    #[error("{limit} requests are already queued: nothing was sent")]
     Full {
         /// Capacity of the queue.
         limit: usize,
     },
     /// The request is too long for this wire.
-    #[error("{address}+{len} cannot be asked over this wire in one request")]
+    #[error("{address}+{len} does not fit in one request on this wire")]
     TooLong {
         /// First byte.
         address: u16,

@@ -184,7 +184,7 @@ pub enum LinkTrouble {
     },
     /// Nothing but our own requests came back.
     #[error(
-        "{place} only gives back what is sent: the adapter echoes, and no hand answers behind it; check the hand's power and cable"
+        "{place} only returns what is sent: the adapter echoes, and no hand answers behind it; check the hand's power and cable"
     )]
     OnlyEcho {
         /// Port or address.

@@ -151,12 +151,12 @@ fn what_is_wrong_with_a_grip_is_said_with_line_reason_and_what_to_do() {
         (
             "pinch\", gap_mm = 30",
             "claw\", gap_mm = 30",
-            "line 17, `kind`: \"claw\" is not known here, only pinch, three-fingers",
+            "line 17, `kind`: \"claw\" is unknown here, known: pinch, three-fingers",
         ),
         (
             "gap_mm = 30",
             "gap = 30",
-            "line 17, `gap`: there is no such key here, only kind, gap_mm",
+            "line 17, `gap`: unknown key, known here: kind, gap_mm",
         ),
         (
             "force = 400\n",
@@ -171,17 +171,17 @@ fn what_is_wrong_with_a_grip_is_said_with_line_reason_and_what_to_do() {
         (
             "pose = \"Block\"",
             "pose = \"Block\"\nforce = 3",
-            "line 23, `force`: it cannot stand beside `pose`: take one away",
+            "line 23, `force`: it conflicts with `pose`: remove one",
         ),
         (
             "pose = \"Block\"",
             "pose = \"Block\"\ngrip = { kind = \"pinch\", gap_mm = 9 }",
-            "line 23, `grip`: it cannot stand beside `pose`",
+            "line 23, `grip`: it conflicts with `pose`",
         ),
         (
             "[\"little\"]",
             "[\"index\"]",
-            "line 9, `leave`: a grip by size needs index: take it away from here",
+            "line 9, `leave`: a grip by size needs index: remove it here",
         ),
         (
             "grip = { kind = \"pinch\", gap_mm = 12.5 }\n",
@@ -196,7 +196,7 @@ fn what_is_wrong_with_a_grip_is_said_with_line_reason_and_what_to_do() {
         (
             "contact_n = 0.1",
             "contact = 1",
-            "line 11, `contact`: there is no such key here, only",
+            "line 11, `contact`: unknown key, known here:",
         ),
         (
             "fingers = 2",

@@ -9,7 +9,7 @@ use std::time::Duration;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Abort {
     /// The user ended it.
-    #[error("ended by a person")]
+    #[error("ended by the user")]
     Person,
     /// Stop, disarming, outdated feedback.
     #[error("the hand is no longer armed{}", why.map(|why| format!(": {why}")).unwrap_or_default())]
@@ -18,7 +18,7 @@ pub enum Abort {
         why: Option<Disarmed>,
     },
     /// The hand was armed again since the user armed it for this program.
-    #[error("the hand was armed anew")]
+    #[error("the hand was rearmed")]
     ArmedAnew,
     /// Another mover of this program, or another program, was granted control. It moves the hand now: this is the only abort that
     /// is not followed by a stop.
@@ -69,7 +69,7 @@ pub enum Abort {
         dof: Dof,
     },
     /// Readings that the limits depend on are missing or outdated.
-    #[error("the {what} readings cannot be watched: {}", not_read(*age, *stall))]
+    #[error("the {what} readings cannot be monitored: {}", not_read(*age, *stall))]
     NotRead {
         what: &'static str,
         /// Age of the last reading; `None` if none arrived.
@@ -78,7 +78,7 @@ pub enum Abort {
         stall: Option<Duration>,
     },
     /// A reading that the limits depend on is implausible.
-    #[error("the {what} of {} cannot be watched: it makes no sense", dof.name())]
+    #[error("the {what} of {} cannot be monitored: the value is implausible", dof.name())]
     Blind {
         what: &'static str,
         /// The joint with this reading.
@@ -124,9 +124,9 @@ fn fault_words(joint: Option<(Dof, Faults)>) -> String {
 /// Text for missing or outdated readings.
 fn not_read(age: Option<Duration>, stall: Option<Duration>) -> String {
     match (age, stall) {
-        (None, _) => "none came yet".into(),
+        (None, _) => "none received yet".into(),
         (Some(age), None) => format!(
-            "the last is {:.1} s old, and the hand sends no newer one in time",
+            "the last is {:.1} s old, and the hand sent no newer one in time",
             age.as_secs_f64()
         ),
         (Some(age), Some(stall)) => format!(

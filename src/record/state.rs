@@ -116,16 +116,16 @@ impl Disarmed {
 impl fmt::Display for Disarmed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Stop => "it was told to stop",
+            Self::Stop => "a stop was requested",
             Self::Person => "it was disarmed",
             Self::Fault => "a drive reports a fault",
             Self::LinkLost => "the link was lost",
-            Self::Stale => "feedback grew old",
-            Self::FrozenFeedback => "feedback stands still though motion was asked for",
+            Self::Stale => "feedback became stale",
+            Self::FrozenFeedback => "feedback is frozen while motion is commanded",
             Self::Resume => "this computer slept",
             Self::OtherController => "another controller talks to the hand",
-            Self::Released => "it was let go",
-            Self::Silent => "nothing was asked of it for too long",
+            Self::Released => "the hold-to-run control was released",
+            Self::Silent => "it received no command for too long",
             Self::Hot => "a drive is too hot",
             Self::HeatUnknown => "the temperature of a drive is implausible or unknown",
         })
@@ -146,26 +146,26 @@ pub enum ArmRefusal {
     #[error("a drive reports a fault: clear it first")]
     Fault,
     /// The hand saves or calibrates: it has the line to itself, so its joints are not monitored.
-    #[error("the hand writes its flash or calibrates: wait until that is over")]
+    #[error("the hand is writing its flash or calibrating: wait until it is done")]
     HandBusy,
     /// The control that must be held while the hand moves is not held.
-    #[error("what has to be held to run is not held")]
+    #[error("the hold-to-run control is not held")]
     LetGo,
     /// A stop, a disarm or another arming was requested before this one was complete.
-    #[error("something else was asked for before the hand was armed")]
+    #[error("another request came before the hand was armed")]
     Replaced,
     #[error("the hand did not acknowledge its speed and force limits")]
     NoAnswer,
     /// The hand, or the gateway in front of it, refused them.
     #[error(
-        "the hand refused its speed and force limits; if another Handscope shares it, a person there has to let you"
+        "the hand refused its speed and force limits; if another Handscope shares it, ask someone there to grant you control"
     )]
     Refused,
     /// Angles or faults were not read yet, or are outdated.
-    #[error("angles and faults are not known yet, or are old")]
+    #[error("angles and faults are unknown or stale")]
     NotRead,
     /// A joint with an implausible angle.
-    #[error("the angle of {} makes no sense", dof.name())]
+    #[error("implausible angle of {}", dof.name())]
     UnknownPose {
         /// The first such joint.
         dof: Dof,
@@ -221,7 +221,7 @@ impl fmt::Display for SetpointConflict {
             Some(holds) => write!(f, "{register}: {dof} {holds}")?,
         }
         match self.wrote {
-            Some(wrote) => write!(f, ", we wrote {wrote}"),
+            Some(wrote) => write!(f, ", {wrote} was written"),
             None => Ok(()),
         }
     }

@@ -112,7 +112,7 @@ pub enum NotSent {
     #[error("the hand moves: wait until it rests")]
     Moving,
     /// It is unknown if the hand rests.
-    #[error("it is not known whether the hand rests: its status or angles are missing or old")]
+    #[error("whether the hand is at rest is unknown: its status or angles are missing or stale")]
     RestUnknown,
     /// The result of an earlier SAVE could be mistaken for that of this one.
     #[error("the last SAVE was just now: wait {} s", .wait.as_secs_f64().ceil())]

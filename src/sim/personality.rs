@@ -97,7 +97,7 @@ fn no_switch(name: &str, value: &str) -> NoSwitch {
 switches! {
     "-1 in ANGLE_SET while the joint moves (manual 2.6.11: no action)."
     minus_one_mid_move "minus-one" MinusOne {
-        "The joint goes on to its former target." Ignore "ignore",
+        "The joint continues to its previous target." Ignore "ignore",
         "The joint stops where it is." Freeze "freeze",
         "Taken for 65535, which is clamped to 1000." Clamp "clamp",
     }
@@ -105,7 +105,7 @@ switches! {
     speed_zero "speed-zero" SpeedZero {
         "The joint does not move." Freeze "freeze",
         "The joint creeps." Slowest "slowest",
-        "The former speed stays." Ignored "ignored",
+        "The previous speed stays in effect." Ignored "ignored",
     }
     "What a drive compares FORCE_SET with (manual 2.6.12: FORCE_ACT)."
     force_compared "force-compared" ForceCompared {
@@ -205,7 +205,7 @@ switches! {
     "CLEAR_ERROR, to a joint that was on its way (manual 2.6.3)."
     clear_error "clear-error" ClearError {
         "The joint stays where it is." Stay "stay",
-        "The joint goes on to its target." Resume "resume",
+        "The joint continues to its target." Resume "resume",
     }
     "The frame of a Modbus RTU reply."
     rtu_reply "rtu-reply" RtuReplyGap {

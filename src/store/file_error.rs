@@ -54,10 +54,10 @@ pub enum FileCause {
     #[error("this is not TOML, which has lines like key = value: {0}")]
     Syntax(String),
     /// Duplicate key.
-    #[error("this key stands here twice: take one away")]
+    #[error("duplicate key: remove one")]
     KeyTwice,
     /// Two mutually exclusive keys.
-    #[error("it cannot stand beside `{other}`: take one away")]
+    #[error("it conflicts with `{other}`: remove one")]
     Both {
         /// The other key.
         other: &'static str,
@@ -66,7 +66,7 @@ pub enum FileCause {
     #[error("it is missing: add it")]
     Missing,
     /// Unknown key.
-    #[error("there is no such key here, only {known}: correct it, or take it away")]
+    #[error("unknown key, known here: {known}; correct it, or remove it")]
     Unknown {
         /// Known keys.
         known: String,
@@ -88,7 +88,7 @@ pub enum FileCause {
         wanted: ValueKind,
     },
     /// Unknown word.
-    #[error("\"{got}\" is not known here, only {known}")]
+    #[error("\"{got}\" is unknown here, known: {known}")]
     Choice {
         /// Word found.
         got: String,
@@ -99,7 +99,7 @@ pub enum FileCause {
     #[error("{0}")]
     NotOffered(NotOffered),
     /// A joint that a grip by size must control.
-    #[error("a grip by size needs {}: take it away from here", dof.name())]
+    #[error("a grip by size needs {}: remove it here", dof.name())]
     Pinches {
         /// Joint to remove from the file.
         dof: Dof,
@@ -153,13 +153,13 @@ pub enum FileCause {
         path: String,
     },
     /// A path outside the folder of this file.
-    #[error("{got} does not lie in the folder of this file, or below it")]
+    #[error("{got} is not in the folder of this file, or below it")]
     Outside {
         /// Path found.
         got: String,
     },
     /// A file that holds nothing of its kind.
-    #[error("there is nothing in it")]
+    #[error("it is empty")]
     Empty,
     /// The system could not read the file.
     #[error("it cannot be read: {0}")]

@@ -82,12 +82,12 @@ mod tests {
             (
                 "unknown field `retry`, expected one of `grip`, `retries`",
                 Some("retry"),
-                "there is no such key here, only grip, retries: correct it, or take it away",
+                "unknown key, known here: grip, retries; correct it, or remove it",
             ),
             (
                 "unknown variant `open`, expected `holding`",
                 None,
-                "\"open\" is not known here, only holding",
+                "\"open\" is unknown here, known: holding",
             ),
             (
                 "invalid type: string \"a, b\", expected i16",

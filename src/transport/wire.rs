@@ -168,7 +168,7 @@ pub enum TransportError {
     LinuxOnly,
     /// Queued frames cannot be sent: no node acknowledges them.
     #[error(
-        "{place} cannot send, its frames stay in the queue: nobody on the CAN bus acknowledges them; check cable, termination, bit rate and the hand's power"
+        "{place} cannot send, its frames stay in the queue: no other node on the CAN bus acknowledges them; check cable, termination, bit rate and the hand's power"
     )]
     QueueFull {
         /// Interface or port.
@@ -184,7 +184,7 @@ pub enum TransportError {
     },
     /// The controller counted many errors, and requests get no reply.
     #[error(
-        "{place} is error-passive and nothing answers: most likely the bit rate is wrong, or nobody else is on the CAN bus; check bit rate, cable, termination and the hand's power"
+        "{place} is error-passive and nothing answers: most likely the bit rate is wrong, or there is no other node on the CAN bus; check bit rate, cable, termination and the hand's power"
     )]
     ErrorPassive {
         /// Interface.

@@ -327,16 +327,16 @@ fn every_early_end_names_its_cause() {
             Abort::Disarmed {
                 why: Some(Disarmed::Stale),
             },
-            "the hand is no longer armed: feedback grew old",
+            "the hand is no longer armed: feedback became stale",
         ),
-        (Abort::ArmedAnew, "the hand was armed anew"),
+        (Abort::ArmedAnew, "the hand was rearmed"),
         (
             Abort::NotRead {
                 what: "angle",
                 age,
                 stall: None,
             },
-            "the last is 0.7 s old, and the hand sends no newer one in time",
+            "the last is 0.7 s old, and the hand sent no newer one in time",
         ),
         (
             Abort::NotRead {
@@ -344,7 +344,7 @@ fn every_early_end_names_its_cause() {
                 age: None,
                 stall: None,
             },
-            "none came yet",
+            "none received yet",
         ),
     ] {
         let said = why.to_string();

@@ -176,7 +176,7 @@ class Hand:
             if self._link_lost:
                 raise LinkLost(self._link_lost, "link_lost")
             if not self._newest:
-                raise HandscopeError("the hand tells no state")
+                raise HandscopeError("the hand reports no state")
             return self._newest
 
     @property

@@ -144,7 +144,7 @@ class Program:
             told = subprocess.run([self.path, "--version"], capture_output=True, text=True).stdout
             version = re.search(r"\d+(\.\d+)+\S*", told)
             return ProgramNotFound(self._other_version(version.group() if version else "of an unknown version"))
-        return HandscopeError(sentence(self._words, "the program 'handscope' ended without a word"))
+        return HandscopeError(sentence(self._words, "the program 'handscope' terminated unexpectedly"))
 
     def _other_version(self, version: str) -> str:
         return f"the program at {self.path} is version {version}, which this package cannot speak to: install both from one wheel"

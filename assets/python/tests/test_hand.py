@@ -221,7 +221,7 @@ class Moves(unittest.TestCase):
                 second.stop()
                 mover.join()
                 self.assertIsInstance(moved[0], handscope.Disarmed)
-                self.assertRegex(str(moved[0]), "told to stop")
+                self.assertRegex(str(moved[0]), "a stop was requested")
                 with self.assertRaises(handscope.Disarmed):
                     first.move(index=0)
 
@@ -329,7 +329,7 @@ class Begins(unittest.TestCase):
     def test_no_hand_is_told_in_one_sentence(self):
         with self.assertRaisesRegex(handscope.HandscopeError, "^no hand at tcp:127.0.0.1:1.*refused the connection"):
             handscope.open("tcp:127.0.0.1:1")
-        with self.assertRaisesRegex(handscope.HandscopeError, "names no kind of link"):
+        with self.assertRaisesRegex(handscope.HandscopeError, "does not name a kind of link"):
             handscope.open("hand")
 
     def in_place_of_the_program(self, text):

@@ -297,7 +297,7 @@ angles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_ro
                 std::fs::write(&path, text).unwrap();
                 let told = read(&path).map(|_| ()).map_err(|error| {
                     let told = error.to_string();
-                    assert!(told.contains("does not lie in the folder"), "{told}");
+                    assert!(told.contains("is not in the folder"), "{told}");
                     (error.line, error.field)
                 });
                 let refused = Err((Some(line), Some(field.to_owned())));

@@ -89,7 +89,7 @@ impl CheckupReport {
     pub fn remarks(&self) -> Vec<String> {
         let left_alone = self.left_alone.iter().map(|(dof, zero_g)| {
             format!(
-                "{} was left alone: its sensor reads {zero_g:.0} g at rest, so that it could not be stopped gently; calibrate the force sensors with an empty hand (Hand > Device), and check again",
+                "{} was skipped: its sensor reads {zero_g:.0} g at rest, so it could not be stopped gently; calibrate the force sensors with an empty hand (Hand > Device), and check again",
                 dof.name()
             )
         });
@@ -184,7 +184,7 @@ mod tests {
     fn the_page_says_what_is_worn_what_is_not_known_and_that_it_is_partial() {
         let report = CheckupReport {
             aborted: Some(Abort::Person),
-            aborted_words: Some("ended by a person".into()),
+            aborted_words: Some("ended by the user".into()),
             left_alone: vec![(Dof::Ring, -600.0)],
             keeping: Keeping::NotAsFirst { dof: Dof::Index },
             ..report([Some(48.0), None, Some(1000.0)], &[stored(1, 4.0)])
@@ -192,13 +192,13 @@ mod tests {
         let page = report.html().unwrap();
         for wanted in [
             "<td class=\"act\">48 counts</td><td>-8 to 14</td><td>4 counts</td><td>4 counts</td>",
-            "<td>look at the linkage",
+            "<td>inspect the linkage",
             "<td class=\"unknown\">-</td>",
             "<td class=\"fine\">1000</td><td>985 to 1000</td><td>-</td><td>-</td>",
-            "Partial: it ended early, ended by a person",
+            "Partial: it ended early, ended by the user",
             "3 figures: 1 as they should be, 0 to watch, 1 to act on, 1 not measured",
             "<h2>index</h2>",
-            "ring was left alone: its sensor reads -600 g at rest",
+            "ring was skipped: its sensor reads -600 g at rest",
             "not kept as this hand&#39;s first: index did not go through its stroke",
             "there are no recordings of this hand",
         ] {

@@ -11,7 +11,7 @@ pub(crate) struct CheckArgs {
     /// Move the hand: it is empty, nothing is in its way, and the 24 V switch is in reach
     #[arg(long)]
     pub(crate) arm: bool,
-    /// Ask for a press of each fingertip, once nothing moves any more and the hand is not armed
+    /// Ask for a press of each fingertip, once the hand is at rest and not armed
     #[arg(long)]
     pub(crate) press: bool,
     /// Write the report as report.html and check.json, and the recording check.mcap, to this folder, which must be new or empty

@@ -66,7 +66,7 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
 fn files(args: &CheckArgs) -> anyhow::Result<CheckupFiles> {
     if let Some(folder) = args.recordings.as_deref().filter(|folder| !folder.is_dir()) {
         bail!(
-            "{} is no folder: nothing was done; name the folder of recordings with --recordings, or leave that out",
+            "{} is not a folder: nothing was done; name the folder of recordings with --recordings, or omit the option",
             folder.display()
         );
     }
@@ -98,7 +98,7 @@ fn prepare(files: &CheckupFiles) -> anyhow::Result<()> {
     })?;
     files.prepare().with_context(|| {
         let name = name(files.kept.as_deref().and_then(Path::parent));
-        format!("check-ups cannot be kept in {name}; name another folder with --folder")
+        format!("check-ups cannot be stored in {name}; name another folder with --folder")
     })?;
     if let Some(folder) = &files.report {
         store::create_empty_folder(folder)

@@ -48,7 +48,7 @@ fn line(check: &Check) -> String {
 pub(crate) fn progress(view: CheckupView) {
     let what = match (view.press, view.joint) {
         (Some(finger), _) => format!(
-            "press the {}'s fingertip and let it go; nothing moves any more",
+            "press and release the {}'s fingertip; nothing moves now",
             finger.name()
         ),
         (None, Some(dof)) => dof.name().to_owned(),

@@ -74,7 +74,7 @@ fn stalls(measured: &LinkMeasurements, found: &mut Vec<Diagnosis>) {
             stats.stalls,
             stats.longest_stall.as_millis()
         ),
-        format!("close what else runs while the hand moves{priority}"),
+        format!("close other programs while the hand moves{priority}"),
     ));
 }
 
@@ -115,8 +115,8 @@ fn answers(checkup: &Examination, measured: &LinkMeasurements, found: &mut Vec<D
     }
     if let Some(ms) = measured.status.slow_ms {
         found.push(hint(
-            format!("replies take up to {ms} ms: feedback and a stop come as much later"),
-            "check what the way to the hand leads through: relays, tunnels, wireless; 'handscope help wiring' says what a delay means for moving the hand",
+            format!("replies take up to {ms} ms: feedback and a stop lag as much"),
+            "check the path to the hand: relays, tunnels, wireless; 'handscope help wiring' says what a delay means for moving the hand",
         ));
     }
     let slowest = measured
@@ -203,7 +203,7 @@ fn counters(measured: &LinkMeasurements, id: u16, found: &mut Vec<Diagnosis>) {
         is_over(late_replies, TIMEOUTS_PER_MILLE),
         hint(
             format!("{late_replies} replies came after they had been given up"),
-            "check what the way to the hand leads through: relays, tunnels, wireless",
+            "check the path to the hand: relays, tunnels, wireless",
         ),
     );
     judge(
@@ -237,7 +237,7 @@ fn counters(measured: &LinkMeasurements, id: u16, found: &mut Vec<Diagnosis>) {
             format!(
                 "{writes} writes were sent and {dropped_events} records dropped, which this check never does"
             ),
-            "report this as an error of the program",
+            "please report this as a bug",
         ),
     );
 }
@@ -245,7 +245,7 @@ fn counters(measured: &LinkMeasurements, id: u16, found: &mut Vec<Diagnosis>) {
 fn two_devices(id: u16, replies: u64, requests: u64) -> Diagnosis {
     wrong(
         format!(
-            "two devices answer as id {id}: {replies} replies came to {requests} requests that nobody had asked for"
+            "two devices answer as id {id}: {replies} unsolicited replies came to {requests} requests"
         ),
         "take one of the two off the line and give it another id; if there is only one, it or its adapter sends replies twice or too late",
     )
@@ -255,7 +255,7 @@ fn refused(measured: &LinkMeasurements, refusals: u64, requests: u64) -> Diagnos
     let blocks = whole_blocks(measured);
     wrong(
         format!("{refusals} of {requests} requests were refused{blocks}"),
-        "a gateway that refuses now and then loses frames on the hand's side: check that cable; a hand that refuses the same registers always has none there",
+        "a gateway that refuses occasionally loses frames on the hand's side: check that cable; a hand that always refuses the same registers does not have them",
     )
 }
 

@@ -15,7 +15,7 @@ pub(crate) enum ConsentFrom {
 pub(crate) enum NoConsent {
     /// Standard input is not a terminal, or belongs to another program.
     #[error(
-        "nobody can press Enter here; start it in a terminal, or answer each question over standard input with --consent stdin"
+        "there is no terminal here to ask for consent; start it in a terminal, or answer each question over standard input with --consent stdin"
     )]
     NoTerminal,
     /// Lines arrive continuously, independent of questions.
@@ -25,7 +25,7 @@ pub(crate) enum NoConsent {
     /// On this system, earlier input cannot be distinguished from an answer.
     #[cfg(not(unix))]
     #[error(
-        "nobody can be asked here: only Linux and macOS tell an answer from what was typed before; follow in the window, where a person lets it move the hand"
+        "consent cannot be asked for here: only Linux and macOS can distinguish an answer from earlier input; follow in the window, and grant control there"
     )]
     NotHere,
     /// Standard input has ended.

@@ -158,7 +158,7 @@ fn leave(ended: anyhow::Result<()>, stopped: anyhow::Result<()>) -> anyhow::Resu
             Ok(()) => "the hand was stopped".to_owned(),
             Err(not) => not.to_string(),
         };
-        notify(&format!("nobody reads the output any more: {words}"));
+        notify(&format!("the output is no longer read: {words}"));
         return Err(AlreadyReported.into());
     }
     if let Err(not) = stopped {
@@ -184,7 +184,7 @@ async fn known(
             return Ok(*sample);
         }
     }
-    bail!("the hand at {hand} does not tell its angles and faults")
+    bail!("the hand at {hand} does not report its angles and faults")
 }
 
 struct FollowCommand<'a> {
@@ -306,9 +306,9 @@ fn ended(end: Ended<FollowEnd>, sender: &str) -> String {
                 );
             }
             Disarmed::FrozenFeedback => {
-                return format!("{why}: the hand is held where it must be, look at it");
+                return format!("{why}: the hand is held at its estimated position, check it");
             }
-            Disarmed::Person => return format!("{why}, and goes where it was told to go last"),
+            Disarmed::Person => return format!("{why}, and continues to its last target"),
             _ => why.to_string(),
         },
         Err(why @ Abort::OtherController { .. }) => return format!("{why}, and may move the hand"),

@@ -152,7 +152,7 @@ impl PadPrinter {
             (Some(PadEvent::Gone), _) => Some(self.event_line("gone", "the gamepad is gone")),
             (Some(PadEvent::Lost), _) => Some(self.event_line(
                 "lost",
-                "events were lost: let everything go and press it anew",
+                "events were lost: release everything and press it again",
             )),
             _ => moved,
         }

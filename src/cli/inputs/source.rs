@@ -242,7 +242,7 @@ impl FollowSource {
     /// Number of irregular stops, which were obeyed despite another error in the message, and the newest one as text.
     pub(super) fn odd_stops(&self) -> Option<(u64, String)> {
         let text = |sender: &dyn Display, why: &dyn Display| {
-            format!("{sender} sent a stop, which was obeyed; odd in it: {why}")
+            format!("{sender} sent a stop, which was carried out; irregular in it: {why}")
         };
         match self {
             Self::Stream(_, source) => {
@@ -315,7 +315,7 @@ impl FollowSource {
                 let words = match (&trouble, rate_hz) {
                     (Some(trouble), _) => format!("{other}: {trouble}"),
                     (None, Some(rate)) => format!("{rate:6.1} readings/s of {other}"),
-                    (None, None) => format!("{other} does not tell its angles"),
+                    (None, None) => format!("{other} does not report its angles"),
                 };
                 let object =
                     json!({"mirror": other.to_string(), "rate_hz": rate_hz, "trouble": trouble});

@@ -33,5 +33,5 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
 
 fn taken(path: &Path, option: &str) -> String {
     let path = path.display();
-    format!("{path} is already there and is not overwritten; name another file with {option}")
+    format!("{path} already exists and is not overwritten; name another file with {option}")
 }

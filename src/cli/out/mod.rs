@@ -29,7 +29,7 @@ pub(crate) struct Out {
 
 /// The reader of the output has closed it, as `head` does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the reader of the output went away")]
+#[error("the output was closed by its reader")]
 pub(crate) struct ReaderGone;
 
 /// The command failed and has already reported the reason.
@@ -58,7 +58,7 @@ impl Out {
     fn to(to: impl Write + Send + 'static) -> anyhow::Result<Self> {
         let to = LineWriter::start("stdout", to);
         Ok(Self {
-            to: to.context("cannot begin: no thread can be started that writes the output")?,
+            to: to.context("cannot start: no thread can be started to write the output")?,
             lost: 0,
             lost_total: 0,
             waits: true,

@@ -14,7 +14,7 @@ use anyhow::{anyhow, bail};
 use serde_json::json;
 
 /// Message if the user does not wait for the end.
-pub(crate) const UNKNOWN: &str = "it is not known what the hand holds: see with 'handscope params dump'; 'handscope params backups' names what it held before";
+pub(crate) const UNKNOWN: &str = "what the hand holds is unknown: check with 'handscope params dump'; 'handscope params backups' names what it held before";
 
 /// Applies the file. Fails unless every chosen row is in effect.
 pub(crate) async fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
@@ -76,7 +76,7 @@ async fn rows(
         if row.id.is_place() && task.wanted.get(row.id).is_none() {
             let (name, theirs, ours) = (row.id.name(), row.theirs, or_dash(row.ours));
             notify(&format!(
-                "left alone: {name} ({theirs} in the file, {ours} in the hand); --only {name} would change it",
+                "unchanged: {name} ({theirs} in the file, {ours} in the hand); --only {name} would change it",
             ));
         }
     }
@@ -100,7 +100,7 @@ fn nothing_to_write(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
     out.result(
         args.common.json,
         &json!({ "hand": hand, "backup": null, "rows": [], "applied": true, "undone": null }),
-        ["the hand holds all of it already; nothing was written"],
+        ["the hand already holds all of it; nothing was written"],
     )
 }
 

@@ -28,7 +28,7 @@ pub(crate) enum ParamsCommand {
     Diff(DiffArgs),
     /// Write the rows of a file that differ, read each back, and report the outcome
     #[command(
-        after_help = "A file is taken whole or not at all. A backup is made before anything is written. If a row cannot be applied, the others are restored, unless --partial is given. Nothing is in flash before 'handscope params save'.\n\nThe rows that decide where a hand answers (hand_id, redu_ratio, ip_address) are left alone unless --only names them. hand_id and redu_ratio are changed one at a time, and the hand is then looked for at its new and its old place; a new id is refused if another hand has it. ip_address takes effect after a save and a power cycle. These rows, and speeds and forces that hit harder than before on a stiff object, need --yes."
+        after_help = "A file is applied completely or not at all. A backup is made before anything is written. If a row cannot be applied, the others are restored, unless --partial is given. Nothing is in flash before 'handscope params save'.\n\nThe rows that decide where a hand answers (hand_id, redu_ratio, ip_address) are unchanged unless --only names them. hand_id and redu_ratio are changed one at a time, and the hand is then looked for at its new and its old place; a new id is refused if another hand has it. ip_address takes effect after a save and a power cycle. These rows, and speeds and forces that hit harder than before on a stiff object, need --yes."
     )]
     Apply(ApplyArgs),
     /// Write the hand's parameters to its flash, so that it starts with them

@@ -44,7 +44,7 @@ pub(crate) async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> 
     let report = patience.see_through(save, UNKNOWN_SAVE).await??;
     let sentence = words::saved(&report.saved);
     if let Some(why) = report.not_noted {
-        bail!("{sentence}; and this could not be noted: {why}");
+        bail!("{sentence}; and this could not be recorded: {why}");
     }
     let is_saved = matches!(report.saved, Saved::Confirmed | Saved::ReadBack);
     let object = json!({
@@ -96,7 +96,7 @@ pub(crate) async fn reset(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()>
     }
     if let Some(why) = &report.not_noted {
         notify(&format!(
-            "the files of the hand could not be kept up: {why}"
+            "the files of the hand could not be updated: {why}"
         ));
     }
     let is_reset = report_reset(out, args, &places, &report)?;

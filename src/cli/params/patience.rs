@@ -48,7 +48,7 @@ impl Patience {
                 bail!("ended at once: {unknown}");
             }
             notify(
-                "this is finished first, and then told what the hand holds; Ctrl-C again ends at once",
+                "this is finished first, then what the hand holds is reported; Ctrl-C again ends at once",
             );
         }
     }

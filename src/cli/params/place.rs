@@ -75,7 +75,7 @@ fn report_change(
 ) -> anyhow::Result<Option<bool>> {
     let (old, new) = (&change.places.old, &change.places.new);
     let Some(moved) = &report.moved else {
-        bail!("the hand at {old} does not answer any more; nothing was written");
+        bail!("the hand at {old} no longer answers; nothing was written");
     };
     let backup = &report.backup;
     let answers_at = match moved {

@@ -81,7 +81,7 @@ impl SideRecording {
         let _aborted = running.beside.await;
         let _ended = timeout(LINK_END_TIMEOUT, running.pump).await;
         let Some(recorder) = Arc::into_inner(running.recorder) else {
-            bail!("the recording was not ended: it is still written to");
+            bail!("the recording was not ended: it is still being written");
         };
         // A slow disk must not delay the hand. The task fails only at program exit.
         let status = spawn_blocking(move || recorder.end()).await;

@@ -229,7 +229,7 @@ impl ExportArgs {
             _ if self.json => "standard output holds what is exported: leave out --json",
             Some(OutputKind::Text) => return Ok(()),
             Some(OutputKind::Binary) if io::stdout().is_terminal() => {
-                "this format is no text for a terminal: pipe it into a program, or name a file with --out"
+                "this format is not text for a terminal: pipe it into a program, or name a file with --out"
             }
             Some(OutputKind::Binary) => return Ok(()),
         };
@@ -307,7 +307,7 @@ fn report(
 fn warn_read_back(counts: &EpisodeCounts, frames: u64) {
     if counts.read_back > 0 {
         notify(&format!(
-            "in {} of {frames} frames something else than the recorded commands set a target, another controller or the hand itself for a gesture: 'action' is there what the hand held when it was read, up to half a second late",
+            "in {} of {frames} frames something other than the recorded commands set a target, another controller or the hand itself for a gesture: 'action' is there what the hand held when it was read, up to half a second late",
             counts.read_back
         ));
     }

@@ -41,7 +41,7 @@ impl ImportArgs {
                 "standard output holds the recording file: leave out --json"
             }
             _ if to_stdout && io::stdout().is_terminal() => {
-                "a recording file is no text for a terminal: pipe it into a program, or name a file with --out"
+                "a recording file is not text for a terminal: pipe it into a program, or name a file with --out"
             }
             _ => return Ok(()),
         };
@@ -89,7 +89,7 @@ fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
     }
     if imported.has_grip {
         lines.push(
-            "left out: the columns of the grip, which is found anew from the readings".into(),
+            "left out: the columns of the grip, which is recomputed from the readings".into(),
         );
     }
     if imported.incomplete_tips > 0 {

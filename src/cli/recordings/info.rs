@@ -185,7 +185,7 @@ impl RecordingSummary<'_> {
         }
         if !self.file.is_closed() {
             lines.push(format!(
-                "not closed: the program ended without ending the file. It can be read up to {:.3} s; what came after is in no file: a quarter of a second where the program was killed, more where the disk was full or the power lost; 'handscope recover' writes a closed copy",
+                "not closed: the program ended without closing the file. It can be read up to {:.3} s; what came after is in no file: a quarter of a second where the program was killed, more where the disk was full or the power lost; 'handscope recover' writes a closed copy",
                 self.seconds(self.contents.last)
             ));
         }

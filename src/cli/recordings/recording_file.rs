@@ -83,8 +83,8 @@ pub(crate) fn stdin_as_file() -> anyhow::Result<File> {
             "- reads a file from standard input, and that is a terminal; name a file, or pipe one into it",
         ));
     }
-    let mut file = tempfile::tempfile().context("cannot keep what comes on standard input")?;
-    io::copy(&mut from, &mut file).context("cannot keep what comes on standard input")?;
+    let mut file = tempfile::tempfile().context("cannot buffer standard input")?;
+    io::copy(&mut from, &mut file).context("cannot buffer standard input")?;
     Ok(file)
 }
 
@@ -99,7 +99,7 @@ fn opened(file: Result<RecordingFile, OpenError>, path: &Path) -> anyhow::Result
             }
             OpenError::Foreign => "only recordings of Handscope can be opened",
             OpenError::SeveralHands { .. } => {
-                "take them apart with the program that put them together"
+                "split them with the program that merged them"
             }
             OpenError::TooMuch { .. } => "only recordings of Handscope can be opened",
             OpenError::Empty => "there is nothing to recover",

@@ -130,7 +130,7 @@ async fn play(file: &Arc<RecordingFile>, hands: &SimHands, speed: f64) -> anyhow
         });
     }
     let damage = reader.await.context("the reader of the recording ended")?;
-    damage.map_err(|error| anyhow!("cannot read the recording on: {error}"))
+    damage.map_err(|error| anyhow!("cannot continue reading the recording: {error}"))
 }
 
 /// Reads the file on a blocking thread, as far ahead as the queue permits.

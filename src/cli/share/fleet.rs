@@ -63,7 +63,7 @@ pub(crate) async fn run(out: &mut Out, args: &FleetArgs) -> anyhow::Result<()> {
         }
         let interface = node.address();
         notify(&format!(
-            "no hand is shared at {interface}: share one with 'handscope share --hand URL --tcp ADDR:PORT --dds', or name the network interface to look at"
+            "no hand is shared at {interface}: share one with 'handscope share --hand URL --tcp ADDR:PORT --dds', or name the network interface to listen on"
         ));
     }
     Ok(())

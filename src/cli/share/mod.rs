@@ -230,7 +230,7 @@ impl StatusReporter {
 
     fn turned_away(&mut self, gateway: &Gateway) {
         if gateway.turned_away() > 0 && !std::mem::replace(&mut self.turned_away, true) {
-            notify("there are as many clients as there may be: more are turned away");
+            notify("the maximum number of clients is connected: more are rejected");
         }
     }
 }
@@ -241,7 +241,7 @@ fn report_movers(gateway: &Gateway, link: &LinkHandle) {
         notify(&match change {
             MoverChange::Began => format!("{client} may move the hand"),
             MoverChange::Left => {
-                format!("{client}, which could move the hand, is gone: the hand is told to stop")
+                format!("{client}, which had control, has disconnected: the hand is being stopped")
             }
             MoverChange::Ended(end) => {
                 let by_other = end == LeaseRefusal::Ended(Disarmed::OtherController);
@@ -249,7 +249,7 @@ fn report_movers(gateway: &Gateway, link: &LinkHandle) {
                 let why = foreign.map_or_else(
                     || ended(end),
                     |foreign| {
-                        format!("another controller wrote {foreign}, and the hand is told to stop")
+                        format!("another controller wrote {foreign}, and the hand is being stopped")
                     },
                 );
                 format!("{client} may no longer move the hand: {why}")
@@ -260,11 +260,11 @@ fn report_movers(gateway: &Gateway, link: &LinkHandle) {
 
 fn ended(end: LeaseRefusal) -> String {
     match end {
-        LeaseRefusal::Taken(_) => "another may now".into(),
+        LeaseRefusal::Taken(_) => "another controller has control".into(),
         LeaseRefusal::Ended(why @ (Disarmed::LinkLost | Disarmed::Resume)) => {
             format!("{why}, and the hand may still finish its move")
         }
-        LeaseRefusal::Ended(why) => format!("{why}, and the hand is told to stop"),
+        LeaseRefusal::Ended(why) => format!("{why}, and the hand is being stopped"),
     }
 }
 

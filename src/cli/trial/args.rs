@@ -63,7 +63,7 @@ pub(crate) struct TrialArgs {
     /// Write samples, metrics and a report to this folder, which must be new or empty
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// A note to keep with them
+    /// A note to store with them
     #[arg(long, value_name = "TEXT", default_value = "")]
     pub(crate) note: String,
     /// A tag to find them by; may be repeated

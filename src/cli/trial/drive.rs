@@ -70,7 +70,7 @@ impl ArmedHand {
             let stop = stop_words(Some(link.stop().await));
             match (ready, status.disarmed) {
                 (Some(_), Some(why)) => bail!("ended before anything moved: {why}{stop}"),
-                _ => bail!("ended by a person before anything moved{stop}"),
+                _ => bail!("ended by the user before anything moved{stop}"),
             }
         };
         Ok(Self {
@@ -171,7 +171,7 @@ async fn make_ready(
     while !known(&seen) {
         next_record(records, &mut seen).await?;
         if Instant::now() >= until {
-            bail!("the hand at {endpoint} does not tell its angles, faults and temperatures");
+            bail!("the hand at {endpoint} does not report its angles, faults and temperatures");
         }
     }
     let lease = link.grant(Owner::Task);

@@ -49,7 +49,7 @@ impl SeriesResult {
         empty.sort_unstable_by_key(|(dof, ..)| dof.index());
         empty.dedup();
         let advice = if empty.iter().any(|(_, is_dead, _)| *is_dead) {
-            "; look at STATUS, ERROR and the supply, and move the joint from the window"
+            "; check STATUS, ERROR and the supply, and move the joint from the window"
         } else {
             ""
         };
@@ -58,7 +58,7 @@ impl SeriesResult {
             .map(|(dof, _, why)| format!("{}: {why}", dof.name()))
             .collect();
         Some(if why.is_empty() {
-            "nothing was measured: no trial got as far as its closing".into()
+            "nothing was measured: no trial reached its closing phase".into()
         } else {
             format!("nothing was measured of {}{advice}", why.join("; "))
         })
@@ -224,7 +224,7 @@ mod tests {
         let said = words(vec![none.clone(), none.clone()]).unwrap();
         assert_eq!(
             said,
-            "nothing was measured of ring: its force was hardly read; index: its force was hardly read"
+            "nothing was measured of ring: too few force readings; index: too few force readings"
         );
         let some = trial(&[(Dof::Index, Some(0.5)), (Dof::Ring, None)]);
         assert_eq!(words(vec![none, some]), None);

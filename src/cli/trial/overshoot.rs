@@ -30,19 +30,19 @@ pub(crate) struct OvershootArgs {
 pub(crate) fn run(out: &mut Out, args: &OvershootArgs) -> anyhow::Result<()> {
     if args.hand.is_sim() {
         return Err(WrongUsage::error(
-            "the built-in hand is another each time: nothing is kept of it; name the URL of a hand",
+            "the built-in hand differs each time: nothing is stored for it; name the URL of a hand",
         ));
     }
     let settings = settings_file::default_path();
     let file = settings.and_then(|settings| overshoot_file::file_of(&settings, &args.hand));
-    let file = file.context("no home folder, in which it would be kept")?;
+    let file = file.context("no home folder to store it in")?;
     let map = match overshoot_file::read(&file) {
         Err(error) if args.forget => {
             notify(&format!("{} could not be read: {error}", file.display()));
             OvershootMap::default()
         }
         read => {
-            read.with_context(|| format!("cannot read {}; --forget takes it away", file.display()))?
+            read.with_context(|| format!("cannot read {}; --forget removes it", file.display()))?
         }
     };
     if let Some(path) = &args.out {

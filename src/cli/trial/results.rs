@@ -143,7 +143,7 @@ impl<'a> TrialResults<'a> {
             let file = self.map.as_deref().unwrap_or(Path::new(""));
             if let Ok(Err(error)) = added.join() {
                 notify(&format!(
-                    "warning: what was measured of this hand is not kept in {}: {error}",
+                    "warning: the measurements of this hand are not stored in {}: {error}",
                     file.display()
                 ));
             }

@@ -31,7 +31,7 @@ pub(crate) struct TuneArgs {
     /// Closes that confirm the setting, 5 to 100: 59 hold however the peaks vary, fewer take them to vary normally [default: 59]
     #[arg(long, value_name = "N")]
     pub(crate) closes: Option<usize>,
-    /// Let the bound be the largest of fewer closes too, whatever their distribution: 22 closes say 90 of 100, 59 say 95
+    /// Let the bound be the largest of fewer closes too, whatever their distribution: 22 closes prove 90 of 100, 59 prove 95
     #[arg(long)]
     pub(crate) distribution_free: bool,
     /// Angle where the joints start, 1000 is open
@@ -49,7 +49,7 @@ pub(crate) struct TuneArgs {
     /// Write samples, metrics, the result and a report to this folder, which must be new or empty
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// A note to keep with them
+    /// A note to store with them
     #[arg(long, value_name = "TEXT", default_value = "")]
     pub(crate) note: String,
     /// A tag to find them by; may be repeated

@@ -105,7 +105,7 @@ pub(crate) fn lines(report: &SearchReport) -> Vec<String> {
     lines.extend(
         open_questions(report)
             .iter()
-            .map(|own| format!("not told: {own}")),
+            .map(|own| format!("not determined: {own}")),
     );
     lines
 }

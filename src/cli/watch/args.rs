@@ -18,7 +18,7 @@ pub(crate) struct WatchArgs {
     /// Print one JSON object per line
     #[arg(long)]
     pub(crate) json: bool,
-    /// Send each sample there, one JSON object a datagram, instead of printing it
+    /// Send each sample to this address, one JSON object per datagram, instead of printing it
     #[arg(long, value_name = "ADDRESS:PORT", value_parser = address, requires = "json", conflicts_with = "wire")]
     pub(crate) udp: Option<SocketAddr>,
     /// Print the frames on the wire instead of values

@@ -63,7 +63,7 @@ fn recording(text: &str) -> Result<PathBuf, String> {
     match ending.as_ref().and_then(|ending| ending.to_str()) {
         Some("mcap") => Ok(path),
         Some("csv") => {
-            Err("values are no recording; 'handscope import' makes a recording of them".into())
+            Err("values are not a recording; 'handscope import' makes a recording of them".into())
         }
         _ => Err(
             "no such command, and a recording ends in .mcap; 'handscope --help' lists the commands"

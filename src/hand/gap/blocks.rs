@@ -56,7 +56,7 @@ pub enum BlockError {
     },
     /// Together with the other block it gives an impossible correction.
     #[error(
-        "the two blocks do not fit what the hand told (scale {scale:.2}, offset {offset_mm:.0} mm): measure both again, between thumb and index only"
+        "the two blocks do not match the readings of the hand (scale {scale:.2}, offset {offset_mm:.0} mm): measure both again, between thumb and index only"
     )]
     Unlikely {
         /// Resulting scale.

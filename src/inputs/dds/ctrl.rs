@@ -49,10 +49,10 @@ pub enum CtrlFault {
     #[error("not an inspire_hand_ctrl in CDR")]
     Malformed,
     /// The mode has a bit that the type does not define.
-    #[error("its mode has other bits than angle 1, force 4 and speed 8")]
+    #[error("its mode has bits other than angle 1, force 4 and speed 8")]
     Mode,
     /// The mode enables positions of the drives.
-    #[error("it sets positions of the drives, mode 2: only angles, forces and speeds are taken")]
+    #[error("it sets positions of the drives, mode 2: only angles, forces and speeds are accepted")]
     Position,
     /// Not six values.
     #[error("a hand has six joints")]

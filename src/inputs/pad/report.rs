@@ -102,7 +102,7 @@ pub enum PadTrouble {
     )]
     LinuxOnly,
     /// The device folder cannot be listed.
-    #[error("no gamepad can be looked for: {} cannot be listed: {why}", folder.display())]
+    #[error("cannot look for gamepads: {} cannot be listed: {why}", folder.display())]
     NoFolder {
         folder: PathBuf,
         /// The system's error.

@@ -46,7 +46,7 @@ pub fn use_this_program(complain: Complain) {
 /// Message to the user if no holder could be started.
 pub fn unguarded(why: &str) -> String {
     format!(
-        "no process could be started that stops the hand if this program is killed ({why}): then only the 24 V switch does"
+        "cannot start the process that stops the hand if this program is killed ({why}): then only the 24 V switch stops it"
     )
 }
 
@@ -117,7 +117,7 @@ impl HolderTie {
         };
         let thread = std::thread::Builder::new().name("holder".into());
         if let Err(error) = thread.spawn(move || watcher.run()) {
-            let why = format!("no thread can be started: {error}");
+            let why = format!("cannot start a thread: {error}");
             lock(&pipe).is_closed = true;
             complain(&unguarded(&why));
             sender.send_replace(HolderState::Missing(why));
@@ -238,7 +238,7 @@ impl Watcher {
             return Gone::Killed;
         }
         Gone::Failed(match ended {
-            Ok(status) => format!("it ended at once each time: {status}"),
+            Ok(status) => format!("it exited immediately each time: {status}"),
             Err(error) => error.to_string(),
         })
     }

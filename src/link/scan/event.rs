@@ -76,19 +76,19 @@ impl fmt::Display for ScanHint {
         match self {
             Self::OtherId { endpoint, hand_id } => write!(
                 f,
-                "something answers at {endpoint}, but its HAND_ID reads {hand_id}: most likely it is no hand"
+                "something answers at {endpoint}, but its HAND_ID reads {hand_id}: it is most likely not a hand"
             ),
             Self::OtherSeries { endpoint, hand_id } => write!(
                 f,
-                "what answers at {endpoint} says HAND_ID {hand_id} like a hand, but is not of this series: its registers hold other things"
+                "what answers at {endpoint} reports HAND_ID {hand_id} like a hand, but is not of this series: its registers hold other things"
             ),
             Self::Refuses { endpoint, reason } => write!(
                 f,
-                "something answers at {endpoint}, but does not tell its HAND_ID ({reason}): most likely it is no hand"
+                "something answers at {endpoint}, but does not report its HAND_ID ({reason}): it is most likely not a hand"
             ),
             Self::OtherTalk { endpoint } => write!(
                 f,
-                "replies to somebody else were heard on {}: another program uses this line; end it, or scan with all ids",
+                "replies to another program were received on {}: it uses this line; close it, or scan with all ids",
                 endpoint.place()
             ),
             Self::Garbled {

@@ -147,7 +147,7 @@ pub enum Wrong {
     #[error("a reply going out")]
     Backwards,
     /// No request matches this reply.
-    #[error("nobody asked for it")]
+    #[error("unsolicited")]
     NotAsked,
     /// It answers a request that timed out.
     #[error("late: the request was given up {after_ms} ms ago")]

@@ -35,7 +35,7 @@ const GROUP_FRAMES: u64 = 65_536;
 /// Path of each kind's only file; LeRobot numbers files with three digits.
 const FILE: &str = "chunk-000/file-000.parquet";
 /// Warning in the metadata of a set with read-back actions.
-const READ_BACK: &str = "in action_read_back_frames frames a target was set by something else than the writes of the recording: another controller, or the hand itself for a gesture; the action is what the hand held when it was read, up to half a second late";
+const READ_BACK: &str = "in action_read_back_frames frames a target was set by something other than the writes of the recording: another controller, or the hand itself for a gesture; the action is what the hand held when it was read, up to half a second late";
 /// Default task of a hand.
 const TASK: &str = "grasp";
 
@@ -390,7 +390,7 @@ impl Meta<'_> {
         let mut origin = json!({
             "resampling": "each frame holds the newest reading received before its time",
             "gaps": "a silence of more than 0.5 s, or a value outside the manual's ranges, is not filled; it ends the episode",
-            "action": "the newest target sent to each joint, stops and other programs' writes included; before the first, what the hand held (ANGLE_SET); the angle itself for a joint that was only ever left alone",
+            "action": "the newest target sent to each joint, stops and other programs' writes included; before the first, what the hand held (ANGLE_SET); the angle itself for a joint that was never commanded",
             "grip_states": GripState::ALL,
             "action_read_back_frames": read_back,
             "action_warning": (read_back > 0).then_some(READ_BACK),

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ExportError {
     /// The path already exists.
-    #[error("{} is already there and is not overwritten", .path.display())]
+    #[error("{} already exists and is not overwritten", .path.display())]
     Exists { path: PathBuf },
     /// The system refuses to write it.
     #[error("cannot write {}: {error}", .path.display())]
@@ -22,21 +22,21 @@ pub enum ExportError {
     #[error("cannot read the recording to its end: {error}")]
     Unreadable { error: SystemError },
     /// The time range holds nothing of this kind.
-    #[error("there is nothing to export in this stretch")]
+    #[error("there is nothing to export in this time range")]
     Empty,
     /// Episodes begin at notes, and there are none.
-    #[error("there is no note of a person in this stretch, at which an episode could begin")]
+    #[error("no user note in this time range marks the start of an episode")]
     NoNotes,
     /// A left and a right hand in one data set.
     #[error(
-        "a left and a right hand cannot be in one data set, because their joints have other names"
+        "a left and a right hand cannot be in one data set, because their joints have different names"
     )]
     BothSides,
     /// The user cancelled the export.
     #[error("interrupted")]
     Interrupted,
     /// The reader of standard output closed it.
-    #[error("the reader of the output went away")]
+    #[error("the output was closed by its reader")]
     ReaderGone,
 }
 

@@ -77,7 +77,7 @@ impl std::fmt::Display for SkippedTopic {
             SkipReason::Unknown => "not Handscope's",
             SkipReason::OtherSchema => "Handscope's has another schema or encoding",
             SkipReason::OtherFields => "Handscope's schema of that name has other fields",
-            SkipReason::Undefined => "no channel says what they are",
+            SkipReason::Undefined => "no channel describes them",
             SkipReason::Contradicted => "the file defines this channel twice, differently",
         };
         write!(

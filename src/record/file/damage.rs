@@ -52,19 +52,19 @@ impl std::fmt::Display for Remark {
                 let side = if *nanos < 0 { "before" } else { "after" };
                 return write!(
                     f,
-                    "the times of its log are {apart:.3} s {side} those in its messages, so another program has moved them: the log is believed"
+                    "the times of its log are {apart:.3} s {side} those in its messages, so another program changed them: those of the log are used"
                 );
             }
             Self::Unlogged(messages) => {
                 return write!(
                     f,
-                    "{messages} messages have no time in the file's log: theirs is that in the message"
+                    "{messages} messages have no time in the file's log: the time in the message is used"
                 );
             }
             Self::TooMuch { megabytes } => {
                 return write!(
                     f,
-                    "chunks that unpack to {megabytes} MB were left out: of a file {} MB are unpacked, and {UNPACKED_TIMES} times its length",
+                    "chunks that unpack to {megabytes} MB were left out: the limit is {} MB plus {UNPACKED_TIMES} times the length of the file",
                     UNPACKED_MAX / (1024 * 1024)
                 );
             }
@@ -78,16 +78,16 @@ impl std::fmt::Display for Remark {
                 );
             }
             Self::Rewritten => {
-                "another program wrote or changed this file, or its beginning is damaged: it is read by the names of its topics, and nobody can tell what was left out"
+                "another program wrote or changed this file, or its beginning is damaged: it is read by the names of its topics, and what was left out is unknown"
             }
             Self::StaleIndex => {
-                "its index does not fit: the file was read from its beginning to its end"
+                "its index does not match: the file was read sequentially instead"
             }
             Self::SumDiffers => {
-                "the checksum over the file is wrong, and messages outside of chunks have no other: any value may be wrong"
+                "the checksum over the file is wrong, and messages outside chunks have no other checksum: any value may be wrong"
             }
             Self::OpeningLost => {
-                "what the file says of itself is missing or damaged: the beginning is that of the first message, and the hand is known only if its parameters were recorded"
+                "the description in the file is missing or damaged: the first message marks the beginning, and the hand is known only if its parameters were recorded"
             }
         })
     }

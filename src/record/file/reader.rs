@@ -53,9 +53,9 @@ pub enum OpenError {
     #[error("it cannot be read: {error}")]
     Unreadable { error: SystemError },
     /// A folder, a device, a pipe.
-    #[error("it is no file, but a folder or a device")]
+    #[error("it is not a regular file")]
     NotAFile,
-    #[error("it is not an MCAP file: its first bytes are others")]
+    #[error("it is not an MCAP file: its first bytes are wrong")]
     NotMcap,
     /// MCAP of another program.
     #[error("it is an MCAP file of another program: none of its topics is Handscope's")]
@@ -65,11 +65,11 @@ pub enum OpenError {
     SeveralHands { hands: String },
     /// It unpacks to more than any recording does.
     #[error(
-        "its chunks unpack to {megabytes} MB more than is read of a file: {} MB, and {UNPACKED_TIMES} times its length", UNPACKED_MAX / MEGABYTE
+        "its chunks unpack to {megabytes} MB more than the limit of {} MB plus {UNPACKED_TIMES} times its length", UNPACKED_MAX / MEGABYTE
     )]
     TooMuch { megabytes: u64 },
     /// It contains nothing readable.
-    #[error("nothing in it can be read: it holds no whole piece of a recording")]
+    #[error("nothing in it can be read: it holds no complete part of a recording")]
     Empty,
 }
 

@@ -73,23 +73,23 @@ impl std::fmt::Display for RecorderNotice {
         match self {
             Self::Moved { from, to: None } => write!(
                 f,
-                "{} was renamed while it is recorded; it is written on under its new name, and nothing is lost",
+                "{} was renamed during recording; it continues under its new name, and nothing is lost",
                 from.display()
             ),
             Self::Moved { from, to: Some(to) } => write!(
                 f,
-                "{} was renamed while it is recorded; it is written on as {}, and nothing is lost",
+                "{} was renamed during recording; it continues as {}, and nothing is lost",
                 from.display(),
                 to.display()
             ),
             Self::Removed { path, entries } => write!(
                 f,
-                "{} was removed while it was recorded: {entries} entries are gone with it; the recording goes on in a new file",
+                "{} was removed during recording: {entries} entries are lost; the recording continues in a new file",
                 path.display()
             ),
             Self::ClockSet { next } => write!(
                 f,
-                "the computer's clock was set or it slept: the recording goes on in {next}"
+                "the computer's clock was set, or it slept: the recording continues in {next}"
             ),
         }
     }
@@ -427,7 +427,7 @@ impl RecordingTask {
             });
             self.count_lost(gone);
             self.begin_next(now, self.tail.again(), first_part(self.newest));
-            let words = "this file goes on where another was removed while it was written";
+            let words = "this file continues one that was removed during recording";
             self.note(self.newest, words.into());
             return;
         }
@@ -496,7 +496,7 @@ impl RecordingTask {
             let old = self.begin_next(now, next, first_part(self.newest));
             self.earlier_bytes += old.written();
             let name = old.name();
-            let words = format!("{GOES_ON_FROM}{name}: that could not be written any more");
+            let words = format!("{GOES_ON_FROM}{name}: that could no longer be written");
             self.note(self.newest, words);
         }
     }

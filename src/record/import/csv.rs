@@ -71,19 +71,19 @@ pub enum CsvFault {
     Cells(#[from] CsvLineFault),
     /// The first line is not the header of such a file.
     #[error(
-        "there is no column time_s between commas, semicolons or tabs, so these are not the values of a recording"
+        "there is no column time_s (separated by commas, semicolons or tabs), so these are not the values of a recording"
     )]
     NoTime,
     /// A line's time is earlier than the previous one's.
     #[error(
-        "the time goes back from {before_s:.3} s to {time_s:.3} s; a table holds one recording: make one of each take"
+        "the time goes back from {before_s:.3} s to {time_s:.3} s; a table holds one recording: split it into one per take"
     )]
     TimeGoesBack { before_s: f64, time_s: f64 },
     /// No column but the time is known.
-    #[error("no column of it but time_s is known")]
+    #[error("it has no known column except time_s")]
     NothingKnown,
     /// Duplicate column.
-    #[error("the column {name} is there twice")]
+    #[error("duplicate column {name}")]
     Twice { name: String },
     /// The number of cells differs from the first line's.
     #[error("it has {cells} cells, and the first line has {columns}")]

@@ -16,7 +16,7 @@ pub enum CsvLineFault {
     #[error("it has more than {CELLS_MAX} cells")]
     TooManyCells,
     /// Not UTF-8.
-    #[error("it is no text in UTF-8")]
+    #[error("it is not UTF-8 text")]
     NotText,
     /// The file ends within quotation marks, or text follows them.
     #[error("unmatched quote")]

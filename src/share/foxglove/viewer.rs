@@ -150,12 +150,12 @@ impl ViewerConnection {
                         .retain(|own| !subscription_ids.contains(&own.id));
                     Vec::new()
                 }
-                Ok(ViewerRequest::Other) => vec![warning(
-                    "ignored: this server shows its topics and takes nothing",
-                )],
+                Ok(ViewerRequest::Other) => {
+                    vec![warning("ignored: this server only publishes its topics")]
+                }
                 Err(unknown) => vec![error(&format!("not understood: {unknown}"))],
             },
-            Frame::Binary(_) => vec![warning("ignored: this server takes no messages")],
+            Frame::Binary(_) => vec![warning("ignored: this server accepts no messages")],
             // Control frames are answered by the crate.
             Frame::Ping(_) | Frame::Pong(_) | Frame::Close(_) | Frame::Frame(_) => Vec::new(),
         };

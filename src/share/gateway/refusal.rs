@@ -8,19 +8,19 @@ use crate::record::ArmRefusal;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum WriteRefusal {
     /// The user has not granted control of this hand to any client.
-    #[error("no client may move the hand: a person has to grant it")]
+    #[error("no client has control of the hand: the user has to grant it")]
     NotGranted,
     /// Another controller has control.
-    #[error("another may move the hand now")]
+    #[error("another controller has control")]
     Taken,
     /// This connection had control earlier.
-    #[error("this client could move the hand, and that ended: it has to connect again")]
+    #[error("the control of this client has ended: it has to reconnect")]
     Over,
     /// The hand could not be armed.
     #[error("the hand could not be armed: {0}")]
     NotArmed(ArmRefusal),
     /// The hand's present speed or force is not a valid setting, so the hand cannot be armed with it.
-    #[error("the speeds and forces that the hand has now make no sense")]
+    #[error("the current speeds and forces of the hand are implausible")]
     Limits,
     /// Not a register that clients may write.
     #[error("clients may not write {words} words at address {address}")]
@@ -30,7 +30,7 @@ pub enum WriteRefusal {
         words: usize,
     },
     /// The number of words differs from the announced one, or exceeds a message.
-    #[error("the request does not have the {count} words that it announces")]
+    #[error("the request does not contain the {count} words that it announces")]
     Count { count: u16 },
     /// Outside the manual's range.
     #[error("a value for address {address} is outside the manual's range")]

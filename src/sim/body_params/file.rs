@@ -88,7 +88,7 @@ fn store_numbers<T>(
         let Some(key) = keys.iter().find(|key| key.name == name.get_ref()) else {
             let known: Vec<&str> = keys.iter().map(|key| key.name).collect();
             let cause = FileCause::Malformed(format!(
-                "there is no such key; the keys here are {}",
+                "unknown key; the keys here are {}",
                 known.join(", ")
             ));
             return Err(source.blame(name.span(), name.get_ref(), cause));
@@ -145,7 +145,7 @@ fn fingertip(source: FileText<'_>, row: &FingertipRow) -> Result<FingertipBody, 
 pub fn print(body: &BodyParams) -> String {
     let mut text = String::from(
         "# The body of a simulated hand: 'handscope sim --body FILE', or 'sim:?body=FILE'.\n\
-         # What is left out is as in the default. How stiff an object is, is the object's: the body only multiplies it.\n\n[supply]\n",
+         # Omitted keys have their default. Stiffness belongs to the object: the body only scales it.\n\n[supply]\n",
     );
     put(&mut text, SupplyBody::KEYS, &body.supply);
     for (dof, joint) in body.joints.iter() {
@@ -158,7 +158,7 @@ pub fn print(body: &BodyParams) -> String {
         let dead: Vec<usize> = dead.filter_map(|(n, dead)| dead.then_some(n)).collect();
         let _written = writeln!(
             text,
-            "\n[fingertip.{}]\ndead_channels = {dead:?} # of 1 to {CHANNELS}, those that always say 0\n\
+            "\n[fingertip.{}]\ndead_channels = {dead:?} # of 1 to {CHANNELS}, those that always read 0\n\
              drift_per_s = {:?} # counts a second of each channel, -{DRIFT_MAX} to {DRIFT_MAX}",
             finger.name(),
             tip.drift,
@@ -211,7 +211,7 @@ mod tests {
         for (text, words) in [
             (
                 "[joint.index]\nlatency = 3\n",
-                "line 2, `latency`: there is no such key",
+                "line 2, `latency`: unknown key",
             ),
             (
                 "[joint.index]\nlatency_ms = nan\n",

@@ -82,7 +82,7 @@ numbers! {
         "mA, friction: current that closing without load takes" friction_ma = 120.0, 0.0..1500.0;
         "mA, the same for opening" opening_friction_ma = 120.0, 0.0..1500.0;
         "mA more for each unit of speed" friction_ma_per_speed = 0.0, 0.0..1.5;
-        "counts that the drive turns for nothing when it changes direction" backlash = 0.0, 0.0..100.0;
+        "counts of backlash when the drive changes direction" backlash = 0.0, 0.0..100.0;
         "counts a second for each unit of SPEED_SET" counts_per_speed = COUNTS_PER_SPEED, 0.3..10.0;
         "degrees C a second for each A squared" heating = 0.44, 0.0..20.0;
         "s, time constant of cooling" cooling_s = 60.0, 1.0..3600.0;

@@ -31,7 +31,7 @@ impl fmt::Display for Want {
 pub enum EndpointError {
     /// The part before the colon is unknown or missing.
     #[error(
-        "'{text}' names no kind of link: write sim:, rs485:PORT, rtu:PORT, rtu+tcp:HOST:PORT, tcp:HOST, can:INTERFACE, slcan:PORT or usbcan:PORT"
+        "'{text}' does not name a kind of link: write sim:, rs485:PORT, rtu:PORT, rtu+tcp:HOST:PORT, tcp:HOST, can:INTERFACE, slcan:PORT or usbcan:PORT"
     )]
     Kind {
         /// The given text.
@@ -58,10 +58,10 @@ pub enum EndpointError {
         known: &'static str,
     },
     /// A duplicate key: it would be ambiguous.
-    #[error("'{key}' stands there twice; write it once")]
+    #[error("duplicate key '{key}'; write it once")]
     Twice { key: String },
     /// A value that does not fit its key.
-    #[error("{key}={value} is not possible: {key} is {want}")]
+    #[error("invalid value {key}={value}: {key} is {want}")]
     Value {
         key: String,
         /// The given value.

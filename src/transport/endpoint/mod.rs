@@ -342,14 +342,14 @@ mod tests {
     #[test]
     fn wrong_spellings_say_what_is_wrong() {
         for (text, part) in [
-            ("", "names no kind"),
-            ("/dev/ttyUSB0", "names no kind"),
-            ("usb:/dev/ttyUSB0", "names no kind"),
+            ("", "does not name a kind"),
+            ("/dev/ttyUSB0", "does not name a kind"),
+            ("usb:/dev/ttyUSB0", "does not name a kind"),
             ("rs485:", "is incomplete"),
             ("rs485:/dev/x?id=0", "1 to 254"),
             ("rs485:/dev/x?id=255", "1 to 254"),
             ("rs485:/dev/x?speed=1", "is not a setting"),
-            ("rs485:/dev/x?baud=fast", "not possible"),
+            ("rs485:/dev/x?baud=fast", "invalid value"),
             ("tcp::6000", "is incomplete"),
             ("tcp:::1]6000", "is incomplete"),
             ("tcp:host:99999", "1 to 65535"),
@@ -370,15 +370,18 @@ mod tests {
             ("sim:?seed=-1", "whole number"),
             ("sim:?scenario=nope", "idle, free, rigid"),
             ("sim:?scenario=", "idle, free, rigid"),
-            ("sim:?seed=1&seed=1", "'seed' stands there twice"),
+            ("sim:?seed=1&seed=1", "duplicate key 'seed'"),
             (
                 "sim:?scenario=idle&seed=1&scenario=free",
-                "'scenario' stands",
+                "duplicate key 'scenario'",
             ),
-            ("rs485:/dev/x?id=1&baud=9600&id=2", "'id' stands"),
-            ("rtu:/dev/x?packing=low&packing=low", "'packing' stands"),
-            ("tcp:host?unit=1&unit=2", "'unit' stands"),
-            ("can:can0?id=1&id=2", "'id' stands"),
+            ("rs485:/dev/x?id=1&baud=9600&id=2", "duplicate key 'id'"),
+            (
+                "rtu:/dev/x?packing=low&packing=low",
+                "duplicate key 'packing'",
+            ),
+            ("tcp:host?unit=1&unit=2", "duplicate key 'unit'"),
+            ("can:can0?id=1&id=2", "duplicate key 'id'"),
             ("slcan:/dev/x?bitrate=500000&bitrate=500000", "'bitrate'"),
             ("usbcan:/dev/x?baud=9600&baud=9600", "'baud' stands"),
         ] {

@@ -13,13 +13,17 @@ const KINDS: [&str; 8] = [
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum TypedError {
     /// Digits and dots that are not an address.
-    #[error("'{text}' is no IP address: four numbers from 0 to 255, such as 192.168.11.210")]
+    #[error(
+        "'{text}' is not an IP address: write four numbers from 0 to 255, such as 192.168.11.210"
+    )]
     Ip {
         /// The typed text.
         text: String,
     },
     /// Neither a host nor a port nor an interface.
-    #[error("'{text}' is no address: type for example 192.168.11.210, /dev/ttyUSB0, COM3 or can0")]
+    #[error(
+        "'{text}' is not an address: type for example 192.168.11.210, /dev/ttyUSB0, COM3 or can0"
+    )]
     Unknown {
         /// The typed text.
         text: String,
@@ -196,12 +200,18 @@ mod tests {
     #[test]
     fn a_wrong_text_says_what_is_wrong_with_a_right_one() {
         for (typed, words) in [
-            ("", "'' is no address: type for example 192.168.11.210"),
-            ("usb:/dev/ttyUSB0", "is no address"),
-            ("http://10.0.0.1", "is no address"),
-            ("a hand", "is no address"),
-            ("192.168.11", "'192.168.11' is no IP address: four numbers"),
-            ("192.168.11.999:6000", "'192.168.11.999' is no IP address"),
+            ("", "'' is not an address: type for example 192.168.11.210"),
+            ("usb:/dev/ttyUSB0", "is not an address"),
+            ("http://10.0.0.1", "is not an address"),
+            ("a hand", "is not an address"),
+            (
+                "192.168.11",
+                "'192.168.11' is not an IP address: write four numbers",
+            ),
+            (
+                "192.168.11.999:6000",
+                "'192.168.11.999' is not an IP address",
+            ),
             ("10.0.0.1:99999", "1 to 65535"),
             ("rs485:", "is incomplete"),
             ("rs485:/dev/x?id=0", "1 to 254"),

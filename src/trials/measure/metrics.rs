@@ -114,13 +114,13 @@ impl JointMetrics {
     pub fn why_empty(&self) -> Option<&'static str> {
         let has_none = self.time_to_stop_s.is_none() && self.peak_force_g.is_none();
         let why = if self.dead_drive {
-            "it was told to close and never moved"
+            "it was commanded to close and never moved"
         } else if self.rate_hz.is_none() {
-            "its force was hardly read"
+            "too few force readings"
         } else if self.rest_force_g.is_none() {
-            "its force was hardly read before the command"
+            "too few force readings before the command"
         } else {
-            "it met nothing, and was not seen to stop, before it was opened again"
+            "it met nothing, and no stop was seen, before it was opened again"
         };
         has_none.then_some(why)
     }

@@ -309,7 +309,7 @@ fn of_nothing_nothing_is_known() {
         .map(|(key, _)| key)
         .collect();
     assert_eq!(known, ["joint"]);
-    assert_eq!(metrics.why_empty(), Some("its force was hardly read"));
+    assert_eq!(metrics.why_empty(), Some("too few force readings"));
 }
 
 #[test]
@@ -333,7 +333,7 @@ fn a_close_of_which_something_is_known_is_not_empty() {
         ..free
     };
     let why = measured(&moves_on).why_empty().unwrap();
-    assert!(why.contains("was not seen to stop"), "{why}");
+    assert!(why.contains("no stop was seen"), "{why}");
 }
 
 #[test]

@@ -131,7 +131,7 @@ const fn title(dof: Dof) -> &'static str {
 pub enum NoClaim {
     /// The joint never moved.
     #[error(
-        "told to close, {} never moved: look at STATUS, ERROR and the supply, and whether something blocks it", dof.name()
+        "commanded to close, {} never moved: check STATUS, ERROR and the supply, and whether something blocks it", dof.name()
     )]
     Dead { dof: Dof },
     /// The fingertip pressed against something before the joint moved.
@@ -146,12 +146,12 @@ pub enum NoClaim {
     NoContact { dof: Dof },
     /// The joint met nothing at the place of the object.
     #[error(
-        "{} met nothing any more where it had met the object: put it back, and see that it cannot move away", dof.name()
+        "{} no longer met anything where it had met the object: put it back, and make sure that it cannot move", dof.name()
     )]
     Lost { dof: Dof },
     /// The object became softer, or its force vanished.
     #[error(
-        "the object gives under {}: it held {before_g:.0} g for each count before and {now_g:.0} g now; look whether it is damaged, and ask for a lower limit", dof.name()
+        "the object yields under {}: its stiffness was {before_g:.0} g for each count before and is {now_g:.0} g now; check it for damage, and set a lower limit", dof.name()
     )]
     Gives {
         dof: Dof,
@@ -175,7 +175,7 @@ pub enum NoClaim {
     Slips { dof: Dof },
     /// The limit is too close to the noise of the sensor.
     #[error(
-        "a limit of {limit_g} g cannot be told from the noise of {}, which is {noise_g:.0} g: ask for at least {least_g:.0} g", dof.name()
+        "a limit of {limit_g} g cannot be distinguished from the noise of {}, which is {noise_g:.0} g: set at least {least_g:.0} g", dof.name()
     )]
     Noise {
         dof: Dof,
@@ -254,7 +254,7 @@ impl std::fmt::Display for ComparedThreshold {
             ),
             Some(ThresholdReference::Unknown) | None => write!(
                 f,
-                "whether {name} counts the {offset:.0} g that it reads at rest in its threshold was not told"
+                "whether {name} counts the {offset:.0} g that it reads at rest in its threshold was not determined"
             ),
         }
     }
@@ -263,10 +263,10 @@ impl std::fmt::Display for ComparedThreshold {
 /// A question that the search could not answer.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum OpenQuestion {
-    #[error("whether the object slipped: the fingertip of {} told too little", dof.name())]
+    #[error("whether the object slipped: the fingertip of {} reported too little", dof.name())]
     Slips { dof: Dof },
     #[error(
-        "how stiff the object is under {}: it gave less than an angle can tell", dof.name()
+        "how stiff the object is under {}: it yielded less than an angle resolves", dof.name()
     )]
     Stiffness { dof: Dof },
     #[error(

@@ -68,7 +68,7 @@ pub enum GoalError {
     Closes { got: usize },
     /// Too few closes for a distribution-free bound.
     #[error(
-        "{got} closes say nothing without a distribution: {FREE_90} say 90 of 100 closes with 90 %, {FREE_95} say 95 of 100 with 95 %"
+        "{got} closes prove nothing without a distribution: {FREE_90} prove 90 of 100 closes with 90 %, {FREE_95} prove 95 of 100 with 95 %"
     )]
     TooFew { got: usize },
     /// An invalid plan.
@@ -208,7 +208,7 @@ mod tests {
             (|w| w.closes = 4, "5 and 100"),
             (
                 |w| (w.distribution_free, w.closes) = (true, 21),
-                "59 say 95 of 100",
+                "59 prove 95 of 100",
             ),
             (|w| w.close = PerDof::splat(None), "no joint takes part"),
         ] {

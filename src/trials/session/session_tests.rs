@@ -111,7 +111,7 @@ fn what_is_written_comes_back_and_what_is_unknown_has_no_key() {
         ("2026-11-21", true)
     );
     assert_eq!(session.head.note, head().note);
-    let why = EarlyEnd::FromFile("ended by a person".into());
+    let why = EarlyEnd::FromFile("ended by the user".into());
     assert_eq!(session.head.aborted, Some(why));
     assert_eq!(session.head.plan, plan());
     assert_eq!(session.trials.len(), 2);
@@ -187,7 +187,7 @@ fn the_page_is_whole_draws_the_curves_and_takes_no_orders() {
     assert!(page.contains("<meta charset=\"utf-8\">"));
     assert!(page.contains("鸡蛋 &#38; 杯"), "letters of any script stay");
     assert!(page.contains("SIMULATED HAND"));
-    assert!(page.contains("Ended early: ended by a person"));
+    assert!(page.contains("Ended early: ended by the user"));
     assert!(page.contains("egg &#38; cup"));
     for foreign in ["<script", "src=", "href=", "url(", "@import", "\u{7}"] {
         let quoted = page.replace("&#60;script src=", "");

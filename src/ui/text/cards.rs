@@ -63,16 +63,16 @@ texts! {
     RESET_ENTRY: "Factory reset", "恢复出厂", "Asks first. Returns the hand to the parameters of its delivery.", "先询问，再把灵巧手恢复为出厂参数。";
 
     CALIBRATE_TITLE: "Calibrate the force sensors", "校准力传感器";
-    CALIBRATE_WORDS: "The hand takes the forces of now as zero; that takes 2 to 6 s, and nothing else moves it meanwhile. Open it, and let it touch nothing.", "灵巧手把当前的力作为零点，需 2 到 6 秒，期间不会运动。请张开手，不要接触任何物体。";
+    CALIBRATE_WORDS: "The hand sets its current forces as zero in 2 to 6 s, and nothing else moves it meanwhile. Open it, and let it touch nothing.", "灵巧手把当前的力作为零点，需 2 到 6 秒，期间不会运动。请张开手，不要接触任何物体。";
     CALIBRATE: "Calibrate", "校准", "Sends GESTURE_FORCE_CLB.", "发送 GESTURE_FORCE_CLB。";
-    CALIBRATE_NOT_YET: "Not all of it is so yet.", "条件尚未全部满足。";
-    CALIBRATE_ENTRY: "Calibrate force", "力校准", "Opens a card that checks what must be so first.", "打开卡片，先检查所需条件。";
+    CALIBRATE_NOT_YET: "Not all of it is met.", "条件尚未全部满足。";
+    CALIBRATE_ENTRY: "Calibrate force", "力校准", "Opens a card that checks the conditions first.", "打开卡片，先检查所需条件。";
     CALIBRATING: "The hand calibrates its force sensors", "灵巧手正在校准";
     MEASURING: "Measuring the new zero", "正在测量新的零点";
-    CALIBRATED: "The hand says that it is finished.", "灵巧手报告校准完成。";
-    CALIBRATED_QUIET: "The hand took it and was left alone for 8 s; no frame says that it is finished. Judge by the forces.", "灵巧手已接受，等待了 8 秒；没有完成报文，请以力的数值判断。";
+    CALIBRATED: "The hand reports that it is done.", "灵巧手报告校准完成。";
+    CALIBRATED_QUIET: "The hand accepted it and had 8 s; no frame reports that it is done. Judge by the forces.", "灵巧手已接受，等待了 8 秒；没有完成报文，请以力的数值判断。";
     CALIBRATED_REFUSED: "The hand refused it.", "灵巧手拒绝校准。";
-    CALIBRATED_UNKNOWN: "It is not known whether the sensors were calibrated: look at the forces of the open hand.", "不确定是否已校准：请查看手张开时的力。";
+    CALIBRATED_UNKNOWN: "It is not known whether the sensors were calibrated: check the forces of the open hand.", "不确定是否已校准：请查看手张开时的力。";
     CALIBRATED_NOT_SENT: "It was not sent.", "未发送。";
     JOINT: "Joint", "关节";
     OFFSET_NOW: "Force, g", "力 g";

@@ -12,18 +12,18 @@ use std::time::Duration;
 
 texts! {
     TITLE: "Check-up", "体检";
-    ABOUT: "Each joint bends and opens alone at two speeds, then all together; what the sensors say is compared with good hands, and with this hand's first check-up. About {}.", "各自由度先以两种速度单独弯曲与张开，再一起动作；传感器读数将与正常的手以及这只手的首次体检比较。约需 {}。";
-    EMPTY: "The hand is empty, and nothing is in its way", "手中没有物体，周围没有障碍", "To be said before each check-up. A joint that meets something ends it.", "每次体检前都须确认。任何自由度碰到物体都会立即结束。";
-    PRESS: "Then press each fingertip", "最后逐个按压指尖", "Once nothing moves any more and the hand is not armed, it asks for a press of each fingertip, and judges which channels answer.", "全部动作结束并取消使能后，请逐个按压指尖，以判断各通道是否有反应。";
-    SAY_EMPTY: "Say first that the hand is empty.", "请先确认手中没有物体。";
-    START: "Start check-up", "开始体检", "Checks the hand up in the arming of now. Any key, STOP, a fault, heat, an object or a lost link end it.", "在当前使能下进行体检。按任意键、停止、故障、过热、碰到物体或断线都会结束。";
+    ABOUT: "Each joint bends and opens alone at two speeds, then all together; the readings are compared with good hands, and with this hand's first check-up. About {}.", "各自由度先以两种速度单独弯曲与张开，再一起动作；传感器读数将与正常的手以及这只手的首次体检比较。约需 {}。";
+    EMPTY: "The hand is empty, and nothing is in its way", "手中没有物体，周围没有障碍", "Confirm before each check-up. A joint that meets something ends it.", "每次体检前都须确认。任何自由度碰到物体都会立即结束。";
+    PRESS: "Then press each fingertip", "最后逐个按压指尖", "Once the hand is at rest and not armed, it asks for a press of each fingertip, and judges which channels respond.", "全部动作结束并取消使能后，请逐个按压指尖，以判断各通道是否有反应。";
+    SAY_EMPTY: "Confirm that the hand is empty.", "请先确认手中没有物体。";
+    START: "Start check-up", "开始体检", "Checks the hand in its current arming. Any key, STOP, a fault, heat, an object or a lost link end it.", "在当前使能下进行体检。按任意键、停止、故障、过热、碰到物体或断线都会结束。";
     ARM_AND_START: "Arm and check up", "使能并体检", "Held for 1 s, arms the hand and checks it up. Any key, STOP, a fault, heat, an object or a lost link end it.", "按住 1 秒即使能并进行体检。按任意键、停止、故障、过热、碰到物体或断线都会结束。";
     END: "End the check-up", "结束体检", "Holds the hand and ends the check-up; its report is partial then.", "保持灵巧手当前位置并结束体检，报告将不完整。";
     STEP: "Step {} of {}: {}", "第 {} 步，共 {} 步：{}";
     ALL_JOINTS: "all joints", "全部自由度";
-    PRESS_NOW: "Press the fingertip of {} and let it go. Nothing moves any more.", "请按压{}的指尖后松开。灵巧手不会再动。";
+    PRESS_NOW: "Press and release the fingertip of {}. Nothing moves now.", "请按压{}的指尖后松开。灵巧手不会再动。";
     PROGRESS: "Check-up progress", "体检进度";
-    NEVER: "This hand was never checked up, as far as is known here. The first check-up is its birth record, with which the later ones are compared: say at the left that the hand is empty, and begin.", "此处没有这只手的体检记录。首次体检作为它的初始档案，供以后比较：请在左侧确认手中没有物体，然后开始。";
+    NEVER: "No check-up of this hand is known here. The first check-up is the reference for later ones: confirm at the left that the hand is empty, and begin.", "此处没有这只手的体检记录。首次体检作为它的初始档案，供以后比较：请在左侧确认手中没有物体，然后开始。";
     READING: "Reading earlier check-ups.", "正在读取以前的体检记录。";
     UNREAD: "The earlier check-ups cannot be read: {}", "无法读取以前的体检记录：{}";
     OF: "Check-up of {}", "{} 的体检";
@@ -35,7 +35,7 @@ texts! {
     SAVE: "Save page", "保存页面", "Saves the report as one page that any browser opens.", "把报告保存为单个网页文件。";
     ONLY: "Only what is not fine", "只看异常", "Shows only figures that are to be watched or acted on, that drift, or that were not measured.", "只显示需要关注或处理、有漂移或未测量的项目。";
     ALL_FINE: "Everything is as it should be.", "全部正常。";
-    LEFT_ALONE: "{} was left alone: its sensor reads {} g at rest, so that it could not be stopped gently. Calibrate the force sensors, and check again.", "{}没有动作：空载时传感器读数为 {} g，无法轻柔停下。请校准力传感器后重新体检。";
+    LEFT_ALONE: "{} was skipped: its sensor reads {} g at rest, so it could not be stopped gently. Calibrate the force sensors, and check again.", "{}没有动作：空载时传感器读数为 {} g，无法轻柔停下。请校准力传感器后重新体检。";
     NOT_AS_FIRST: "It is not kept as this hand's first: {} did not go through its stroke. Take out what is in its way, and check again.", "未作为首次体检保留：{}没有走完行程。请清除障碍后重新体检。";
     NOT_KEPT: "It is not kept: {}", "没有保留：{}";
     BUILT_IN: "Check-ups of the built-in hand are not kept.", "内置仿真手的体检不保留。";

@@ -28,7 +28,7 @@ texts! {
     CHANGE_SIM: "The simulated hand is always found here.", "仿真手总在此处。";
 
     LIVE: "Live", "实际值";
-    STAGED: "Staged", "暂存值", "What this row is to hold once it is applied. Enter stages it; nothing is written by typing.", "应用后此行的值。按回车暂存，输入时不写入任何内容。";
+    STAGED: "Staged", "暂存值", "The new value of this row. Enter stages it; nothing is written by typing.", "应用后此行的值。按回车暂存，输入时不写入任何内容。";
     SAVED: "Last saved", "上次保存";
     FACTORY: "Factory", "出厂值";
     RANGE: "Range", "范围";
@@ -42,7 +42,7 @@ texts! {
     GROUP_SPEED: "Speed after power-up", "上电速度";
     GROUP_FORCE: "Force threshold after power-up", "上电力阈值";
     ABOUT_PLACE: "Belongs to one hand. A wrong value hides the hand from this computer.", "每只灵巧手各不相同。值有误时，本机将找不到灵巧手。";
-    ABOUT_SPEED: "DEFAULT_SPEED_SET: the speed that the hand wakes up with.", "DEFAULT_SPEED_SET：灵巧手上电时的速度。";
+    ABOUT_SPEED: "DEFAULT_SPEED_SET: the speed after power-up.", "DEFAULT_SPEED_SET：灵巧手上电时的速度。";
     ABOUT_FORCE: "DEFAULT_FORCE_SET: where a drive stops after power-up. It does not regulate.", "DEFAULT_FORCE_SET：上电后电机停止的力值，并非力控。";
     HAND_ID: "Hand id", "设备 ID";
     REDU_RATIO: "Serial speed", "串口速率";
@@ -59,13 +59,13 @@ texts! {
     SAVING: "The hand writes its flash. Leave it switched on.", "灵巧手正在写闪存，请勿断电。";
     READ_AT: "Read", "读取于";
     AGO: "ago", "前";
-    TROUBLE: "Not all rows could be read, and nothing was written on the strength of them:", "部分行无法读取，因此未写入任何内容：";
+    TROUBLE: "Not all rows could be read, so nothing was written:", "部分行无法读取，因此未写入任何内容：";
 
 
     APPLIED: "applied, read back", "已应用并读回";
     NOT_TAKEN: "refused", "被拒绝";
-    DROPPED: "refused in silence: the hand keeps what it held", "未采用：灵巧手保持原值";
-    PUT_BACK: "put back, because other rows were not taken; wanted", "其他行未被采用，已写回原值；想要";
+    DROPPED: "silently refused: the hand keeps its old value", "未采用：灵巧手保持原值";
+    PUT_BACK: "restored, as other rows were refused; requested", "其他行未被采用，已写回原值；想要";
     ALTERED: "the hand took another value than", "灵巧手采用了别的值，而非";
     UNVERIFIED: "unverified", "未核实";
     NOT_WRITTEN: "not written", "未写入";
@@ -76,7 +76,7 @@ texts! {
 
     DANGER_APPLY: "Apply defaults that hit hard?", "应用会造成冲击的默认值？";
     DANGER_SAVE: "Save defaults that hit hard?", "保存会造成冲击的默认值？";
-    DANGER_LATE: "A drive stops late: closing at this speed, the finger presses far beyond its force threshold before it stops. Once in flash, the hand wakes up like this every time.", "电机停止有滞后：以此速度合拢时，手指会远超力阈值才停下。写入闪存后，灵巧手每次上电都将如此。";
+    DANGER_LATE: "A drive stops late: closing at this speed, the finger presses far beyond its force threshold before it stops. Once in flash, the hand starts like this every time.", "电机停止有滞后：以此速度合拢时，手指会远超力阈值才停下。写入闪存后，灵巧手每次上电都将如此。";
     DANGER_RATED: "Above the rated grip of 2000 g:", "高于额定抓握力 2000 g：";
     DANGER_FORCE: "Threshold, g", "阈值 g";
     DANGER_OVER: "Overshoot, g", "超出 g";
@@ -84,8 +84,8 @@ texts! {
     DANGER_BEYOND: "Thresholds above 1000 g were not measured: the figure of 1000 g stands for them.", "1000 g 以上的阈值没有实测，按 1000 g 的数据给出。";
     DANGER_SLOWLY: "With speed 25 the same thresholds were passed by at most", "速度为 25 时，同样的阈值最多超出";
     FORCE: "force", "力";
-    AGREE_APPLY: "Apply anyway", "仍然应用", "Goes on with what is listed here.", "按所列内容继续。";
-    AGREE_SAVE: "Save anyway", "仍然保存", "Goes on with what is listed here.", "按所列内容继续。";
+    AGREE_APPLY: "Apply anyway", "仍然应用", "Proceeds with this list.", "按所列内容继续。";
+    AGREE_SAVE: "Save anyway", "仍然保存", "Proceeds with this list.", "按所列内容继续。";
     DECLINE: "Back", "返回", "Writes nothing. What was staged before stays staged.", "不写入任何内容，之前的暂存值保留。";
 
     FLASH: "Flash", "闪存";
@@ -100,22 +100,22 @@ texts! {
     SAVE_STAGED: "Rows are staged and not applied. Save to flash applies them first.", "有暂存值尚未应用。保存到闪存时会先应用。";
     SAVE_NOT_APPLIED: "Not saved: not all that was staged is in force. Each row says why.", "未保存：暂存值未全部生效，原因见各行。";
     UNSAVED: "Not in flash yet:", "尚未写入闪存：";
-    AGREE: "Save", "保存", "Goes on with what is listed here.", "按所列内容继续。";
-    AGREE_APPLY_SAVE: "Apply and save", "应用并保存", "Goes on with what is listed here.", "按所列内容继续。";
+    AGREE: "Save", "保存", "Proceeds with this list.", "按所列内容继续。";
+    AGREE_APPLY_SAVE: "Apply and save", "应用并保存", "Proceeds with this list.", "按所列内容继续。";
     NEVER_SAVED: "This program saved nothing on this hand yet.", "本程序尚未在此灵巧手上保存过。";
     BY_FRAME: "confirmed by the hand", "灵巧手已确认";
     BY_READING: "read back the same", "读回一致";
-    DOUBTFUL: "Of a later SAVE it is not known what came:", "之后有一次保存结果未知：";
+    DOUBTFUL: "The result of a later SAVE is unknown:", "之后有一次保存结果未知：";
     UNREADABLE: "The record cannot be read:", "记录无法读取：";
-    SAVE_CONFIRMED: "Saved: the hand says that its parameters are in flash.", "已保存：灵巧手确认参数已写入闪存。";
+    SAVE_CONFIRMED: "Saved: the hand reports its parameters in flash.", "已保存：灵巧手确认参数已写入闪存。";
     SAVE_READ_BACK: "Saved as far as this wire tells: acknowledged, and read back the same. Only the next power-up shows what is in flash.", "就此连接所知已保存：已应答且读回一致。只有下次上电才能看到闪存内容。";
-    SAVE_FAILED: "Not saved: the hand says that writing its flash failed.", "未保存：灵巧手报告写闪存失败。";
+    SAVE_FAILED: "Not saved: the hand reports that its flash failed.", "未保存：灵巧手报告写闪存失败。";
     SAVE_UNKNOWN: "Unknown whether it was saved:", "是否已保存未知：";
     SAVE_UNKNOWN_ADVICE: "Switch the hand off and on, then read again.", "请将灵巧手断电重启，然后重新读取。";
     SAVE_REFUSED: "Not saved, the hand refused:", "未保存，灵巧手拒绝：";
     SAVE_NOT_SENT: "Not saved, nothing was sent:", "未保存，未发送任何内容：";
     SAVE_NO_BACKUP: "Not saved, nothing was sent: the backup could not be written:", "未保存，未发送任何内容：备份无法写入：";
-    SAVE_NOT_NOTED: "This could not be noted:", "此结果无法记录：";
+    SAVE_NOT_NOTED: "Could not be recorded:", "此结果无法记录：";
     SAVE_NO_RESULT: "the hand gave no result within 3 s.", "灵巧手 3 秒内没有给出结果。";
     SAVE_UNANSWERED: "the hand did not answer.", "灵巧手没有应答。";
     SAVE_NOT_READ: "its parameters could not be read back as they were.", "参数无法照原样读回。";

@@ -538,7 +538,7 @@ mod tests {
             io(WireFailure::NoScenario(
                 "'party' is not a scenario: choose idle".into(),
             )),
-            io(WireFailure::NoBody("line 2, `latency`: no such key".into())),
+            io(WireFailure::NoBody("line 2, `latency`: unknown key".into())),
         ];
         all.extend(
             [2, 5, 13, 17, 20, 21, 24, 28, 30, 101, 113, 150].map(|code| io(system(code).into())),

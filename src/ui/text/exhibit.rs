@@ -27,7 +27,7 @@ texts! {
     COOLING: "The hand is cooling: about {} min", "灵巧手正在降温：约 {} 分钟";
     COOLING_NOTE: "It rests open, and goes on by itself.", "它张开休息，之后会自动继续。";
     HEAT_UNKNOWN: "One moment: the temperature is not known", "请稍候：温度未知";
-    HEAT_UNKNOWN_NOTE: "Staff: if this stays, look at the connection.", "工作人员：若持续如此，请检查连接。";
+    HEAT_UNKNOWN_NOTE: "Staff: if it persists, check the connection.", "工作人员：若持续如此，请检查连接。";
     CLEARING: "One moment: the hand frees itself", "请稍候：灵巧手正在恢复";
     CLEARING_NOTE: "It opens, and goes on by itself.", "它会张开，然后自动继续。";
 
@@ -64,7 +64,7 @@ texts! {
         HaltReason::NotArmed => "Staff: check that nobody is near the hand, then unlock and arm.", "工作人员：确认无人靠近灵巧手后，解锁并使能。";
         HaltReason::NoHand => "Staff: the hand does not answer. Check its power and its cable.", "工作人员：灵巧手没有应答。请检查电源和线缆。";
         HaltReason::LinkLost => "Staff: the hand was away and is back. Check it, then unlock and arm.", "工作人员：灵巧手曾断开，现已恢复。检查后解锁并使能。";
-        HaltReason::NoFeedback => "Staff: what the hand reports grew old or stood still. Check its power and its cable, then unlock and arm.", "工作人员：灵巧手的反馈过时或毫无变化。检查电源和线缆后，解锁并使能。";
+        HaltReason::NoFeedback => "Staff: feedback of the hand is stale or frozen. Check its power and its cable, then unlock and arm.", "工作人员：灵巧手的反馈过时或毫无变化。检查电源和线缆后，解锁并使能。";
         HaltReason::Stopped => "Staff: STOP was pressed. See that all is well, then unlock and arm.", "工作人员：有人按下了停止。确认一切正常后，解锁并使能。";
         HaltReason::Fault => "Staff: a drive reports a fault. Check the hand, then unlock and arm.", "工作人员：驱动器报告故障。检查灵巧手后，解锁并使能。";
         HaltReason::OtherController => "Staff: another program talks to the hand. Close it, then unlock and arm.", "工作人员：另有程序正在控制灵巧手。关闭后解锁并使能。";

@@ -121,11 +121,11 @@ fn request_text(look: Look, what: RequestKind) -> String {
 fn disarmed(look: Look, why: Disarmed) -> String {
     match (look.language, why) {
         (Language::Zh, why) => words::disarmed_zh(why).into(),
-        (Language::En, Disarmed::Person) => "Not armed any more.".into(),
+        (Language::En, Disarmed::Person) => "No longer armed.".into(),
         (Language::En, Disarmed::OtherController) => {
-            format!("Not armed any more: {why}. Arm again if you want both.")
+            format!("No longer armed: {why}. Arm again if you want both.")
         }
-        (Language::En, why) => format!("Not armed any more: {why}."),
+        (Language::En, why) => format!("No longer armed: {why}."),
     }
 }
 

@@ -13,14 +13,14 @@ use std::time::Duration;
 texts! {
     HISTORY: "History", "曲线";
     WINDOW_NAME: "Plot window", "时间窗口";
-    PAUSE: "Pause", "暂停", "Lets the plots stand still. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
-    PAUSED: "Paused", "已暂停", "Lets the plots stand still. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
+    PAUSE: "Pause", "暂停", "Freezes the plots. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
+    PAUSED: "Paused", "已暂停", "Freezes the plots. Nothing is lost meanwhile.", "曲线停止滚动，期间数据不会丢失。";
     PAUSE_NAME: "Pause the plots", "暂停曲线";
     SHOW_CURVE: "Show or hide this joint's curves.", "显示或隐藏该自由度的曲线。";
     HIDE_CURVE: "Press to hide this joint's curves. More shows them again.", "点击隐藏该自由度的曲线，可在“更多”中重新显示。";
     CURVES: "Curves", "曲线";
     GROW: "Grow", "放大", "Press to draw this plot tall.", "点击放大此曲线图。";
-    DRIVES: "Status", "状态", "What each drive says of itself. Blue: it moves. Green: in position. Amber: at force. Red: a fault, or stopped to protect itself. Empty: not known.", "各驱动器的状态。蓝：运动中。绿：位置到位。黄：力控到位。红：故障或保护停止。空白：未知。";
+    DRIVES: "Status", "状态", "Status reported by each drive. Blue: it moves. Green: in position. Amber: at force. Red: a fault, or stopped to protect itself. Empty: not known.", "各驱动器的状态。蓝：运动中。绿：位置到位。黄：力控到位。红：故障或保护停止。空白：未知。";
     DRIVE_SINCE: "since {}, for {}", "自 {} 起，持续 {}";
     SHORT_FORCE: "Force\ng", "受力\ng";
     SHORT_NORMAL: "Normal\nN", "法向\nN";
@@ -69,12 +69,12 @@ texts! {
     DRAG_FINGER: "drag to move it", "拖动即可移动";
     FINGER_FORCE: "force at the drawn finger", "图旁受力";
     FINGER_GRIP: "grip at the drawn finger", "图旁抓握";
-    GRIP: "Grip", "抓握", "What the hand does to an object, told from angles, forces, fingertips, current and status. Slipping: the force along a fingertip rises or turns. Lost: the contact is gone, and the finger did not open. Unknown: a reading is missing or old.", "根据角度、受力、指尖、电流和状态判断手对物体的抓握情况。打滑：指尖切向力上升或转向。丢失：手指未张开而接触消失。未知：读数缺失或过期。";
+    GRIP: "Grip", "抓握", "State of the grip, inferred from angles, forces, fingertips, current and status. Slipping: the force along a fingertip rises or turns. Lost: the contact is gone, and the finger did not open. Unknown: a reading is missing or old.", "根据角度、受力、指尖、电流和状态判断手对物体的抓握情况。打滑：指尖切向力上升或转向。丢失：手指未张开而接触消失。未知：读数缺失或过期。";
     FINGER_TROUBLE: "trouble at the drawn finger", "图旁状况";
     TOUCH_SCALE_END: "end of the heat scale", "热度标尺上限";
-    TARE_ALL: "Tare all", "全部去皮", "Counts all channels from now on. Readings and recordings stay as the hand sends them.", "所有通道从当前读数起算。原始读数与记录不变。";
-    TARE_ONE: "Tare", "去皮", "Counts the channels of the chosen fingertip from now on.", "所选指尖的通道从当前读数起算。";
-    TARE_UNDO: "Undo", "撤销", "Takes the last taring back.", "撤销最近一次去皮。";
+    TARE_ALL: "Tare all", "全部去皮", "Zeroes all channels here. Readings and recordings stay as the hand sends them.", "所有通道从当前读数起算。原始读数与记录不变。";
+    TARE_ONE: "Tare", "去皮", "Zeroes the channels of the chosen fingertip.", "所选指尖的通道从当前读数起算。";
+    TARE_UNDO: "Undo", "撤销", "Undoes the last taring.", "撤销最近一次去皮。";
     TARE_NOTHING: "Nothing was tared.", "还没有去皮。";
     TIP: "Fingertip", "指尖";
     TIP_UP: "tip", "指尖";
@@ -92,8 +92,8 @@ texts! {
     CLEAR: "Clear errors", "清除错误", "Holds the pose, then clears stall, over-current, motor and communication faults. Over-temperature cannot be cleared: it ends by itself when cool.", "先保持姿态，再清除堵转、过流、电机异常和通讯故障。过温故障不可清除，温度回落后自动清除。";
     NOTICE_LOST: "Link lost.", "连接断开。";
     NOTICE_NO_LINK: "No hand reached.", "未连接到灵巧手。";
-    TIMER_TOLD: "The USB adapter keeps replies back, which halves the rate. Its latency timer is", "USB 适配器延迟应答，速率减半。其延迟定时器为";
-    TIMER_SEEN: "Replies come every 16 ms, as from a USB adapter that keeps them back (latency timer).", "应答每 16 ms 才到，像是 USB 适配器的延迟定时器所致。";
+    TIMER_TOLD: "The USB adapter delays replies, which halves the rate. Its latency timer is", "USB 适配器延迟应答，速率减半。其延迟定时器为";
+    TIMER_SEEN: "Replies come every 16 ms, as from a USB adapter that delays them (latency timer).", "应答每 16 ms 才到，像是 USB 适配器的延迟定时器所致。";
     TIMER_CURE: "In a terminal:", "在终端运行：";
     TIMER_CURE_WINDOWS: "Device Manager, port, Port Settings, Advanced: latency timer 1 ms.", "设备管理器 → 端口 → 端口设置 → 高级：延迟定时器 1 ms。";
     NOTICE_STOP_NOT_SENT: "STOP could not be sent: no hand answers. If it moves, switch off its 24 V supply.", "停止命令未能发出：没有灵巧手应答。若仍在运动，请关闭 24 V 电源。";
@@ -102,11 +102,11 @@ texts! {
     NOTICE_ARM: "Not armed.", "未能使能。";
     NOTICE_ACKNOWLEDGED: "acknowledged by the hand.", "灵巧手已确认。";
     NOTICE_LOCKED: "Nothing was sent: a gesture moves all joints, and this one is locked:", "未发送：手势会移动所有自由度，而以下自由度已锁定：";
-    NOTICE_ENDPOINT: "The remembered hand means nothing:", "无法识别上次的连接地址：";
+    NOTICE_ENDPOINT: "The stored hand is invalid:", "无法识别上次的连接地址：";
     NOTICE_WITHOUT_OPENGL: "OpenGL does not start on this computer, so the window is drawn without it.", "这台电脑无法启动 OpenGL，窗口改用软件绘制。";
-    NOTICE_UNGUARDED: "If this program is killed nothing stops the hand but the 24 V switch, as no process could be started for it:", "无法启动备用进程：若本程序被强行终止，只有切断 24 V 电源才能让灵巧手停下：";
-    DISARMED_BY_OTHER: "Not armed any more: another controller wrote {}. Arm again if you want both.", "已取消使能：另有控制器写入 {}。再次使能以确认继续。";
-    STEPS_LOST: "This window did not keep up: {} steps of what goes on are not shown.", "此窗口未能跟上：有 {} 个步骤未显示。";
+    NOTICE_UNGUARDED: "If this program is killed, only the 24 V switch stops the hand: the process for it could not start:", "无法启动备用进程：若本程序被强行终止，只有切断 24 V 电源才能让灵巧手停下：";
+    DISARMED_BY_OTHER: "No longer armed: another controller wrote {}. Arm again if you want both.", "已取消使能：另有控制器写入 {}。再次使能以确认继续。";
+    STEPS_LOST: "This window did not keep up: {} events are not shown.", "此窗口未能跟上：有 {} 个步骤未显示。";
     LEADER_STOPPED: "The hand that led this one was stopped, too.", "带动此手的那只手也已停下。";
     SOURCE_SILENT: "{} fell silent: the hand was stopped.", "{} 已无数据：灵巧手已停下。";
 
@@ -114,7 +114,7 @@ texts! {
     GESTURES_FIXED: "1 to 13 fixed", "1 至 13 固定";
     GESTURES_USER: "14 to 40 user", "14 至 40 用户自定";
     GESTURES_TIP: "The manual describes gestures but lists no address for them. The route says which address is written.", "手册说明了手势功能，但寄存器表中没有其地址。“方式”决定写入哪个地址。";
-    GESTURE_RUN_TIP: "Takes this stored pose at once.", "立即执行该手势。";
+    GESTURE_RUN_TIP: "Starts this gesture at once.", "立即执行该手势。";
     GESTURE_ROUTE: "Gesture route", "手势方式";
     ROUTE_1008: "Write 1008", "写 1008";
     ROUTE_LIBRARY: "Action library 2320", "动作库 2320";
@@ -123,23 +123,23 @@ texts! {
     KNOWN_LIBRARY: "2320, then 2322 = 1: not in the manual's table. Known: the maker's newer demos write it. Not known: whether this firmware moves.", "先写 2320，再写 2322 = 1：手册寄存器表中没有。已知：厂家较新的示例使用此方式。未知：本固件是否动作。";
     KNOWN_OFF: "Off: no address outside the manual's table is written, and no gesture can be started.", "关闭：不写手册寄存器表以外的地址，也无法启动手势。";
     GESTURES_OFF: "The gesture route is off.", "手势方式已关闭。";
-    GESTURE_NAME_EDIT: "Name gestures", "命名手势", "Type names for the numbers. The hand does not tell what its gestures are.", "为编号输入名称。灵巧手不会给出手势名称。";
+    GESTURE_NAME_EDIT: "Name gestures", "命名手势", "Type names for the numbers. The hand does not describe its gestures.", "为编号输入名称。灵巧手不会给出手势名称。";
     GESTURE_NAME: "Name of gesture", "手势名称";
 
     CONNECTION_KIND: "Kind of link", "连接方式";
     PORTS_NONE: "None found. Type a name, or plug the adapter in and refresh.", "没有找到串口。请输入名称，或插入适配器后刷新。";
     PORTS_REFRESH: "Refresh", "刷新", "Looks for serial ports again.", "重新查找串口。";
-    PORT_PICK_TIP: "Takes this port.", "选用此串口。";
+    PORT_PICK_TIP: "Uses this port.", "选用此串口。";
     EXPERT: "For experts", "专家选项";
     SCAN_HERE: "Scan", "扫描", "Looks for hands here and nowhere else, at all speeds and in all protocols. It only reads.", "仅在此处以各种波特率与协议查找灵巧手。只读取，不写入。";
-    CONNECT: "Connect", "连接", "Talks to this hand from now on. Nothing is written by connecting.", "开始与该灵巧手通信。连接时不会写入任何内容。";
-    DISCONNECT: "Disconnect", "断开", "Talks to no hand. The hand keeps what it was told.", "停止通信。灵巧手保持上一次的设置。";
-    ADDRESS_WRONG: "No IP address: four numbers from 0 to 255, as 192.168.11.210", "不是 IP 地址：应为四个 0 至 255 的数字，例如 192.168.11.210";
+    CONNECT: "Connect", "连接", "Connects to this hand. Connecting writes nothing.", "开始与该灵巧手通信。连接时不会写入任何内容。";
+    DISCONNECT: "Disconnect", "断开", "Disconnects. The hand keeps its targets.", "停止通信。灵巧手保持上一次的设置。";
+    ADDRESS_WRONG: "Not an IP address: four numbers 0 to 255, as 192.168.11.210", "不是 IP 地址：应为四个 0 至 255 的数字，例如 192.168.11.210";
     LINK_NOW: "Link now", "当前连接";
     ENDPOINT: "Endpoint", "通信地址";
     SINCE: ", for", "，已持续";
     ECHOES: "The adapter echoes: what is sent comes back, and is left out.", "适配器有回显：发送的内容会返回，已自动忽略。";
-    SLOW: "Replies take up to {} ms: feedback and a stop come as much later.", "应答最长需要 {} ms：反馈与停止也会相应推迟。";
+    SLOW: "Replies take up to {} ms: feedback and a stop lag as much.", "应答最长需要 {} ms：反馈与停止也会相应推迟。";
     MOVED_TO: "The adapter is now at", "适配器现位于";
     BUDGET: "What the line is used for", "线路的使用";
     DETAILS: "Details", "详细";
@@ -200,7 +200,7 @@ texts! {
     SHOWN: "Plots shown", "显示的曲线";
     ENLARGE: "Fill the view", "放大显示";
     SAVE_CSV: "Save these {} as CSV", "将这 {} 保存为 CSV", "All measurements of the shown time, plots and joints, as they were received, into a file. The window goes on meanwhile.", "把当前时间范围内所示曲线的全部原始数据保存到文件。保存期间窗口照常工作。";
-    SAVE_PNG: "Save as PNG", "保存为 PNG", "A picture of these plots as they stand, twice as fine as on the screen.", "将当前曲线保存为图片，分辨率为屏幕的两倍。";
+    SAVE_PNG: "Save as PNG", "保存为 PNG", "A picture of these plots, at twice the resolution of the screen.", "将当前曲线保存为图片，分辨率为屏幕的两倍。";
     CURSORS: "A|B", "A|B", "Two cursors with values, difference, slope, and smallest, largest and mean value between them.", "两个游标：数值、差值、斜率，以及区间最小、最大和平均值。";
     CURSORS_NAME: "Cursors", "游标";
     CURSOR_A: "Cursor A", "游标 A";
@@ -224,7 +224,7 @@ texts! {
     NOTE_CANCEL: "Cancel", "取消", "Makes no note.", "不添加标记。";
     NOTES: "Notes", "标记列表";
     NOTE_SHOW: "Show the note", "显示标记", "Shows this moment in the plots.", "在曲线中显示该时刻。";
-    NOTE_DELETE: "Delete the note", "删除标记", "Takes the note out of the plots.", "从曲线中删除该标记。";
+    NOTE_DELETE: "Delete the note", "删除标记", "Removes the note from the plots.", "从曲线中删除该标记。";
 
     /// Behaviour of the built-in hand, with its name in endpoints.
     fn scenario(Scenario) {

@@ -26,16 +26,16 @@ texts! {
     PLUGGED_IN: "now plugged in", "已插入";
     ANSWERED: "answered the scan", "扫描时有应答";
     LAST_USED: "last used {}", "上次使用：{}";
-    SCAN_PORTS: "Scan all ports", "扫描全部端口", "Asks on all serial ports and CAN interfaces, at all speeds, in all protocols. It only reads.\nOpening a port resets some other devices, such as boards with an Arduino bootloader.", "在所有串口与 CAN 接口上，以各种波特率与协议查询。只读取，不写入。\n打开串口可能使某些其他设备复位，例如带 Arduino 引导程序的开发板。";
+    SCAN_PORTS: "Scan all ports", "扫描全部端口", "Queries all serial ports and CAN interfaces, at all speeds, in all protocols. It only reads.\nOpening a port resets some other devices, such as boards with an Arduino bootloader.", "在所有串口与 CAN 接口上，以各种波特率与协议查询。只读取，不写入。\n打开串口可能使某些其他设备复位，例如带 Arduino 引导程序的开发板。";
     CANCEL: "Cancel", "取消", "Ends the scan. What was found stays.", "结束扫描，保留已找到的结果。";
     RUNNING: "A scan is under way.", "正在扫描。";
-    IDS: "Ids", "ID", "Which ids are asked on every bus. All of them take about two minutes a port.", "在每条总线上查询的 ID。全部 ID 每个端口约需两分钟。";
+    IDS: "Ids", "ID", "Ids queried on every bus. All of them take about two minutes a port.", "在每条总线上查询的 ID。全部 ID 每个端口约需两分钟。";
     IDS_FEW: "1 to 10", "1 至 10";
     IDS_ALL: "1 to 254", "1 至 254";
     PRESETS: "Hands on the network often have", "网络灵巧手常用地址：";
     PRESET_MAKER: "As delivered", "出厂地址";
     PRESET_FIELD: "Seen on some hands", "部分灵巧手使用";
-    PRESET_TIP: "Puts this address into the field. Nothing is asked before you press a button.", "将此地址填入输入框。点击按钮之前不会发送任何内容。";
+    PRESET_TIP: "Puts this address into the field. Nothing is sent before you press a button.", "将此地址填入输入框。点击按钮之前不会发送任何内容。";
     NEVER: "Nothing was scanned yet. A scan reads one register, the id, and writes nothing. No address in the network is tried that you do not name.", "尚未扫描。扫描只读取 ID 寄存器，不写入任何内容，也不会尝试未指定的网络地址。";
     PROGRESS: "Scan progress", "扫描进度";
     ASKED: "questions", "次查询";
@@ -48,14 +48,14 @@ texts! {
     NOTHING_AT_ALL: "No hand answered to any id. Check power, cable and wiring.", "所有 ID 均无应答。请检查电源、线缆与接线。";
     NOWHERE: "Nothing could be scanned:", "无法扫描：";
     CANCELLED: "Cancelled.", "已取消。";
-    CONNECTED: "Connected", "已连接", "This is the hand of now.", "当前连接的灵巧手。";
-    HELD: "left alone, the connection of now uses it. Disconnect first to scan it.", "已跳过，当前连接正在使用。请先断开再扫描。";
+    CONNECTED: "Connected", "已连接", "The current hand.", "当前连接的灵巧手。";
+    HELD: "skipped, the current connection uses it. Disconnect first to scan it.", "已跳过，当前连接正在使用。请先断开再扫描。";
     MORE: "more", "更多";
     AS_FOUND: "as the hand shows", "自动识别";
     PACKING_UNKNOWN: "unknown: not written", "未知：不写入";
-    SHARED: "Shared hands", "共享的灵巧手", "Hands that other Handscopes share: there, under Share, with DDS joined and the gateway open. To watch one costs its link nothing; to move it, a person there has to let you.", "其他 Handscope 共享的灵巧手：需在对方的“共享”中加入 DDS 并打开网关。观看不占用对方链路；控制需由对方的人允许。";
+    SHARED: "Shared hands", "共享的灵巧手", "Hands that other Handscopes share: there, under Share, with DDS joined and the gateway open. To watch one costs its link nothing; to move it, ask for control there.", "其他 Handscope 共享的灵巧手：需在对方的“共享”中加入 DDS 并打开网关。观看不占用对方链路；控制需由对方的人允许。";
     SHARED_FIND: "Look for them", "查找", "Joins DDS at this interface and listens. Nothing is connected to.", "在此接口加入 DDS 并监听，不会连接任何灵巧手。";
-    SHARED_STOP: "Look no more", "停止查找", "Leaves DDS; the list is cleared.", "退出 DDS，并清空列表。";
+    SHARED_STOP: "Stop looking", "停止查找", "Leaves DDS; the list is cleared.", "退出 DDS，并清空列表。";
     SHARED_NONE: "No hand is shared at this interface.", "此接口上没有共享的灵巧手。";
     SHARED_UNREACHABLE: "Its gateway is closed, or not open to this network.", "对方的网关未打开，或未对此网络开放。";
     SHARED_OWN: "This window shares it itself.", "由本窗口共享。";
@@ -94,7 +94,7 @@ texts! {
 
 /// Controller of a hand that another Handscope shares.
 pub(crate) fn mover(look: Look, owner: Owner) -> String {
-    const THERE: Text = Text::new("moved by a person there", "由对方的人控制");
+    const THERE: Text = Text::new("moved by a user there", "由对方的人控制");
     const MOVED: Text = Text::new("moved by: {}", "控制者：{}");
     match owner {
         Owner::Person | Owner::Task => look.tr(THERE).into(),

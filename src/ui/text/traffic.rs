@@ -9,13 +9,13 @@ use crate::ui::style::phrase::texts;
 texts! {
     SHOWN_OF: "of", "/";
     FRAMES: "frames", "条报文";
-    PAUSE: "Pause", "暂停", "Lets the list stand still. Recording goes on.", "列表停止更新，记录继续进行。";
-    PAUSED: "Paused", "已暂停", "Lets the list stand still. Recording goes on.", "列表停止更新，记录继续进行。";
+    PAUSE: "Pause", "暂停", "Freezes the list. Recording continues.", "列表停止更新，记录继续进行。";
+    PAUSED: "Paused", "已暂停", "Freezes the list. Recording continues.", "列表停止更新，记录继续进行。";
     PAUSE_NAME: "Pause the list", "暂停列表";
     CAME_SINCE: "came since", "条新报文";
     FOLLOW: "Follow", "跟随", "Keeps the newest frame in sight.", "始终显示最新的报文。";
     FOLLOW_NAME: "Follow the newest", "跟随最新报文";
-    CLEAR: "Clear", "清除", "Takes all frames from the list. New ones appear as they pass.", "清空列表，之后的报文会继续显示。";
+    CLEAR: "Clear", "清除", "Clears the list. New frames appear as they pass.", "清空列表，之后的报文会继续显示。";
     CLEAR_NAME: "Clear the list", "清除列表";
     COPY: "Copy hex", "复制十六进制", "Puts the bytes of the chosen frames on the clipboard, one frame a line. Ctrl+C does the same.", "将所选报文的字节复制到剪贴板，每条一行。Ctrl+C 作用相同。";
     COPY_AS: "Copy as", "复制为";
@@ -38,7 +38,7 @@ texts! {
     HEAD_MEANING: "Meaning", "含义";
     HEAD_BYTES: "Bytes", "字节";
     DETAIL: "Frame", "报文";
-    DETAIL_HINT: "Choose a frame to see what each of its bytes says.", "选择一条报文，查看每个字节的含义。";
+    DETAIL_HINT: "Choose a frame to see the meaning of its bytes.", "选择一条报文，查看每个字节的含义。";
     DETAIL_MANY: "frames chosen", "条报文已选";
     TOOK: "answered within", "应答用时";
     ALL_WELL: "Nothing wrong", "正常";

@@ -30,7 +30,7 @@ texts! {
     ARM_FIRST: "Press Arm to move", "先点击“使能”再操作";
     SAVED: "Saved:", "已保存：";
     IGNORED: "{} could not be read: {} It was put aside, and the last good one or none is in use. {}", "{} 无法读取：{}该文件已另存，现使用上一份完好的文件或默认值。{}";
-    REFUSED: "Nothing was taken of {}: {}", "未采用 {}：{}";
+    REFUSED: "{} was not used: {}", "未采用 {}：{}";
     NOT_SAVED: "Could not be written:", "无法写入：";
     NO_FILE: "No file was chosen. Where no dialog came up, this desktop has none.", "没有选择文件。如果没有出现对话框，说明此桌面不提供。";
     PATH: "Path of the file", "文件路径", "or type the path of the file here", "或在此输入文件路径";
@@ -68,8 +68,8 @@ texts! {
     KEY_LIST: "This list", "本列表";
     RECORD: "Record, or end the recording", "开始或停止录制";
     KEY_COMMANDS: "Find a command", "查找命令";
-    COMMANDS: "Commands", "命令", "Type a part of a name: an act, a view, a pose", "输入名称的一部分：操作、页面、姿态";
-    COMMANDS_NONE: "Nothing is called so.", "没有匹配的命令。";
+    COMMANDS: "Commands", "命令", "Type part of a name: action, view or pose", "输入名称的一部分：操作、页面、姿态";
+    COMMANDS_NONE: "No match.", "没有匹配的命令。";
     KEY_MOTION: "Motion", "运动";
     KEY_JOINTS: "Joint that the arrows move", "方向键控制的关节";
     KEY_MEASURING: "Measuring", "测量";
@@ -78,7 +78,7 @@ texts! {
     KEY_ZOOM_OUT: "Everything smaller", "缩小";
     KEY_ZOOM_RESET: "Original size", "原始大小";
     KEY_ON_TRACKS: "On a track: arrows 10, with Shift 100; wheel; Tab to the next.", "在滑轨上：方向键每次 10，按住 Shift 每次 100；滚轮；Tab 到下一个。";
-    KEY_IN_FIELDS: "In a field: a click selects all, Enter takes the number, Esc gives the old one back.", "在输入框里：点击全选，回车确认数值，Esc 恢复原值。";
+    KEY_IN_FIELDS: "In a field: a click selects all, Enter takes the number, Esc restores the old one.", "在输入框里：点击全选，回车确认数值，Esc 恢复原值。";
     KEY_ESCAPE: "While the hand rests, Esc first closes what is open: a menu, a field, a note, this list. Else it stops the hand at once.", "灵巧手静止时，Esc 先关闭打开的菜单、输入框、标记或本列表；否则立即停止灵巧手。";
     LIVE_WORDS: "speed force threshold angle joint index thumb finger slider plot", "速度 力 角度 自由度 手指 曲线";
     TOUCH_WORDS: "fingertip tactile heat", "指尖 触觉 受力";

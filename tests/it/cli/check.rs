@@ -73,10 +73,10 @@ fn who_ends_it_gets_a_held_hand_and_a_report_that_says_it_is_partial() {
         checks.signal(Signal::SIGINT);
         let ended = checks.end();
         assert_eq!(ended.code, Some(1), "{}", ended.err);
-        let why = "partial: ended by a person; stopped: feedback shows rest";
+        let why = "partial: ended by the user; stopped: feedback shows rest";
         assert!(ended.err.contains(why), "{}", ended.err);
         let page = std::fs::read_to_string(out.join("report.html")).unwrap();
-        assert!(page.contains("Partial: it ended early, ended by a person"));
+        assert!(page.contains("Partial: it ended early, ended by the user"));
         let json = std::fs::read_to_string(out.join("check.json")).unwrap();
         let json: serde_json::Value = serde_json::from_str(&json).unwrap();
         assert_eq!(json["check"]["complete"], false);

@@ -102,7 +102,7 @@ fn always(mut to: PipeWriter) {
 fn lines_that_come_whether_one_is_asked_or_not_are_no_consent() {
     unless_busy(|| {
         for (more, words) in [
-            (&[][..], "nobody can press Enter here"),
+            (&[][..], "no terminal here to ask for consent"),
             (&["--consent", "stdin"], "does not pause"),
         ] {
             let (input, person) = std::io::pipe().unwrap();

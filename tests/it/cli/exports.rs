@@ -382,13 +382,13 @@ fn several_sessions_make_one_set_whose_episodes_begin_at_gaps_or_notes() {
             &["left.mcap"],
             &["--lerobot", "--episode", "notes"],
             1,
-            "no note of a person",
+            "no user note",
         ),
         (
             &["left.mcap"],
             &["--lerobot"],
             1,
-            "nothing to export in this stretch",
+            "nothing to export in this time range",
         ),
         (
             &["a.mcap"],

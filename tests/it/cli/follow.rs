@@ -158,7 +158,7 @@ fn a_hand_is_held_when_nobody_reads_the_output_any_more() {
             .read_to_string(&mut said)
             .unwrap();
         assert!(
-            said.contains("nobody reads the output any more: the hand was stopped"),
+            said.contains("the output is no longer read: the hand was stopped"),
             "{said}"
         );
         let (told, at) = (setpoint(&hand), angle(&hand));
@@ -197,7 +197,7 @@ fn what_was_sent_stands_in_the_recording_and_a_disk_that_fails_holds_nothing_up(
         let args = ["--udp", "127.0.0.1:0", "--record", &there];
         let ended = run(&[&["follow", "--hand", "sim:"], &args[..]].concat());
         assert_eq!(ended.code, Some(1));
-        assert!(ended.err.contains("already there"), "{}", ended.err);
+        assert!(ended.err.contains("already exists"), "{}", ended.err);
     });
 }
 
@@ -214,7 +214,7 @@ fn a_recording_that_is_renamed_beside_a_command_is_told_at_once() {
         std::fs::rename(&file, &other).unwrap();
         loop {
             let told = running.complaint();
-            if told.contains("a.mcap was renamed while it is recorded") {
+            if told.contains("a.mcap was renamed during recording") {
                 break;
             }
         }

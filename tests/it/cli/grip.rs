@@ -102,7 +102,7 @@ fn ctrl_c_holds_the_hand() {
         let ended = grip.end();
         assert_eq!(ended.code, Some(1), "{}", ended.err);
         assert!(
-            ended.err.contains("ended by a person") && ended.err.contains("feedback shows rest"),
+            ended.err.contains("ended by the user") && ended.err.contains("feedback shows rest"),
             "{}",
             ended.err
         );

@@ -45,7 +45,7 @@ fn recordings_whose_times_were_moved_are_exported_whole() {
             ),
             (
                 "times_from_zero.mcap",
-                "so another program has moved them: the log is believed",
+                "so another program changed them: those of the log are used",
                 1.0,
             ),
             ("clock_in_2040.mcap", "", 1.9),

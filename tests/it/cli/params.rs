@@ -218,7 +218,7 @@ fn a_bad_file_is_told_by_its_field_and_nothing_is_written() {
             ),
             ("[default_speed]\nindex = 1.5", "`default_speed.index`: 1.5"),
             ("hand_id = 0", "`hand_id`: 0"),
-            ("crew = 3", "there is nothing in it"),
+            ("crew = 3", "it is empty"),
             ("crew = ", "line 3"),
             ("hand_id = 1", "holds no speeds or forces"),
         ] {

@@ -154,7 +154,7 @@ fn a_renamed_file_is_told_and_written_on_and_one_that_cannot_be_written_still_ha
     std::fs::rename(&file, &other).unwrap();
     let told = running.complaint();
     let words = format!(
-        "{} was renamed while it is recorded; it is written on as {}, and nothing is lost",
+        "{} was renamed during recording; it continues as {}, and nothing is lost",
         file.display(),
         other.display()
     );
@@ -172,7 +172,7 @@ fn a_renamed_file_is_told_and_written_on_and_one_that_cannot_be_written_still_ha
     std::fs::remove_dir_all(&day).unwrap();
     std::fs::write(&day, "").unwrap();
     let told = running.complaint();
-    assert!(told.contains("was removed while it was recorded"), "{told}");
+    assert!(told.contains("was removed during recording"), "{told}");
     let told = running.complaint();
     assert!(told.contains("cannot be written"), "{told}");
     running.signal(Signal::SIGINT);
@@ -212,7 +212,7 @@ fn a_killed_recording_opens_says_that_it_was_not_closed_and_is_recovered() {
     refused(
         &run(&["recover", text(&file)]),
         1,
-        &["already there", "--out"],
+        &["already exists", "--out"],
     );
 }
 
@@ -380,7 +380,7 @@ fn tables_and_bags_take_their_place_whole_or_not_at_all() {
             refused(
                 &recorded.export(&[form], there),
                 1,
-                &["already there", "--out"],
+                &["already exists", "--out"],
             );
         }
         refused(
@@ -427,7 +427,7 @@ fn a_data_set_for_learners_says_how_it_was_made() {
     refused(
         &short,
         1,
-        &["there is nothing to export in this stretch", "--from"],
+        &["there is nothing to export in this time range", "--from"],
     );
     refused(
         &recorded.export(&["--lerobot", "--fps", "0"], "none"),
@@ -574,11 +574,11 @@ fn what_is_no_session_is_refused_in_one_sentence_by_every_command() {
     sparse.set_len(200_000_000).unwrap();
     for (name, words) in [
         ("gone.mcap", "No such file"),
-        ("", "is no file, but a folder"),
+        ("", "is not a regular file"),
         ("empty", "is not an MCAP file"),
         ("text.mcap", "is not an MCAP file"),
-        ("head.mcap", "no whole piece"),
-        ("huge.mcap", "no whole piece"),
+        ("head.mcap", "no complete part"),
+        ("huge.mcap", "no complete part"),
     ] {
         let file = path(name);
         let out = path("out");
@@ -634,7 +634,10 @@ fn exported_values_are_made_a_session_again_that_says_what_it_does_not_know() {
     refused(
         &wrong,
         1,
-        &["cannot import", "line 1: no column of it but time_s"],
+        &[
+            "cannot import",
+            "line 1: it has no known column except time_s",
+        ],
     );
     assert!(!out.exists());
 }
@@ -647,7 +650,10 @@ fn wrong_flags_are_told_before_anything_is_done() {
     let out = text(&out);
     for (args, words) in [
         (&["record"][..], "--hand"),
-        (&["record", "--hand", "nonsense"], "names no kind of link"),
+        (
+            &["record", "--hand", "nonsense"],
+            "does not name a kind of link",
+        ),
         (
             &["record", "--hand", "sim:", "--for", "soon"],
             "number of seconds",
@@ -725,7 +731,7 @@ fn a_picture_shows_just_the_stretch_and_a_wrong_one_makes_no_file() {
         1,
         &["nothing", "--from and --to"],
     );
-    refused(&draw("0", "1", "a.png"), 1, &["already there", "--out"]);
+    refused(&draw("0", "1", "a.png"), 1, &["already exists", "--out"]);
     refused(
         &draw("0", "1", "none/a.png"),
         1,

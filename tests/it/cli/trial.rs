@@ -265,7 +265,7 @@ fn ctrl_c_stops_the_hand_and_feedback_shows_it() {
             assert_eq!(session["stop"]["confirmed"], true);
             assert_eq!(session["trials"], 1);
             let kept = std::fs::read_to_string(format!("{place}/session.toml")).unwrap();
-            assert!(kept.contains("ended by a person"), "{kept}");
+            assert!(kept.contains("ended by the user"), "{kept}");
             assert!(files(Path::new(&place)).contains(&"report.html".to_owned()));
         }
     });

@@ -29,7 +29,7 @@ fn a_wish_that_makes_no_sense_is_wrong_usage() {
             (&["--limit", "500", "--closes", "4"], "5 and 100"),
             (
                 &["--limit", "500", "--closes", "10", "--distribution-free"],
-                "22 say 90 of 100",
+                "22 prove 90 of 100",
             ),
             (&["--limit", "500", "--start", "10"], "would close"),
             (&["--limit", "500", "--joint", "pinky"], "not a joint"),
@@ -66,7 +66,7 @@ fn ctrl_c_holds_the_hand_and_keeps_what_was_tried() {
         assert!(
             ended
                 .err
-                .contains("ended early after 1 closes: ended by a person"),
+                .contains("ended early after 1 closes: ended by the user"),
             "{}",
             ended.err
         );

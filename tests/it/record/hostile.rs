@@ -242,7 +242,7 @@ fn more_chunks_than_any_recording_has_are_left_out() {
     chunk.extend([0; 24]);
     bytes.extend(chunk.repeat(CHUNKS_MAX * 3 / 2));
     let words = reads("tiny chunks", &bytes);
-    assert!(words.contains("no whole piece"), "{words}");
+    assert!(words.contains("no complete part"), "{words}");
 }
 
 #[test]

@@ -379,9 +379,13 @@ fn a_file_that_is_wrong_is_refused_in_one_sentence_with_its_line() {
     for (text, line, words) in [
         ("", 1, "no column time_s"),
         ("1,2,3\n4,5,6\n", 1, "no column time_s"),
-        ("time_s\n1\n", 1, "no column of it but time_s"),
-        ("time_s,mood\n1,2\n", 1, "no column of it but time_s"),
-        ("time_s,event,time_s\n", 1, "time_s is there twice"),
+        ("time_s\n1\n", 1, "it has no known column except time_s"),
+        (
+            "time_s,mood\n1,2\n",
+            1,
+            "it has no known column except time_s",
+        ),
+        ("time_s,event,time_s\n", 1, "duplicate column time_s"),
         (
             "time_s,event\n1,a\n2\n",
             3,
@@ -448,7 +452,7 @@ fn a_file_that_is_wrong_is_refused_in_one_sentence_with_its_line() {
     let latin = import(&trial.path("in.csv"), &trial.path("x.mcap"));
     assert_eq!(
         latin.unwrap_err().to_string(),
-        "line 2: it is no text in UTF-8"
+        "line 2: it is not UTF-8 text"
     );
     let folder = import(trial.0.path(), &trial.path("x.mcap"));
     assert!(
@@ -461,7 +465,7 @@ fn a_file_that_is_wrong_is_refused_in_one_sentence_with_its_line() {
     let taken = import(&trial.path("in.csv"), &trial.path("out.mcap"));
     let words = taken.unwrap_err().to_string();
     assert!(
-        words.ends_with("is already there and is not overwritten"),
+        words.ends_with("already exists and is not overwritten"),
         "{words}"
     );
 }

@@ -123,7 +123,7 @@ fn the_end_of_a_client_is_told_and_the_next_may() {
         assert!(share.complaint().contains("may move the hand"));
         let told = share.complaint();
         assert!(
-            told.contains("nothing was asked of it for too long"),
+            told.contains("it received no command for too long"),
             "{told}"
         );
         assert_eq!(write(&mut client, INDEX, 500), Some(BUSY));
@@ -136,7 +136,7 @@ fn the_end_of_a_client_is_told_and_the_next_may() {
         assert!(
             share
                 .complaint()
-                .contains("is gone: the hand is told to stop")
+                .contains("has disconnected: the hand is being stopped")
         );
     });
 }
@@ -164,7 +164,7 @@ fn clients_that_come_write_and_leave_between_two_looks_are_told_too() {
             );
             let left = share.complaint();
             let gone =
-                format!("{client}, which could move the hand, is gone: the hand is told to stop");
+                format!("{client}, which had control, has disconnected: the hand is being stopped");
             assert!(left.contains(&gone), "{left}");
         }
         share.signal(Signal::SIGINT);

@@ -557,7 +557,8 @@ fn a_wrong_address_is_told_once_it_is_not_typed_any_more_and_a_name_is_none() {
         let mut harness = at_connection(states::empty());
         type_address(&mut harness, ADDRESS, typed);
         let told = |harness: &Harness<'static, Shown>| {
-            let all = harness.query_all_by_label_contains("is no IP address: four numbers");
+            let all =
+                harness.query_all_by_label_contains("is not an IP address: write four numbers");
             all.count() > 0
         };
         assert!(!told(&harness), "not while it is typed");
@@ -572,7 +573,7 @@ fn a_wrong_address_is_told_once_it_is_not_typed_any_more_and_a_name_is_none() {
 #[test]
 fn what_is_wrong_is_told_in_the_windows_language() {
     for (language, name, words) in [
-        (Language::En, ADDRESS, "is no address: type for example"),
+        (Language::En, ADDRESS, "is not an address: type for example"),
         (Language::Zh, "地址、端口或名称", "不是地址"),
     ] {
         let mut state = states::empty();
@@ -824,6 +825,6 @@ fn an_armed_hand_that_is_asked_nothing_for_minutes_says_so() {
     let angle = state.hand_mut().readings.sample.angle.as_mut().unwrap();
     angle.asked = handscope::hand::Moment::from_micros(399_990_000);
     let harness = open(state);
-    let said = harness.query_all_by_label_contains("Asked nothing for");
+    let said = harness.query_all_by_label_contains("No command for");
     assert!(said.count() > 0);
 }

@@ -86,7 +86,7 @@ fn a_hand_that_is_kept_at_its_new_id_and_saved_wakes_up_there() {
     assert!(bench.shows("Save it in the hand?"));
     bench.click_button("Save");
     bench.until(10_000, |bench| {
-        bench.shows("Saved: the hand says that its parameters are in flash.")
+        bench.shows("Saved: the hand reports its parameters in flash.")
     });
     assert!(
         bench.shows("Change of where the hand is found"),
@@ -205,7 +205,7 @@ fn a_speed_that_acts_at_once_is_followed_kept_saved_and_there_after_power() {
     bench.click_button("Keep");
     bench.click_button("Save");
     bench.until(10_000, |bench| {
-        bench.shows("Saved: the hand says that its parameters are in flash.")
+        bench.shows("Saved: the hand reports its parameters in flash.")
     });
     bench.hand(SimHand::power_cycle);
     bench.click_button("Done");
@@ -461,7 +461,7 @@ fn a_calibration_measures_first_locks_motion_and_shows_the_offsets() {
         (0, 0)
     );
     bench.until(12_000, |bench| {
-        bench.shows("The hand says that it is finished.")
+        bench.shows("The hand reports that it is done.")
     });
     assert!(bench.shows("Before, g") && bench.shows("After, g"));
     for dof in Dof::ALL {
@@ -576,7 +576,7 @@ fn with_gentle_defaults_there_is_nothing_to_warn_of_before_a_save() {
     assert!(bench.shows("Save it in the hand?"));
     bench.click_button("Save");
     bench.until(10_000, |bench| {
-        bench.shows("Saved: the hand says that its parameters are in flash.")
+        bench.shows("Saved: the hand reports its parameters in flash.")
     });
 }
 

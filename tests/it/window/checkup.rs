@@ -75,8 +75,8 @@ fn folder(shown: &ShownCheckup) -> PathBuf {
 #[test]
 fn a_hand_that_was_never_checked_says_so_and_nothing_begins_before_it_is_said_to_be_empty() {
     let mut bench = with(BodyParams::default());
-    said(&bench, "This hand was never checked up");
-    said(&bench, "Say first that the hand is empty.");
+    said(&bench, "No check-up of this hand is known");
+    said(&bench, "Confirm that the hand is empty.");
     hold(&mut bench);
     assert!(!runs(&bench) && !bench.state().hand().connection.is_armed());
     bench.click_box(EMPTY);
@@ -125,9 +125,9 @@ fn a_check_up_is_told_joint_by_joint_and_its_figures_report_and_recording_stay()
     assert!((24.0..36.0).contains(&counts), "{measured}");
     assert_eq!(bench.reading("Middle backlash good"), "-8 to 14");
     let advice = bench.reading("Middle backlash what to do");
-    assert!(advice.starts_with("look at the linkage"), "{advice}");
+    assert!(advice.starts_with("inspect the linkage"), "{advice}");
     // What was said of that hand is to be said again.
-    said(&bench, "Say first that the hand is empty.");
+    said(&bench, "Confirm that the hand is empty.");
 }
 
 #[test]
@@ -139,9 +139,9 @@ fn any_key_ends_it_with_a_held_hand_and_a_partial_report() {
     let shown = finish(&mut bench, 5000);
     assert_eq!(shown.report.aborted, Some(Abort::Person));
     assert_eq!(shown.report.keeping, Keeping::Partial);
-    said(&bench, "Partial, it ended early: Ended by a person.");
+    said(&bench, "Partial, it ended early: Ended by the user.");
     let page = std::fs::read_to_string(shown.page.unwrap()).unwrap();
-    assert!(page.contains("Partial: it ended early, ended by a person"));
+    assert!(page.contains("Partial: it ended early, ended by the user"));
 }
 
 #[test]
@@ -176,7 +176,7 @@ fn each_fingertip_is_asked_for_and_a_dead_channel_is_named() {
         if let Some(finger) = press.filter(|finger| asked.last() != Some(finger)) {
             asked.push(finger);
             assert!(!bench.state().hand().connection.is_armed());
-            said(&bench, "Nothing moves any more.");
+            said(&bench, "Nothing moves now.");
             bench.hand(|hand, _| hand.press_tip(finger, 800.0));
             bench.wait(1000);
             bench.hand(|hand, _| hand.press_tip(finger, 0.0));

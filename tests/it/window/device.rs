@@ -142,7 +142,7 @@ fn half_a_number_and_one_out_of_range_stage_nothing_and_staging_writes_nothing()
 fn a_wrong_address_stays_with_the_reason_beside_it_and_stages_nothing() {
     let mut bench = Bench::live();
     open(&mut bench);
-    let reason = "No IP address: four numbers from 0 to 255, as 192.168.11.210";
+    let reason = "Not an IP address: four numbers 0 to 255, as 192.168.11.210";
     for wrong in ["192.168.11", "192.168.11.999"] {
         stage(&mut bench, "IP address staged", wrong);
         assert_eq!(staged(&bench, ParamId::IpAddress), None);
@@ -227,12 +227,12 @@ fn a_row_that_the_hand_drops_or_clamps_shows_what_the_hand_holds() {
         (
             "drop",
             "1000",
-            "refused in silence: the hand keeps what it held (wanted 700)",
+            "silently refused: the hand keeps its old value (wanted 700)",
         ),
         (
             "exception",
             "1000",
-            "refused in silence: the hand keeps what it held (wanted 700)",
+            "silently refused: the hand keeps its old value (wanted 700)",
         ),
         ("clamp", "500", "the hand took another value than 700"),
     ] {
@@ -424,7 +424,7 @@ fn a_save_is_backed_up_confirmed_by_the_hand_and_shown_with_its_date() {
         bench.addresses().iter().filter(|at| **at == SAVE).count(),
         1
     );
-    assert!(bench.shows("Saved: the hand says that its parameters are in flash."));
+    assert!(bench.shows("Saved: the hand reports its parameters in flash."));
     assert_eq!(bench.reading("Index speed last saved"), "100");
     let saved = bench.state().hand().params.known.saved.clone().unwrap();
     let day = saved.at.get(..10).unwrap().to_owned();
@@ -481,7 +481,7 @@ fn arming_while_the_hand_saves_is_refused_with_its_own_reason() {
     });
     assert_eq!(refused.collect::<Vec<_>>(), [ArmRefusal::HandBusy]);
     bench.show(handscope::ui::View::Faults);
-    let words = "The hand writes its flash or calibrates: wait until that is over.";
+    let words = "The hand is writing its flash or calibrating: wait until done.";
     assert!(!bench.texts_with(words).is_empty(), "{:?}", bench.texts());
     settle(&mut bench);
     assert!(!bench.state().hand().connection.is_armed());
@@ -748,7 +748,7 @@ fn a_save_with_staged_rows_shows_them_applies_them_and_saves_them_in_one_step() 
     settle(&mut bench);
     assert_eq!(bench.reading("Index speed live"), "50");
     assert_eq!(bench.reading("Index speed last saved"), "50");
-    assert!(bench.shows("Saved: the hand says that its parameters are in flash."));
+    assert!(bench.shows("Saved: the hand reports its parameters in flash."));
     bench.hand(handscope::sim::SimHand::power_cycle);
     bench.wait(3000);
     bench.click("Read again");

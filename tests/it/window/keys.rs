@@ -398,7 +398,7 @@ fn the_palette_finds_what_a_view_holds_and_what_a_setting_is_called() {
         bench.run(100);
         bench.type_into("Commands", typed);
         bench.run(100);
-        assert!(!bench.shows("Nothing is called so."), "{typed}");
+        assert!(!bench.shows("No match."), "{typed}");
         bench.key_with(Modifiers::COMMAND, Key::K);
         bench.run(100);
     }

@@ -397,7 +397,7 @@ fn a_step_is_told_to_wait_for_the_grip_and_says_what_it_waits_for() {
     for said in [
         "Closed on nothing, opens to try again: step 2",
         "Waits until holding at step 2",
-        "Ended: the hand was to hold something and did not in time. Grip: Empty.",
+        "Ended: the hand did not hold anything in time. Grip: Empty.",
     ] {
         bench.until(9000, |bench| !bench.texts_with(said).is_empty());
     }

@@ -363,7 +363,7 @@ fn an_export_that_fails_says_why() {
     settle(&mut bench, |bench| {
         let told = bench.texts_with("Not exported: ");
         told.iter()
-            .any(|told| told.contains("There is nothing to export in this stretch."))
+            .any(|told| told.contains("There is nothing to export in this time range."))
     });
 }
 
@@ -631,7 +631,7 @@ fn two_sessions_lie_over_each_other_aligned_by_a_mark_of_each() {
     );
     let there = beside.history.reading(force, other.secs());
     assert!(there.is_some(), "its own readings, at its own times");
-    bench.click(&format!("Compare no longer: {title}"));
+    bench.click(&format!("Stop comparing: {title}"));
     bench.run(60);
     assert!(bench.state().beside.is_none());
 }
@@ -851,7 +851,7 @@ fn sessions_beyond_the_budget_are_told_and_go_a_day_later_when_a_recording_begin
     settle(&mut bench, |bench| {
         bench.state().recordings.planned.len() == 3
     });
-    assert!(!bench.texts_with("Recordings need more room").is_empty());
+    assert!(!bench.texts_with("Recordings exceed their room").is_empty());
     let told = bench.folder().join("documents/Handscope/to-delete.toml");
     settle(&mut bench, |_| told.exists());
     recording(&mut bench, RecordingAction::Record(true));

@@ -149,7 +149,10 @@ fn an_address_is_asked_only_when_the_button_is_pressed() {
     bench.wait(3000);
     assert_eq!(bench.dials(), dials, "offering is not asking");
     assert_eq!(bench.state().scan.stage, ScanStage::Never);
-    for (wrong, words) in [("10.0.0.0/8", "more than 1024"), ("a b", "is no address")] {
+    for (wrong, words) in [
+        ("10.0.0.0/8", "more than 1024"),
+        ("a b", "is not an address"),
+    ] {
         bench.type_into(ADDRESS, wrong);
         assert!(bench.texts_with(words).is_empty(), "only once it is typed");
         bench.key(egui::Key::Enter);
@@ -268,7 +271,7 @@ fn hands_that_others_share_are_listed_once_a_person_looks_and_a_click_watches_on
         !bench.shows("their hand · lab"),
         "nobody tells of it any more"
     );
-    bench.click_button("Look no more");
+    bench.click_button("Stop looking");
     bench.run(100);
     assert_eq!(bench.state().fleet.interface(), None);
 }

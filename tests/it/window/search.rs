@@ -111,7 +111,7 @@ fn a_key_ends_a_search_and_nothing_is_claimed() {
     finish(&mut bench, 4000);
     let search = bench.state().trials.search.clone().unwrap();
     assert_eq!(search.finding, None);
-    said(&bench, "The search was ended: nothing was found out.");
+    said(&bench, "The search was ended: there is no result.");
     let session = bench.state().trials.sessions.last().unwrap();
     assert_eq!(
         session.head.aborted,

@@ -520,7 +520,7 @@ fn any_key_stops_it_and_does_nothing_else() {
         finish(&mut bench, 1000);
         assert_eq!(ended_by(&bench), Abort::Person, "{key:?}");
         assert!(!bench.state().hand().connection.is_armed());
-        assert!(bench.shows("Last series: Ended by a person."), "{key:?}");
+        assert!(bench.shows("Last series: Ended by the user."), "{key:?}");
     }
 }
 
@@ -543,7 +543,7 @@ fn disarming_ends_it_with_a_stop() {
     assert_eq!(ended_by(&bench), Abort::Disarmed { why });
     assert!(
         !bench
-            .texts_with("Not armed any more: it was disarmed")
+            .texts_with("No longer armed: it was disarmed")
             .is_empty()
     );
 }

@@ -265,7 +265,7 @@ impl StdioSession<'_> {
         if self.replies.is_stuck()
             && let Some(right) = self.holds()
         {
-            notify("nobody takes the output for a second: the hand is stopped");
+            notify("the output was not read for a second: the hand is stopped");
             let _done = self.hand.link.give_back(right.lease, Disarmed::Silent);
         }
         if self.task.is_none()
@@ -542,7 +542,7 @@ impl StdioSession<'_> {
             },
             (Some(_), goes_on) => {
                 self.recording = goes_on;
-                Err("a recording goes on: end it first".into())
+                Err("a recording is in progress: end it first".into())
             }
             (None, Some(recording)) if self.ending.is_none() => {
                 self.ending = Some((id, recording.end_here().boxed()));
@@ -550,7 +550,10 @@ impl StdioSession<'_> {
             }
             (None, Some(goes_on)) => {
                 self.recording = Some(goes_on);
-                Err("the recording before is not whole yet: end this one a little later".into())
+                Err(
+                    "the previous recording is not complete yet: end this one a little later"
+                        .into(),
+                )
             }
             (None, None) => Err("nothing is recorded".into()),
         };
@@ -664,7 +667,7 @@ async fn granted(
             (None, Some(other)) => {
                 let who = match other.owner {
                     Owner::Gateway(at) => format!("{at} may move the hand, until it disconnects"),
-                    _ => "another may move the hand now".into(),
+                    _ => "another controller has control".into(),
                 };
                 return Err(StdioRefusal::new(RefusalKind::Taken, who));
             }

@@ -36,7 +36,7 @@ impl StdioRefusal {
 
     /// Refusal of a task that was replaced by another request.
     pub(crate) fn replaced() -> Self {
-        Self::new(RefusalKind::Replaced, "something else was asked for")
+        Self::new(RefusalKind::Replaced, "another request came first")
     }
 }
 
@@ -44,9 +44,9 @@ impl From<LeaseRefusal> for StdioRefusal {
     fn from(end: LeaseRefusal) -> Self {
         let (kind, why) = match end {
             LeaseRefusal::Taken(Owner::Gateway(at)) => {
-                (RefusalKind::Taken, format!("{at} may now"))
+                (RefusalKind::Taken, format!("{at} has control"))
             }
-            LeaseRefusal::Taken(_) => (RefusalKind::Taken, "another may now".into()),
+            LeaseRefusal::Taken(_) => (RefusalKind::Taken, "another controller has control".into()),
             LeaseRefusal::Ended(why) => (RefusalKind::Ended(why), why.to_string()),
         };
         Self::new(

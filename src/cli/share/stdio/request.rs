@@ -109,7 +109,7 @@ impl StdioLine {
             Err(why) => Some(why),
             Ok(StdioRequest::Follow(line)) => line.odd.map(|odd| odd.to_string()),
             Ok(read) if read == request => None,
-            Ok(_other) => Some("it asks for something else as well".into()),
+            Ok(_other) => Some("it also asks for something else".into()),
         };
         Self {
             id,
@@ -134,7 +134,7 @@ fn read(line: &[u8], side: Side) -> (Value, Result<StdioRequest, String>) {
     let id = fields.take("id").ok().flatten().unwrap_or_default();
     let request = if fields.has("do") {
         request(&mut fields)
-            .map_err(|why| format!("{why}; 'handscope help share' tells what can be asked"))
+            .map_err(|why| format!("{why}; 'handscope help share' lists the requests"))
     } else {
         let line = StreamLine::parse(line, side);
         line.map(StdioRequest::Follow)
@@ -162,7 +162,7 @@ fn request(fields: &mut Fields) -> Result<StdioRequest, String> {
         "clear" => StdioRequest::Clear,
         "rate" => StdioRequest::Rate(rates(fields)?),
         "record" => StdioRequest::Record(field(fields, "path", text)?.map(PathBuf::from)),
-        other => return Err(format!("do: there is no {other:?}")),
+        other => return Err(format!("do: unknown request {other:?}")),
     };
     match fields.other() {
         Some(other) => Err(format!("{other}: not a field of {what}")),
@@ -208,7 +208,8 @@ fn targets(fields: &mut Fields) -> Result<Targets, String> {
     let angles = field(fields, "angle", list)?.unwrap_or_default();
     if angles.len() != Dof::ALL.len() {
         return Err(
-            "angle: a hand has six joints: give each an angle, or null to leave it alone".into(),
+            "angle: a hand has six joints: give each an angle, or null to leave it unchanged"
+                .into(),
         );
     }
     let mut targets = PerDof::splat(None);
@@ -323,7 +324,7 @@ mod tests {
             ),
             (
                 r#"{"id":1,"do":"arm","speed":5,"speed":6}"#,
-                "speed: is there twice",
+                "speed: is duplicated",
             ),
             (
                 r#"{"id":1,"do":"move","angle":"fist"}"#,
@@ -397,7 +398,7 @@ mod tests {
             (
                 r#"{"id":1,"do":"move","do":"stop"}"#,
                 StdioRequest::Stop,
-                Some("do: is there twice"),
+                Some("do: is duplicated"),
             ),
             (
                 r#"{"id":1,"do":"arm","stop":true}"#,

@@ -21,10 +21,10 @@ texts! {
     ENDED: "Trials done: {}.", "已完成试验：{} 次。";
     ENDED_EARLY: "Trials ended early: {}. {}", "试验提前结束，共 {} 次。{}";
     OPENED: "Opened: {} ({} trials)", "已打开：{}（{} 次试验）";
-    BY_PERSON: "Ended by a person.", "由操作者结束。";
-    DISARMED: "Not armed any more: {}.", "{}";
+    BY_PERSON: "Ended by the user.", "由操作者结束。";
+    DISARMED: "No longer armed: {}.", "{}";
     NOT_ARMED: "The hand is no longer armed.", "灵巧手的使能已取消。";
-    ARMED_ANEW: "The hand was armed anew.", "灵巧手已重新使能。";
+    ARMED_ANEW: "The hand was rearmed.", "灵巧手已重新使能。";
     TAKEN_OVER: "Another controller has control of the hand.", "控制权已转给其他控制方。";
     DRIVE_FAULT: "A drive reports a fault.", "有驱动器报告故障。";
     OTHER_CONTROLLER: "Another controller talks to the hand.", "另有控制器正在与此灵巧手通信。";
@@ -35,14 +35,14 @@ texts! {
     CEILING: "{} presses harder than the limit: {} g, limit {} g.", "{}的力超过上限：{} g，上限 {} g。";
     UNREACHED: "{} did not reach {} in time.", "{}未按时到达 {}。";
     LIMITS_REFUSED: "{} does not show the speed and force threshold that were set.", "{}没有显示已设置的速度与力阈值。";
-    NOT_READ: "The hand cannot be watched: its {} was not read yet.", "无法监视灵巧手：{}读数尚未获取。";
-    GREW_OLD: "The hand cannot be watched: its last {} is {} s old, and it sends no newer one in time.", "无法监视灵巧手：最近的{}读数已是 {} 秒前，未能及时收到新读数。";
-    STALLED: "The hand could not be watched: this computer was busy, and the program did not run for {} s; the last {} is {} s old.", "无法监视灵巧手：本机繁忙，程序停滞 {} 秒；最近的{}读数已是 {} 秒前。";
-    BLIND: "{} cannot be watched: its {} makes no sense.", "无法监视{}：{}读数不合理。";
+    NOT_READ: "Cannot monitor the hand: its {} was not read yet.", "无法监视灵巧手：{}读数尚未获取。";
+    GREW_OLD: "Cannot monitor the hand: its last {} is {} s old, and it sends no newer one in time.", "无法监视灵巧手：最近的{}读数已是 {} 秒前，未能及时收到新读数。";
+    STALLED: "Could not monitor the hand: this computer was busy, and the program did not run for {} s; the last {} is {} s old.", "无法监视灵巧手：本机繁忙，程序停滞 {} 秒；最近的{}读数已是 {} 秒前。";
+    BLIND: "{} cannot be used: its {} is implausible.", "无法监视{}：{}读数不合理。";
     COOLING: "{} stayed too warm to begin: {} °C, limit {} °C.", "{}一直过热，无法开始：{} °C，上限 {} °C。";
     NOT_EMPTY: "The hand is not empty, or something is in its way: {} pressed with {} g at {}.", "手中有物体或有障碍：{}压力达 {} g，角度 {}。";
-    NOT_KEPT: "What was read could not be kept.", "读到的数据无法保存。";
-    NO_CONTACT: "{} felt no contact that could be approached.", "{}没有感到接触，无法确定接触位置。";
+    NOT_KEPT: "Samples could not be stored.", "读到的数据无法保存。";
+    NO_CONTACT: "{} found no contact to approach.", "{}没有感到接触，无法确定接触位置。";
 
     PLAN_IGNORED: "The plan of trials of last time is of another version; the first plan is shown:", "上次的试验计划版本不同，已改用初始计划：";
     PLAN: "Plan", "试验计划";
@@ -58,8 +58,8 @@ texts! {
     TIMES: "Hold {} s, rest {} s. Force limit {} g; begin below {} °C, stop at {} °C.", "保持 {} s，间隔 {} s。力上限 {} g；低于 {} °C 开始，达到 {} °C 即停。";
     RESULTS: "Results", "结果";
     JOINTS: "Close", "闭合";
-    JOINT_TIP: "Lets this joint close in each trial, or leaves it where it is. Nothing moves now.", "让该自由度在每次试验中闭合，或保持不动。现在不会运动。";
-    START: "from", "起点", "Angle at which the joint stands before each trial; 1000 is open.", "每次试验前的角度，1000 为张开。";
+    JOINT_TIP: "The joint closes in each trial, or stays where it is. Nothing moves now.", "让该自由度在每次试验中闭合，或保持不动。现在不会运动。";
+    START: "from", "起点", "Angle of the joint before each trial; 1000 is open.", "每次试验前的角度，1000 为张开。";
     CLOSE: "to", "终点", "Angle to which the joint closes; the force threshold stops it before.", "闭合的目标角度；到达力阈值时会提前停下。";
     TAKE_START: "Start from a pose", "起点取自姿态";
     TAKE_CLOSE: "Close to a pose", "终点取自姿态";
@@ -132,7 +132,7 @@ texts! {
     ON_CONTACT: "From contact", "从接触起";
     ALIGN_TIP: "Where the time of each curve begins. Without a contact a curve is left out.", "各曲线的时间起点。没有接触的曲线不显示。";
     CURVES_EMPTY: "No samples to draw", "没有可画的数据";
-    COLUMN_TIP: "Sorts by this; once more turns it round.", "按此排序，再次点击反向。";
+    COLUMN_TIP: "Sorts by this; again to reverse it.", "按此排序，再次点击反向。";
     COLUMN_TRIAL: "Trial", "试验", "Its number, speed / threshold, and joint.", "编号、速度 / 力阈值与自由度。";
     COLUMN_DEAD: "Dead, ms", "延迟 ms", "From the command to the first motion.", "从指令到开始运动的时间。";
     COLUMN_CONTACT: "Contact, s", "接触 s", "From the command to the contact, by force.", "从指令到力显示接触的时间。";
@@ -145,7 +145,7 @@ texts! {
     COLUMN_CURRENT: "Peak, mA", "峰值 mA", "Highest current of the drive.", "驱动器的最大电流。";
     COLUMN_HEAT: "Heat, °C", "温升 °C", "Rise of the drive's temperature in the trial.", "试验期间驱动器的温升。";
     END_DEAD_DRIVE: "dead drive: it never moved", "驱动无动作：该自由度从未运动";
-    COLUMN_END: "End", "结束", "What the drive said in the end, or why it ended early.", "驱动器最后的状态，或提前结束的原因。";
+    COLUMN_END: "End", "结束", "The last status of the drive, or why it ended early.", "驱动器最后的状态，或提前结束的原因。";
     MAP: "Overshoot, g, by speed and threshold", "各速度与力阈值的超出量 g";
     BEST: "Best", "最佳", "What the best setting is chosen by, judged by the worst of its trials.", "最佳设置的选择标准，以最差的一次为准。";
     BEST_NONE: "No setting will do.", "没有满足要求的设置。";
@@ -153,7 +153,7 @@ texts! {
     FASTEST: "Fastest within 100 g", "超出 100 g 内最快";
     HOLD_AT_LEAST: "Holds at least, g", "最小稳态力 g";
     HOLD_TIP: "Steady force that the best setting must keep.", "最佳设置至少要有的稳态力。";
-    PROMOTE: "Make it the default", "设为默认", "Stages speed and threshold of the best as those after power-up, for the joints tried, and shows the card that saves them. Nothing is written before its yes.", "把最佳的速度与力阈值暂存为所试自由度的上电默认值，并显示保存卡片；确认前不写入。";
+    PROMOTE: "Make it the default", "设为默认", "Stages speed and threshold of the best as those after power-up, for the joints tried, and shows the card that saves them. Nothing is written unconfirmed.", "把最佳的速度与力阈值暂存为所试自由度的上电默认值，并显示保存卡片；确认前不写入。";
     BEST_SIGN: "Best setting", "最佳设置";
     BEST_OVER: "At most {} g over the threshold", "最多超出力阈值 {} g";
     MEASURED_HERE: "Measured on this hand in {} closes, the last on {}.", "由此手的 {} 次闭合测得，最近一次 {}。";
