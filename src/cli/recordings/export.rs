@@ -298,7 +298,7 @@ fn report(
     }
     if all.readings == Some(0) {
         bail!(
-            "the hand was not read in this stretch, so what was exported has no readings; 'handscope info' shows where that is so"
+            "the hand was not read in this time range, so the export has no readings; 'handscope info' shows where that is so"
         );
     }
     Ok(())

@@ -448,7 +448,7 @@ fn every_format_has_a_flag_and_writes_what_its_properties_name() {
         let found = std::fs::read_dir(place.path(&both)).unwrap();
         let mut found: Vec<_> = found.map(|part| part.unwrap().file_name()).collect();
         found.sort();
-        assert_eq!(found, parts, "{name}");
+        assert_eq!(found, parts.map(std::ffi::OsString::from), "{name}");
 
         if is_folder {
             let refused = write(&Destination::Stdout).unwrap_err().to_string();
