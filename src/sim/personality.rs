@@ -159,9 +159,9 @@ switches! {
     }
     "A write to DEFAULT_SPEED_SET or DEFAULT_FORCE_SET."
     defaults "defaults" DefaultsWrite {
-        "Is taken." Take "take",
+        "Is accepted." Take "take",
         "Is acknowledged, without effect." Drop "drop",
-        "Is acknowledged, and taken as 500 at most." Clamp "clamp",
+        "Is acknowledged, and limited to 500." Clamp "clamp",
         "Refused: an exception over Modbus, silence elsewhere." Exception "exception",
     }
     "How single bytes become Modbus words."
@@ -194,7 +194,7 @@ switches! {
     }
     "Ids 0 and 255 on RS485, which the maker's demos use (manual 2.6.1: 1 to 254)."
     any_id "any-id" AnyId {
-        "Are nobody's." Silent "silent",
+        "Address no hand." Silent "silent",
         "Mean every hand, which answers with its own id." Answered "answered",
     }
     "From GESTURE_FORCE_CLB to the new zero (manual 2.6.6 names no time; field reports say 2 to 6 s)."

@@ -226,7 +226,7 @@ pub enum WireFailure {
     #[error("{0}")]
     NoBody(String),
     /// The CAN adapter reports that it could not open its channel.
-    #[error("the CAN adapter could not go on the bus")]
+    #[error("the CAN adapter could not join the bus")]
     OffBus,
     /// The message as read from JSON or a recording.
     #[error("{0}")]

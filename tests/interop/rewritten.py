@@ -130,7 +130,7 @@ for what, options in {
 # Without what the file says of itself.
 path = folder / "rewritten bare.mcap"
 write(path, about=False)
-assert any("says of itself" in remark for remark in check("nothing about itself", path, same_start=False))
+assert any("description in the file" in remark for remark in check("nothing about itself", path, same_start=False))
 
 # Fingertips filtered out: what is left is the same, and nobody says that nothing is missing.
 path = folder / "rewritten filtered.mcap"
@@ -149,7 +149,7 @@ write(folder / "rewritten whole.mcap", **small)
 write(folder / "rewritten half.mcap", order=lambda all: all[: len(all) // 2], **small)
 path = folder / "rewritten stale.mcap"
 spliced(folder / "rewritten whole.mcap", folder / "rewritten half.mcap", path)
-assert any("index does not fit" in remark for remark in check("a stale index", path)), path
+assert any("index does not match" in remark for remark in check("a stale index", path)), path
 
 # rosbags, which writes its own text of each definition.
 with AnyReader([folder / "bag"]) as bag, BagWriter(folder / "rebagged", version=9, storage_plugin=StoragePlugin.MCAP) as writer:

@@ -305,7 +305,7 @@ class Hears(unittest.TestCase):
             with handscope.open("sim:") as hand:
                 with hand.record(path), hand.armed():
                     hand.move(index=700, speed=500)
-                with self.assertRaisesRegex(handscope.Refused, "already there"):
+                with self.assertRaisesRegex(handscope.Refused, "already exists"):
                     hand.record(path)
             frame = handscope.read(path)
             self.assertLessEqual({"time_s", "angle_index", "force_index_g", "normal_thumb_N"}, set(frame.columns))

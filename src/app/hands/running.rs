@@ -26,7 +26,7 @@ pub enum MotionRun {
     /// A sequence, also one that has ended.
     Sequence(SequenceRun),
     /// Trials or a search.
-    Trials(SeriesRun),
+    Trials(Box<SeriesRun>),
     /// A check-up.
     Checkup(CheckupRun),
     /// An external source.
@@ -57,7 +57,7 @@ impl RunningMotion {
     /// The running trials or search.
     pub const fn series(&self) -> Option<&SeriesRun> {
         match &self.0 {
-            Some(MotionRun::Trials(run)) => Some(run),
+            Some(MotionRun::Trials(run)) => Some(&**run),
             _ => None,
         }
     }

@@ -106,7 +106,7 @@ pub(super) fn start_series(
     }
     if let Some(at) = lend(hand) {
         let run = SeriesRun::begin(at, plan, trials, ctx);
-        hand.running.0 = run.map(MotionRun::Trials);
+        hand.running.0 = run.map(|run| MotionRun::Trials(Box::new(run)));
     }
 }
 

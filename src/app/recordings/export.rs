@@ -51,6 +51,29 @@ impl RunningExport {
             percent: self.percent.load(Ordering::Relaxed),
         }
     }
+
+    /// Exports off the window's thread; yields the notice for the user.
+    pub(crate) fn work(&self, env: &Env) -> impl Future<Output = NoticeKind> + Send + use<> {
+        let (export, progress) = (self.export.clone(), Arc::clone(&self.percent));
+        let name = export.file_name();
+        let folder = env.documents.as_ref().map(|documents| {
+            let day = calendar::day(calendar::since_1970());
+            day_folder::of_day(documents, &day)
+        });
+        let files = Arc::clone(&env.files);
+        async move {
+            let to = match folder {
+                Some(folder) => day_folder::free_path(&folder, &name),
+                None => match files.choose(&name).await {
+                    Some(to) => to,
+                    None => return NoticeKind::NoFileChosen,
+                },
+            };
+            let place = to.clone();
+            let written = on_thread(move || Ok(export.write(place, &progress))).await;
+            written.unwrap_or_else(|error| NoticeKind::not_saved(to, &error))
+        }
+    }
 }
 
 impl RecordingExport {
@@ -107,31 +130,6 @@ impl RecordingExport {
                 entries: usize::try_from(written.rows()).unwrap_or(usize::MAX),
             },
             Err(error) => NoticeKind::NotExported { path, error },
-        }
-    }
-}
-
-impl RunningExport {
-    /// Exports off the window's thread; yields the notice for the user.
-    pub(crate) fn work(&self, env: &Env) -> impl Future<Output = NoticeKind> + Send + use<> {
-        let (export, progress) = (self.export.clone(), Arc::clone(&self.percent));
-        let name = export.file_name();
-        let folder = env.documents.as_ref().map(|documents| {
-            let day = calendar::day(calendar::since_1970());
-            day_folder::of_day(documents, &day)
-        });
-        let files = Arc::clone(&env.files);
-        async move {
-            let to = match folder {
-                Some(folder) => day_folder::free_path(&folder, &name),
-                None => match files.choose(&name).await {
-                    Some(to) => to,
-                    None => return NoticeKind::NoFileChosen,
-                },
-            };
-            let place = to.clone();
-            let written = on_thread(move || Ok(export.write(place, &progress))).await;
-            written.unwrap_or_else(|error| NoticeKind::not_saved(to, &error))
         }
     }
 }

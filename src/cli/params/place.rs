@@ -60,7 +60,7 @@ pub(crate) async fn change(
     let report = patience.see_through(changed, UNKNOWN).await??;
     if let Some(why) = &report.not_noted {
         bail!(
-            "the hand was changed, and its backups could not be taken along: they are in {}: {why}",
+            "the hand was changed, and its backups could not be moved along: they are in {}: {why}",
             files.folder().display()
         );
     }

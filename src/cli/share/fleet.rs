@@ -141,7 +141,7 @@ fn line(hand: &FleetHand) -> String {
 
 fn owner_word(owner: Owner) -> String {
     match owner {
-        Owner::Person => "a person there".into(),
+        Owner::Person => "a user there".into(),
         Owner::Task => "a task there".into(),
         Owner::Exhibition => "an exhibition".into(),
         Owner::Gamepad => "a gamepad".into(),

@@ -72,7 +72,7 @@ numbers! {
     JointBody, JOINT_KEYS {
         "times the stiffness of the object" stiffness_factor = 1.0, 0.05..20.0;
         "counts, how much later than the object's place the contact begins" contact_offset = 0.0, -200.0..200.0;
-        "counts, standard deviation of where the contact begins, drawn anew each close" contact_scatter = 0.0, 0.0..100.0;
+        "counts, standard deviation of where the contact begins, drawn again at each close" contact_scatter = 0.0, 0.0..100.0;
         "ms from a command to the motion; the way past a force threshold grows in proportion" latency_ms = LATENCY_MS, 0.0..500.0;
         "ms, standard deviation of the latency" latency_scatter_ms = 0.0, 0.0..100.0;
         "way past a force threshold: 0 as the first published hand, 1 as the second, or between" run_on = 0.0, 0.0..1.0;

@@ -383,7 +383,7 @@ mod tests {
             ("tcp:host?unit=1&unit=2", "duplicate key 'unit'"),
             ("can:can0?id=1&id=2", "duplicate key 'id'"),
             ("slcan:/dev/x?bitrate=500000&bitrate=500000", "'bitrate'"),
-            ("usbcan:/dev/x?baud=9600&baud=9600", "'baud' stands"),
+            ("usbcan:/dev/x?baud=9600&baud=9600", "duplicate key 'baud'"),
         ] {
             let error = text.parse::<Endpoint>().unwrap_err().to_string();
             assert!(error.contains(part), "{text}: {error}");

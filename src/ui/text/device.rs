@@ -81,7 +81,7 @@ texts! {
     DANGER_FORCE: "Threshold, g", "阈值 g";
     DANGER_OVER: "Overshoot, g", "超出 g";
     DANGER_MEASURED: "Measured on another hand of the family: index finger on a rigid block, median of the peaks. Soft objects are pressed less.", "在同系列一只手上实测：食指接触刚性物体，取峰值的中位数。柔软物体受力较小。";
-    DANGER_BEYOND: "Thresholds above 1000 g were not measured: the figure of 1000 g stands for them.", "1000 g 以上的阈值没有实测，按 1000 g 的数据给出。";
+    DANGER_BEYOND: "Thresholds above 1000 g were not measured: the figure for 1000 g is used.", "1000 g 以上的阈值没有实测，按 1000 g 的数据给出。";
     DANGER_SLOWLY: "With speed 25 the same thresholds were passed by at most", "速度为 25 时，同样的阈值最多超出";
     FORCE: "force", "力";
     AGREE_APPLY: "Apply anyway", "仍然应用", "Proceeds with this list.", "按所列内容继续。";

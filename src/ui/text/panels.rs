@@ -199,7 +199,7 @@ texts! {
     MORE_NAME: "More for the plots", "曲线更多选项";
     SHOWN: "Plots shown", "显示的曲线";
     ENLARGE: "Fill the view", "放大显示";
-    SAVE_CSV: "Save these {} as CSV", "将这 {} 保存为 CSV", "All measurements of the shown time, plots and joints, as they were received, into a file. The window goes on meanwhile.", "把当前时间范围内所示曲线的全部原始数据保存到文件。保存期间窗口照常工作。";
+    SAVE_CSV: "Save these {} as CSV", "将这 {} 保存为 CSV", "All measurements of the shown time, plots and joints, as they were received, into a file. The window stays usable.", "把当前时间范围内所示曲线的全部原始数据保存到文件。保存期间窗口照常工作。";
     SAVE_PNG: "Save as PNG", "保存为 PNG", "A picture of these plots, at twice the resolution of the screen.", "将当前曲线保存为图片，分辨率为屏幕的两倍。";
     CURSORS: "A|B", "A|B", "Two cursors with values, difference, slope, and smallest, largest and mean value between them.", "两个游标：数值、差值、斜率，以及区间最小、最大和平均值。";
     CURSORS_NAME: "Cursors", "游标";

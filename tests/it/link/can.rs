@@ -275,7 +275,7 @@ async fn an_echo_alone_is_no_hand() {
 async fn an_adapter_that_refuses_says_so() {
     for (refuses, words) in [
         (b'S', "refused 1000000 bit/s"),
-        (b'O', "could not go on the bus"),
+        (b'O', "could not join the bus"),
         (b'T', "stay in the queue"),
     ] {
         let oddity = Oddity {

@@ -495,7 +495,7 @@ fn a_save_that_failed_or_gave_no_result_is_told_so_and_is_not_the_last_saved() {
         (
             "failed",
             Saved::Failed { code: 255 },
-            "Not saved: the hand says",
+            "Not saved: the hand reports",
         ),
         (
             "never",

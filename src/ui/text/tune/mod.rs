@@ -218,7 +218,7 @@ texts! {
         Stiffness::Soft => "soft", "软";
         Stiffness::Firm => "firm", "中等";
         Stiffness::Rigid => "rigid", "硬";
-        Stiffness::Unknown => "not told", "未知";
+        Stiffness::Unknown => "unknown", "未知";
     }
 
     /// Stage of a series.
