@@ -243,7 +243,7 @@ async fn a_motion_and_a_grip_end_where_they_should_on_a_slow_way() {
                 settles: true,
                 grip: GripEstimator::default(),
             };
-            let moved = move_to(&*link, armed, start).await;
+            let moved = move_to(&link, armed, start).await;
             assert_eq!(moved.end, Ok(MoveEnd::Reached), "{angle} at {ms} ms");
         }
         let start = GripStart {
@@ -252,7 +252,7 @@ async fn a_motion_and_a_grip_end_where_they_should_on_a_slow_way() {
             force: Force::GENTLE,
             grip: GripEstimator::default(),
         };
-        let gripped = grip(&*link, armed, start, pending()).await;
+        let gripped = grip(&link, armed, start, pending()).await;
         assert_eq!(gripped.end, Ok(GripEnd::Reached), "{ms} ms");
     }
 }

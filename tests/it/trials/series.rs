@@ -119,7 +119,7 @@ impl Bench {
             clock: self.clock,
         };
         let mut trials = Vec::new();
-        let driven = drive(&*self.link, armed, series, pending(), |series, _| {
+        let driven = drive(&self.link, armed, series, pending(), |series, _| {
             trials.extend(std::iter::from_fn(|| series.finished()));
             meanwhile(self, series);
             true
