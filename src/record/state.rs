@@ -221,7 +221,7 @@ impl fmt::Display for SetpointConflict {
             Some(holds) => write!(f, "{register}: {dof} {holds}")?,
         }
         match self.wrote {
-            Some(wrote) => write!(f, ", {wrote} was written"),
+            Some(wrote) => write!(f, ", we wrote {wrote}"),
             None => Ok(()),
         }
     }

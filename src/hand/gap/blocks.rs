@@ -211,10 +211,10 @@ mod tests {
     fn blocks_that_cannot_be_true_are_refused_and_change_nothing() {
         let kept = measured(&[block(10.0, 30.0)]);
         for (wrong, words) in [
-            (block(50.0, 30.0), "do not fit"),
-            (block(50.0, 20.0), "do not fit"),
-            (block(50.0, 145.0), "do not fit"),
-            (block(50.0, f32::NAN), "do not fit"),
+            (block(50.0, 30.0), "do not match"),
+            (block(50.0, 20.0), "do not match"),
+            (block(50.0, 145.0), "do not match"),
+            (block(50.0, f32::NAN), "do not match"),
             (block(f32::NAN, 50.0), "1 to 120 mm"),
             (block(0.5, 3.0), "1 to 120 mm"),
         ] {

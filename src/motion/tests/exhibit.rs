@@ -527,6 +527,9 @@ fn order_of(
         stall: None,
         now: at(second),
     };
+    if let Some(epoch) = armed {
+        assert_eq!(run.armed(Ok(ArmEpoch(epoch))), None);
+    }
     if let Some(wish) = wish {
         assert_eq!(run.input(wish, &seen), None);
     }

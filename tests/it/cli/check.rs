@@ -29,7 +29,7 @@ fn nothing_moves_before_all_is_in_order() {
         let refused = check(&["--out", full.to_str().unwrap()]);
         assert!(refused.contains("not empty"), "{refused}");
         let refused = check(&["--recordings", "/nowhere"]);
-        assert!(refused.contains("/nowhere is no folder"), "{refused}");
+        assert!(refused.contains("/nowhere is not a folder"), "{refused}");
         std::fs::write(&unreadable, "no JSON\n").unwrap();
         let refused = check(&[]);
         assert!(refused.contains("--folder"), "{refused}");

@@ -232,7 +232,7 @@ fn a_signal_lets_a_write_end_and_tells_what_the_hand_holds_a_second_one_does_not
                 (true, INDEX_SPEED),
                 SIGINT,
                 true,
-                "not known what the hand holds",
+                "what the hand holds is unknown",
             ),
             (
                 &["save", "--yes"],

@@ -29,7 +29,7 @@ fn a_wish_that_makes_no_sense_is_wrong_usage() {
             (&["--gap", "2"][..], "a pinch opens from 3 to 120 mm, not 2"),
             (&["--gap", "wide"], "not a number of millimetres"),
             (&["--gap", "-5"], "a pinch opens from 3 to 120 mm, not -5"),
-            (&["--gap", "30", "--kind", "hook"], "none of pinch"),
+            (&["--gap", "30", "--kind", "hook"], "not one of pinch"),
             (
                 &["--gap", "30", "--kind", "three-fingers"],
                 "25 mm beside the middle finger's pad",

@@ -142,7 +142,7 @@ fn a_dump_is_a_file_that_brings_the_hand_back_and_leaves_alone_where_it_is() {
         let back = bench.words(hand, &["apply", text(&dump), "--yes"]).ok();
         assert!(
             back.err
-                .contains("left alone: hand_id (9 in the file, 1 in the hand)"),
+                .contains("unchanged: hand_id (9 in the file, 1 in the hand)"),
             "{}",
             back.err
         );

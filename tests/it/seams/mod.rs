@@ -280,7 +280,7 @@ macro_rules! events {
 events! {
     the_program_is_ended Signal,
     the_program_is_killed Killed,
-    the_program_has_a_fault Panic,
+    there_is_an_internal_error Panic,
     the_window_is_frozen Frozen,
     the_display_is_lost DisplayLost,
     the_computer_sleeps Asleep,
@@ -293,8 +293,8 @@ events! {
     another_controller_writes SecondMaster,
     another_handscope_moves_it SecondHandscope,
     a_joint_has_a_fault FaultOrHeat,
-    nobody_reads_the_output ReaderGone,
-    the_output_is_not_taken OutputUnread,
+    the_output_is_closed ReaderGone,
+    the_output_is_not_read OutputUnread,
     the_holder_is_killed HolderKilled,
     the_holder_is_frozen HolderFrozen,
     the_gateway_refuses GatewayRefuses,
@@ -304,7 +304,7 @@ events! {
     the_computer_is_busy Busy,
     no_descriptor_is_left NoDescriptors,
     one_joint_reads_the_same JointFrozen,
-    a_stop_is_oddly_spelled OddStop,
+    a_stop_is_irregular OddStop,
     control_is_given_again GrantedAgain,
 }
 

@@ -373,7 +373,10 @@ fn a_client_stops_what_a_script_moves_which_is_told_and_may_ask_again() {
         assert_eq!(script.until("reply")["kind"], "stop");
         let why = script.until("disarmed");
         assert!(
-            why["why"].as_str().unwrap().contains("told to stop"),
+            why["why"]
+                .as_str()
+                .unwrap()
+                .contains("a stop was requested"),
             "{why}"
         );
         assert_eq!(script.ask(to_index(0, 100))["kind"], "not_armed");
