@@ -367,6 +367,8 @@ impl ExhibitRun {
         }
         self.halt(HaltReason::NoHand);
         self.phase = Phase::Halted(HaltReason::NoHand);
+        // The session disarmed the hand with the link. A stop now would hide why.
+        self.stops = false;
     }
 
     /// A lost link or another controller ends the permission to move.

@@ -133,7 +133,7 @@ fn nobody_says_that_a_hand_was_stopped_where_nothing_reached_it() {
 }
 
 #[test]
-fn a_hand_is_held_when_the_output_is_closed_any_more() {
+fn a_hand_is_held_when_the_output_is_closed() {
     unless_busy(|| {
         let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
         let args = ["follow", "--hand", &hand, "--udp", "127.0.0.1:0", "--arm"];
