@@ -13,6 +13,7 @@ use crate::motion::play::{PlayCommand, PlayStart, Playing};
 use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
 use crate::poses::player::{PlayMode, PlayPlan};
 use crate::record::{Abort, ArmRefusal, Disarmed, LinkState};
+use crate::trials::limits::TaskStall;
 use futures::stream::poll_fn;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -28,6 +29,8 @@ const CLEAR_WINDOW: Duration = Duration::from_secs(600);
 const CLEAR_TIMEOUT: Duration = Duration::from_secs(3);
 /// A visitor who presses nothing for this long has left.
 const GONE_TIMEOUT: Duration = Duration::from_secs(25);
+/// After a stall of this program, the session decides first whether the computer slept.
+const STALL_GRACE: Duration = Duration::from_millis(100);
 /// Pause between two visitors.
 const NEXT_VISITOR_DELAY: Duration = Duration::from_secs(5);
 /// Pause between two pieces of the attract loop.
@@ -645,7 +648,9 @@ impl Program for ExhibitRun {
         self.heat.apply(seen.sample);
         self.level = self.heat.level(now);
         self.watch_link(seen);
-        if self.permitted && now.since(self.drawn.last()) >= DRAWN_TIMEOUT {
+        let has_stalled = |stall: TaskStall| now.since(stall.ended) < STALL_GRACE;
+        let is_shown = now.since(self.drawn.last()) < DRAWN_TIMEOUT;
+        if self.permitted && !is_shown && !seen.stall.is_some_and(has_stalled) {
             self.halt(HaltReason::NotShown);
         }
         self.watch_faults(seen);

@@ -324,7 +324,7 @@ mod tests {
         for (saved, words, is_ok) in [
             (
                 Saved::Confirmed,
-                "the hand says that its parameters are in flash",
+                "the hand reports its parameters in flash",
                 true,
             ),
             (Saved::ReadBack, "Only the next power-up shows", true),
