@@ -17,7 +17,7 @@ use crate::hand::moment::Moment;
 /// use handscope_core::hand::{Groups, HandSample, Moment};
 ///
 /// let mut estimator = GripEstimator::default();
-/// let grip = estimator.take(&HandSample::default(), Groups::default(), Moment::ZERO);
+/// let grip = estimator.apply(&HandSample::default(), Groups::default(), Moment::ZERO);
 /// assert_eq!(grip.grasp.state, GripState::Unknown);
 /// ```
 #[derive(Debug, Clone)]

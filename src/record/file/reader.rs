@@ -85,11 +85,11 @@ impl From<io::Error> for OpenError {
 ///
 /// ```no_run
 /// use handscope_core::record::file::RecordingFile;
-/// use handscope_core::record::file::reader::Stretch;
+/// use handscope_core::record::file::reader::TimeRange;
 /// use std::ops::ControlFlow;
 ///
 /// let file = RecordingFile::open("recording.mcap".as_ref())?;
-/// file.entries(Stretch::WHOLE, |entry| {
+/// file.entries(TimeRange::WHOLE, |entry| {
 ///     println!("{entry:?}");
 ///     ControlFlow::Continue(())
 /// })?;
