@@ -42,11 +42,11 @@ impl JobKind for ProgramJob {
 pub(super) struct ProgramJobs(Jobs<ProgramJob>);
 
 impl ProgramJobs {
-    /// Takes in what is done; what the user should know of it.
+    /// Applies the results of ended jobs; returns notices for the user.
     pub(super) fn tick(&mut self, state: &mut State, env: &Env) -> Vec<NoticeKind> {
-        let mut told = Vec::new();
+        let mut notices = Vec::new();
         while let Some(effect) = self.0.next_ended() {
-            effect(state, &mut told);
+            effect(state, &mut notices);
         }
         while !self.keeps()
             && let Some(id) = state.trials.to_keep.pop_front()
@@ -59,10 +59,10 @@ impl ProgramJobs {
                 ProgramJob::KeepSession,
                 env.background(),
                 keep,
-                |state, told, end| told.push(state.trials.apply(end)),
+                |state, notices, end| notices.push(state.trials.apply(end)),
             );
         }
-        told
+        notices
     }
 
     /// True while a session of trials is being saved automatically.
@@ -126,9 +126,9 @@ impl ProgramJobs {
                 ProgramJob::Session,
                 env.background(),
                 files::open(typed, env),
-                |state, told, end: FilesEnd| {
+                |state, notices, end: FilesEnd| {
                     state.trials.asks_path = end.is_err();
-                    told.push(state.trials.apply(end));
+                    notices.push(state.trials.apply(end));
                 },
             ),
             TrialAction::Save(id, criterion) => {
@@ -139,9 +139,9 @@ impl ProgramJobs {
                         ProgramJob::Session,
                         env.background(),
                         save,
-                        |state, told, end| {
+                        |state, notices, end| {
                             state.trials.asks_path = false;
-                            told.push(state.trials.apply(end));
+                            notices.push(state.trials.apply(end));
                         },
                     );
                 }
@@ -164,7 +164,7 @@ impl ProgramJobs {
             ProgramJob::Export,
             env.background(),
             export::save(content, env),
-            |_, told, notice| told.push(notice),
+            |_, notices, notice| notices.push(notice),
         );
     }
 
@@ -177,16 +177,16 @@ impl ProgramJobs {
             ProgramJob::ImportPoses,
             env.background(),
             open(typed, pose_file::FILE_NAME, env, pose_file::read),
-            |state, told, read| match read {
+            |state, notices, read| match read {
                 // All of it is added, or nothing.
                 Ok(library) => {
                     let (poses, sequences) = (library.poses.len(), library.sequences.len());
                     state.poses.import(library);
-                    told.push(NoticeKind::PosesImported { poses, sequences });
+                    notices.push(NoticeKind::PosesImported { poses, sequences });
                 }
                 Err(refused) => {
                     state.poses.refused = Some(refused.clone());
-                    told.push(refused);
+                    notices.push(refused);
                 }
             },
         );
