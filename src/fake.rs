@@ -82,6 +82,22 @@ pub(crate) struct FakeHand {
     pub(crate) clock: Clock,
 }
 
+/// Passes on everything that a handle requests, as a session receives it.
+pub(crate) async fn each_control(
+    wanted: Arc<watch::Sender<PendingControl>>,
+    obey: impl Fn(PendingControl),
+) {
+    let mut news = wanted.subscribe();
+    while news.changed().await.is_ok() {
+        let mut control = PendingControl::default();
+        wanted.send_if_modified(|wanted| {
+            control = wanted.take();
+            false
+        });
+        obey(control);
+    }
+}
+
 impl Deref for FakeHand {
     type Target = LinkHandle;
 
@@ -121,7 +137,9 @@ impl FakeHand {
             status.state = LinkState::Monitoring;
             status.rest = Rest::Resting;
         });
-        tokio::spawn(hand.clone().obey_all());
+        let session = hand.clone();
+        let wanted = Arc::clone(&hand.wanted);
+        tokio::spawn(each_control(wanted, move |control| session.obey(control)));
         tokio::spawn(hand.clone().serve_all(requests));
         let mut params = Params::factory();
         for id in ParamId::all() {
@@ -252,18 +270,6 @@ impl FakeHand {
                 status.hold = Hold::Confirmed { at, rest: at };
             }
         });
-    }
-
-    async fn obey_all(self) {
-        let mut news = self.wanted.subscribe();
-        while news.changed().await.is_ok() {
-            let mut control = PendingControl::default();
-            self.wanted.send_if_modified(|wanted| {
-                control = wanted.take();
-                false
-            });
-            self.obey(control);
-        }
     }
 
     fn obey(&self, control: PendingControl) {

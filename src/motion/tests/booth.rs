@@ -2,6 +2,7 @@
 //! write. Speaks no protocol, so that a day takes seconds.
 
 use crate::exhibit::plan::{ExhibitPiece, ExhibitPlan, MotionLimits};
+use crate::fake::each_control;
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, CurrentReading, Dof, Fault, Group, Groups, HandCommand,
     HandSample, Moment, PerDof, Setpoints, Target, TemperatureReading, Timed,
@@ -142,7 +143,8 @@ impl BoothHand {
             facts: Arc::new(Mutex::new(facts)),
             clock,
         };
-        tokio::spawn(hand.clone().obey_all(wanted));
+        let session = hand.clone();
+        tokio::spawn(each_control(wanted, move |control| session.obey(control)));
         tokio::spawn(hand.clone().serve_all(requests));
         let world = hand.clone();
         tokio::spawn(async move {
@@ -380,18 +382,6 @@ impl BoothFacts {
 }
 
 impl BoothHand {
-    async fn obey_all(self, ends: Arc<watch::Sender<PendingControl>>) {
-        let mut news = ends.subscribe();
-        while news.changed().await.is_ok() {
-            let mut control = PendingControl::default();
-            ends.send_if_modified(|wanted| {
-                control = wanted.take();
-                false
-            });
-            self.obey(control);
-        }
-    }
-
     fn obey(&self, control: PendingControl) {
         let now = self.clock.now();
         let mut facts = self.facts();
