@@ -25,6 +25,7 @@ use crate::params::rows::{ParamId, Value};
 use crate::poses::edit::LibraryEdit;
 use crate::poses::library::{PoseId, SequenceId};
 use crate::poses::{Play, Preset};
+use crate::tasks::Question;
 use crate::transport::Endpoint;
 use std::path::PathBuf;
 
@@ -104,6 +105,8 @@ pub enum Action {
     CalibrateForce,
     /// A decision on such a card.
     Procedure(ProcedureAction),
+    /// Answer a question of the shown hand's task. Ignored if it is not the open one.
+    Answer(Question, bool),
     /// Connect to this hand.
     Connect(Endpoint),
     /// Disconnect from the hand.
@@ -208,6 +211,7 @@ impl Action {
             | Self::FactoryReset
             | Self::CalibrateForce
             | Self::Procedure(_)
+            | Self::Answer(..)
             | Self::Connect(_)
             | Self::Disconnect
             | Self::Hands(_)

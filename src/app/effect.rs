@@ -9,6 +9,7 @@ use crate::app::params::state::ParamAction;
 use crate::app::procedures::procedure::ProcedureAction;
 use crate::app::trials::state::TrialAction;
 use crate::poses::Play;
+use crate::tasks::Question;
 
 /// Effect of an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,18 +128,17 @@ impl Action {
                 ParamAction::Apply
                 | ParamAction::Undo
                 | ParamAction::Save
-                | ParamAction::SaveWith(_)
-                | ParamAction::Agree,
+                | ParamAction::SaveWith(_),
             )
-            | Self::Procedure(
-                ProcedureAction::Begin | ProcedureAction::GoBack | ProcedureAction::Save,
-            ) => ActionEffect::PersistentWrite,
+            | Self::Answer(Question::Apply(_) | Question::Save(_) | Question::SavePlace(_), true)
+            // The previous address is written back.
+            | Self::Answer(Question::KeepPlace(_), false)
+            | Self::Procedure(ProcedureAction::Begin) => ActionEffect::PersistentWrite,
             Self::ChangePlace(..)
             | Self::FactoryReset
             | Self::CalibrateForce
-            | Self::Procedure(
-                ProcedureAction::Keep | ProcedureAction::LeaveUnsaved | ProcedureAction::Close,
-            )
+            | Self::Answer(..)
+            | Self::Procedure(ProcedureAction::Close)
             | Self::Stay
             | Self::Leave => ActionEffect::Dialog,
             Self::Connect(_)
@@ -181,7 +181,6 @@ impl Action {
             )
             | Self::Param(
                 ParamAction::Read
-                | ParamAction::Decline
                 | ParamAction::CopyLive
                 | ParamAction::UnstageAll
                 | ParamAction::Dump

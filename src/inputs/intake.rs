@@ -2,8 +2,8 @@
 
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
-use crate::inputs::follow::END_TIMEOUT;
 use crate::inputs::line::{LineField, LineRefusal, StreamLine, StreamLineFault};
+use crate::inputs::offer::END_TIMEOUT;
 use crate::link::stats::EventRate;
 use std::collections::BTreeMap;
 use std::net::SocketAddr;

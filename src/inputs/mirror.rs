@@ -2,8 +2,7 @@
 //! That hand is read and never written. Left and right have the same six joints in the same order, so one can follow the other directly.
 
 use crate::hand::{Angle, AngleReading, Group, HandSample, Moment, PerDof};
-use crate::inputs::follow::is_fresh;
-use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
+use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet, is_fresh};
 use crate::link::stats::EventRate;
 use crate::link::{Owner, Records};
 use crate::record::Record;

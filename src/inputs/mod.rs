@@ -2,16 +2,12 @@
 
 pub mod dds;
 pub mod fields;
-pub mod follow;
-#[cfg(test)]
-mod follow_tests;
 pub mod intake;
 pub mod line;
 pub mod lines;
 pub mod mirror;
 pub mod offer;
 pub mod pad;
-mod pinch;
 pub mod scan;
 pub mod stop;
 pub mod stream;

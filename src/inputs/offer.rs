@@ -1,14 +1,51 @@
 //! Targets that a source offers to a hand, and the channel from a source to its follower.
 
 use crate::hand::gap::Gap;
+use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Force, Moment, PerDof, Speed};
-use crate::link::ArmRequest;
+use crate::link::{ArmRequest, Clock, LinkHandle, Wake};
 use std::sync::Arc;
+use std::time::Duration;
 use tokio::sync::mpsc::error::TrySendError;
 use tokio::sync::{mpsc, watch};
 
+/// A source that sends nothing new for this long is silent, and the hand holds …
+pub const HOLD_TIMEOUT: Duration = Duration::from_millis(200);
+/// … and after this time it loses control of the hand.
+pub const END_TIMEOUT: Duration = Duration::from_secs(1);
 /// Capacity of the queue: a follower is faster than a source can fill it.
 const OFFERS_MAX: usize = 64;
+
+/// What a source needs of the program that opens it.
+#[derive(Clone)]
+pub struct SourceSite {
+    /// Side of the hand to which its messages are addressed.
+    pub side: Side,
+    /// The program's clock.
+    pub clock: Clock,
+    /// Stops the hand. Called for each message that requests it, from any sender, whether granted control or not.
+    pub stop: Arc<dyn Fn() + Send + Sync>,
+    /// Called when the view of the source changed. Must return at once.
+    pub wake: Wake,
+}
+
+impl SourceSite {
+    /// For a source whose messages are addressed to the hand of this link.
+    pub fn of(link: &LinkHandle, side: Side, wake: Wake) -> Self {
+        let stops = link.clone();
+        Self {
+            side,
+            clock: link.clock(),
+            stop: Arc::new(move || drop(stops.stop())),
+            wake,
+        }
+    }
+}
+
+/// True if the source heard at `last` is not silent at `now`.
+pub(crate) fn is_fresh(last: Moment, now: Moment) -> bool {
+    now.since(last) < HOLD_TIMEOUT
+}
 
 /// Targets of a source at one time. No default: absent is not zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,14 +2,13 @@
 
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
-use crate::inputs::follow::is_fresh;
 use crate::inputs::intake::{Intake, IntakeView};
 use crate::inputs::line::{LINE_MAX, LineRefusal, StreamLine, begins_message};
 use crate::inputs::lines::{LONGEST, LineCutter, LineEvent};
-use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet};
+use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet, SourceSite, is_fresh};
 use crate::inputs::scan;
 use crate::inputs::stop::{self, TextEnd};
-use crate::link::{Clock, Owner, Wake};
+use crate::link::Owner;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
@@ -43,21 +42,6 @@ pub enum StreamPlace {
     Tcp(SocketAddr),
 }
 
-/// Configuration of a stream.
-#[derive(Clone)]
-pub struct StreamConfig {
-    /// Transport and address.
-    pub place: StreamPlace,
-    /// Side of the hand for which the lines are.
-    pub side: Side,
-    /// The program's clock.
-    pub clock: Clock,
-    /// Stops the hand. Called for each line that requests it, from any sender.
-    pub stop: Arc<dyn Fn() + Send + Sync>,
-    /// Called when the view changed. Must return at once.
-    pub wake: Wake,
-}
-
 /// Current state of a stream.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StreamView {
@@ -82,7 +66,7 @@ impl StreamView {
 /// An open stream. Dropping it closes it.
 #[derive(Debug)]
 pub struct StreamSource {
-    local: SocketAddr,
+    place: StreamPlace,
     view: watch::Receiver<StreamView>,
     outlet: OfferOutlet,
     _task: AbortOnDropHandle<()>,
@@ -93,45 +77,61 @@ impl StreamSource {
     ///
     /// # Errors
     /// The system's error if the address cannot be bound.
-    pub fn open(config: StreamConfig, runtime: &tokio::runtime::Handle) -> std::io::Result<Self> {
+    pub fn open(
+        place: StreamPlace,
+        site: SourceSite,
+        runtime: &tokio::runtime::Handle,
+    ) -> std::io::Result<Self> {
         let _entered = runtime.enter();
         let (views, view) = watch::channel(StreamView::default());
         let outlet = OfferOutlet::default();
         let listening = StreamListener {
-            intake: Intake::new(config.side),
+            intake: Intake::new(site.side),
             view: StreamView::default(),
-            config: config.clone(),
+            site,
             outlet: outlet.clone(),
             views,
             is_news: false,
         };
-        let (local, task) = match config.place {
+        let (place, task) = match place {
             StreamPlace::Udp(at) => {
                 let socket = std::net::UdpSocket::bind(at)?;
                 socket.set_nonblocking(true)?;
                 let socket = UdpSocket::from_std(socket)?;
                 let local = socket.local_addr()?;
-                (local, runtime.spawn(listening.datagrams(socket)))
+                (
+                    StreamPlace::Udp(local),
+                    runtime.spawn(listening.datagrams(socket)),
+                )
             }
             StreamPlace::Tcp(at) => {
                 let listener = std::net::TcpListener::bind(at)?;
                 listener.set_nonblocking(true)?;
                 let listener = TcpListener::from_std(listener)?;
                 let local = listener.local_addr()?;
-                (local, runtime.spawn(listening.connections(listener)))
+                (
+                    StreamPlace::Tcp(local),
+                    runtime.spawn(listening.connections(listener)),
+                )
             }
         };
         Ok(Self {
-            local,
+            place,
             view,
             outlet,
             _task: AbortOnDropHandle::new(task),
         })
     }
 
-    /// Listen address, with the port chosen by the system if none was given.
+    /// Transport and listen address, with the port chosen by the system if none was given.
+    pub const fn place(&self) -> StreamPlace {
+        self.place
+    }
+
+    /// Listen address.
     pub const fn local(&self) -> SocketAddr {
-        self.local
+        let (StreamPlace::Udp(at) | StreamPlace::Tcp(at)) = self.place;
+        at
     }
 
     /// Current state.
@@ -167,7 +167,7 @@ impl LineDoor {
 struct StreamListener {
     intake: Intake,
     view: StreamView,
-    config: StreamConfig,
+    site: SourceSite,
     outlet: OfferOutlet,
     views: watch::Sender<StreamView>,
     is_news: bool,
@@ -176,8 +176,8 @@ struct StreamListener {
 impl StreamListener {
     fn door(&self) -> LineDoor {
         LineDoor {
-            side: self.config.side,
-            stop: Arc::clone(&self.config.stop),
+            side: self.site.side,
+            stop: Arc::clone(&self.site.stop),
         }
     }
 
@@ -230,7 +230,7 @@ impl StreamListener {
     }
 
     fn receive(&mut self, line: ReadLine, from: SocketAddr) {
-        let now = self.config.clock.now();
+        let now = self.site.clock.now();
         self.is_news = true;
         let Ok(line) = self.intake.accept_parsed(line, from, now) else {
             return;
@@ -251,7 +251,7 @@ impl StreamListener {
     }
 
     fn publish(&mut self) {
-        let intake = self.intake.view(self.config.clock.now());
+        let intake = self.intake.view(self.site.clock.now());
         // The rate decreases with time alone.
         if !self.is_news && intake.rate_hz.to_bits() == self.view.intake.rate_hz.to_bits() {
             return;
@@ -259,7 +259,7 @@ impl StreamListener {
         self.is_news = false;
         self.view.intake = intake.clone();
         self.views.send_replace(self.view.clone());
-        (self.config.wake)();
+        (self.site.wake)();
     }
 }
 

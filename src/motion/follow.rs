@@ -2,17 +2,14 @@
 //! it moves; this program executes that.
 
 use crate::hand::gap::Gap;
-use crate::hand::{
-    Angle, ArmEpoch, Dof, DriveHeat, Groups, HandSample, Moment, PerDof, Setpoints, Target,
-};
-use crate::inputs::follow::{
-    Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase, HOLD_TIMEOUT,
-};
+use crate::hand::{Angle, ArmEpoch, Dof, DriveHeat, Groups, HandSample, Moment, PerDof, Setpoints};
+use crate::inputs::offer::HOLD_TIMEOUT;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Clock, HoldToRun, Lease, LinkHandle};
 use crate::motion::drive::{ArmedBy, DriveStart, drive};
+use crate::motion::following::{Follow, FollowInput, FollowLimits, FollowPhase};
 use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
-use crate::record::{Abort, Disarmed};
+use crate::record::{Abort, ArmRefusal, Disarmed};
 use futures::stream::poll_fn;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -64,22 +61,13 @@ pub struct FollowView {
     pub heat: Option<DriveHeat>,
 }
 
-/// Outcome of following that was not aborted. The hand was stopped, and control was given back.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FollowEnd {
-    /// The source was silent for too long.
-    Silent,
-    /// The source was closed or unplugged.
-    Gone,
-}
-
-/// Follows a source until it ends or the lease ends.
+/// Follows a source until it falls silent or is closed, which stops the hand and gives control back, or the lease ends.
 pub async fn follow(
     hand: &LinkHandle,
     start: FollowStart,
     mut offers: mpsc::Receiver<Offer>,
     mut tell: impl FnMut(FollowView),
-) -> Ended<FollowEnd> {
+) -> Ended<()> {
     let clock = start.clock;
     let begin = DriveStart {
         armed_by: ArmedBy::Program,
@@ -126,12 +114,12 @@ struct FollowProgram {
     limits: OfferLimits,
     /// Limits that were sent to the hand, and the arming under which.
     limited: Option<(ArmEpoch, OfferLimits)>,
-    end: Option<Ended<FollowEnd>>,
+    end: Option<Ended<()>>,
 }
 
 impl Program for FollowProgram {
     type Input = Offer;
-    type Outcome = FollowEnd;
+    type Outcome = ();
     const AFTER_ABORT: AfterAbort = AfterAbort::StopAfterLinkLoss;
 
     fn input(&mut self, mut offer: Offer, _seen: &Seen<'_>) -> Option<Order> {
@@ -152,11 +140,16 @@ impl Program for FollowProgram {
     }
 
     fn input_ended(&mut self, _seen: &Seen<'_>) -> Option<Order> {
-        self.end.get_or_insert(Ok(FollowEnd::Gone));
+        self.end.get_or_insert(Ok(()));
         Some(Order::GiveBack(Disarmed::Silent))
     }
 
     fn read(&mut self, _sample: &HandSample, _fresh: Groups, _now: Moment) {}
+
+    fn armed(&mut self, _answer: Result<ArmEpoch, ArmRefusal>) -> Option<Order> {
+        self.follow.answered();
+        None
+    }
 
     fn sent(&mut self, at: Moment) {
         self.delays.sent(at);
@@ -169,21 +162,22 @@ impl Program for FollowProgram {
         let pose = PerDof::from_fn(|dof| angle.and_then(|angle| angle.value[dof].hold()));
         let input = FollowInput {
             state: seen.status.state,
+            epoch: seen.status.armed,
+            arm: self.start.arm,
             pose,
             held: terms.hold.is_held(seen.now),
         };
-        let order = match self.follow.tick(input, seen.now) {
-            Some(FollowOrder::Arm) => Some(Order::Arm(self.start.arm)),
-            Some(FollowOrder::Halt) => Some(Order::Halt),
-            Some(FollowOrder::End) => {
-                self.end.get_or_insert(Ok(FollowEnd::Silent));
-                Some(Order::GiveBack(Disarmed::Silent))
+        let mut order = self.follow.tick(input, seen.now);
+        if order.is_none() && self.follow.phase() == FollowPhase::Following {
+            order = seen.status.armed.map(Setpoints::none).map(Order::Set);
+        }
+        let order = match order {
+            Some(Order::Set(setpoints)) => self.limit(setpoints),
+            Some(Order::GiveBack(why)) => {
+                self.end.get_or_insert(Ok(()));
+                Some(Order::GiveBack(why))
             }
-            Some(FollowOrder::Aim(aims)) => self.set(seen.status.armed?, &aims),
-            None if self.follow.phase() == FollowPhase::Following => {
-                self.set(seen.status.armed?, &PerDof::splat(None))
-            }
-            None => None,
+            order => order,
         };
         self.view = Some(self.view(&pose, seen.status.heat));
         order
@@ -193,16 +187,15 @@ impl Program for FollowProgram {
         self.end.get_or_insert(Err(why));
     }
 
-    fn ended(&self) -> Option<Ended<FollowEnd>> {
+    fn ended(&self) -> Option<Ended<()>> {
         self.end
     }
 }
 
 impl FollowProgram {
-    /// Sends targets, and limits that were not sent under this arming yet.
-    fn set(&mut self, epoch: ArmEpoch, aims: &PerDof<Option<Angle>>) -> Option<Order> {
-        let mut setpoints = Setpoints::none(epoch);
-        setpoints.angle = aims.map(|aim| aim.map(Target::Go));
+    /// Adds limits that were not sent under this arming yet; `None` if nothing remains to be sent.
+    fn limit(&mut self, mut setpoints: Setpoints) -> Option<Order> {
+        let epoch = setpoints.epoch;
         if self.limited != Some((epoch, self.limits)) {
             (setpoints.force, setpoints.speed) = (self.limits.force, self.limits.speed);
         }
@@ -210,7 +203,7 @@ impl FollowProgram {
             return None;
         }
         self.limited = Some((epoch, self.limits));
-        if aims.iter().any(|(_, aim)| aim.is_some()) {
+        if setpoints.angle.iter().any(|(_, aim)| aim.is_some()) {
             self.delays.set();
         }
         Some(Order::Set(setpoints))

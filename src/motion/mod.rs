@@ -6,10 +6,15 @@ pub mod checkup;
 pub mod drive;
 pub mod exhibit;
 pub mod follow;
+pub mod following;
+#[cfg(test)]
+mod following_tests;
 pub mod grip;
 pub mod move_to;
+mod pinch;
 pub mod play;
 pub mod program;
 pub mod series;
+pub mod source;
 #[cfg(test)]
 mod tests;

@@ -6,12 +6,13 @@ use crate::link::{LinkHandle, RequestError};
 use crate::params::backups::Backups;
 use crate::params::changes::{self, RowOutcome, RowVerdict, WritePlan};
 use crate::params::danger::worse;
+use crate::params::place::WhichPlace;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::record::{NotSent, Verdict, Written};
 use crate::tasks::hand::{REACH_TIMEOUT, answers, once_at_rest};
 use crate::tasks::save::back_up;
-use crate::tasks::{Consent, ParamStep, Risks, TaskError, read};
+use crate::tasks::{Question, Risks, TaskError, TaskStep, User, read};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -20,8 +21,8 @@ use std::sync::Arc;
 pub struct Apply {
     /// Rows and their new values.
     pub wanted: Params,
-    /// The user's consent.
-    pub consent: Consent,
+    /// Risks that the user confirmed already.
+    pub agreed: Risks,
     /// Location of the backup that precedes the first write; `None` makes no backup.
     pub backups: Option<Backups>,
     /// Reaction if not every row was applied.
@@ -63,26 +64,36 @@ impl Applied {
     }
 }
 
-/// Applies rows. Rows that already have the requested value are not written.
+/// Applies rows. Rows that already have the requested value are not written. The user is asked about risks, and again if reading the
+/// hand once more shows others.
 ///
 /// # Errors
 /// [`TaskError`]: nothing was written.
 pub async fn apply(
     hand: &LinkHandle,
     task: &Apply,
-    mut notify: impl FnMut(ParamStep),
+    user: &mut impl User,
+    mut notify: impl FnMut(TaskStep),
 ) -> Result<Applied, TaskError> {
-    let on_read = |span, bytes: &[u8]| notify(ParamStep::Read(span, bytes.to_vec()));
-    let rows = read::rows(hand, on_read).await;
-    let is_needed = |id| task.backups.is_some() || task.wanted.get(id).is_some();
-    let before = rows.with(is_needed)?;
-    let plan = changes::plan_writes(&task.wanted, &before);
-    let risks = Risks {
-        dangers: worse(&before, &before.with(&plan.rows), &task.overshoot),
-        places: plan.rows.only(ParamId::is_place),
+    let mut agreed = task.agreed.clone();
+    let (before, plan) = loop {
+        let on_read = |span, bytes: &[u8]| notify(TaskStep::Read(span, bytes.to_vec()));
+        let rows = read::rows(hand, on_read).await;
+        let is_needed = |id| task.backups.is_some() || task.wanted.get(id).is_some();
+        let before = rows.with(is_needed)?;
+        let plan = changes::plan_writes(&task.wanted, &before);
+        let risks = Risks {
+            dangers: worse(&before, &before.with(&plan.rows), &task.overshoot),
+            places: plan.rows.only(ParamId::is_place),
+        };
+        if agreed.contain(&risks) {
+            break (before, plan);
+        }
+        if !user.ask(Question::Apply(risks.clone())).await {
+            return Err(TaskError::Declined(risks));
+        }
+        agreed = risks;
     };
-    task.consent.check(&risks)?;
-    notify(ParamStep::Meant(risks));
     let mut applied = Applied {
         backup: None,
         rows: changes::held_already(&task.wanted, &plan, &before),
@@ -96,10 +107,10 @@ pub async fn apply(
     if let Some(backups) = &task.backups {
         applied.backup = Some(back_up(backups, &applied.before, "before apply").await?);
     }
-    notify(ParamStep::Writing);
+    notify(TaskStep::Writing(WhichPlace::Old));
     let (written, broken_off) = write(hand, &plan, &applied.before).await;
     for row in &written {
-        notify(ParamStep::Row(row.clone()));
+        notify(TaskStep::Row(row.clone()));
     }
     applied.rows.extend(written);
     applied.broken_off = broken_off;

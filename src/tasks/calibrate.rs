@@ -3,6 +3,7 @@
 use crate::hand::{Dof, Finger, ForceReading, HandSample, Moment, PerDof};
 use crate::link::{Clock, LinkHandle, LinkStatus, RequestError};
 use crate::record::{Calibrated, LinkState, Record, Rest};
+use crate::tasks::TaskStep;
 use std::collections::VecDeque;
 use std::time::Duration;
 use tokio::time::{Instant, timeout_at};
@@ -155,15 +156,6 @@ impl Checks {
     }
 }
 
-/// Progress of a calibration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum CalibrateStep {
-    /// The request is being sent, and nothing else uses the line.
-    Calibrating,
-    /// The new offsets are measured.
-    Measuring,
-}
-
 /// Outcome of a calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CalibrateReport {
@@ -177,13 +169,13 @@ pub struct CalibrateReport {
 pub async fn calibrate(
     hand: &LinkHandle,
     clock: Clock,
-    mut notify: impl FnMut(CalibrateStep),
+    mut notify: impl FnMut(TaskStep),
 ) -> CalibrateReport {
-    notify(CalibrateStep::Calibrating);
+    notify(TaskStep::Calibrating);
     let end = hand.calibrate().await;
     let mut after = None;
     if matches!(end, Ok(Calibrated::Finished | Calibrated::Quiet)) {
-        notify(CalibrateStep::Measuring);
+        notify(TaskStep::Measuring);
         let since = clock.now();
         let mut records = hand.records();
         let mut checks = Checks::default();

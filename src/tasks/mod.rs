@@ -1,8 +1,9 @@
 //! Operations of several steps that do not move an armed hand, each written once as an async function for window and command line. A
-//! task reports its steps as they begin and returns its result; it asks the user nothing itself and draws nothing.
+//! task reports its steps as they begin, asks the user where it has to ([`ask`]), and returns its result.
 #![warn(missing_docs)]
 
 pub mod apply;
+pub mod ask;
 pub mod calibrate;
 pub mod hand;
 pub mod place;
@@ -12,15 +13,17 @@ pub mod save;
 #[cfg(test)]
 mod tests;
 
+pub use crate::tasks::ask::{Question, Risks, User};
 pub use crate::tasks::hand::Reach;
 
 use crate::hand::Span;
 use crate::link::RequestError;
 use crate::params::changes::RowOutcome;
-use crate::params::danger::Danger;
+use crate::params::place::WhichPlace;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::system::SystemError;
+use std::path::PathBuf;
 
 /// Why a task ended before it wrote anything to the hand.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -36,9 +39,13 @@ pub enum TaskError {
     /// No hand answered at its address.
     #[error("the hand does not answer")]
     NotReached,
-    /// The task would make joints hit harder than before, or change the address of the hand, and this was not confirmed.
+    /// The task would make joints hit harder than before, change the address of the hand, or write its flash, and the user did not
+    /// confirm that.
     #[error("not confirmed")]
-    NotMeant(Risks),
+    Declined(Risks),
+    /// Not all rows were applied, so that nothing was saved.
+    #[error("not all rows were applied, so nothing was saved")]
+    NotApplied,
     /// The backup, or the note that precedes a SAVE, could not be written.
     #[error("cannot make a backup, nothing was written to the hand: {0}")]
     NoBackup(BackupError),
@@ -58,55 +65,31 @@ pub enum BackupError {
     System(#[from] SystemError),
 }
 
-/// Progress of the tasks that read, apply and save parameters.
+/// Progress of a task.
 #[derive(Debug, Clone, PartialEq)]
-pub enum ParamStep {
-    /// A group was read.
+pub enum TaskStep {
+    /// A group of parameters was read.
     Read(Span, Vec<u8>),
-    /// The user agreed to these risks.
-    Meant(Risks),
-    /// Rows are being written.
-    Writing,
+    /// The parameters are being read and backed up; a SAVE of another program may be waited for.
+    BackingUp,
+    /// The backup was written to this path, with these parameters.
+    BackedUp(PathBuf, Params),
+    /// The hand, or another one, is searched for at this address.
+    Looking(WhichPlace),
+    /// The hand at this address is being written to.
+    Writing(WhichPlace),
     /// A row was written, or was not.
     Row(RowOutcome),
-    /// The backup is being written, and a SAVE of another program may be waited for.
-    BackingUp,
+    /// The previous value of an address is being written back.
+    Returning,
+    /// The user keeps a change of address; the hand is at this one.
+    Kept(WhichPlace),
     /// SAVE is being sent, and its result awaited.
     Saving,
-}
-
-/// Risks that the user should confirm before a task continues.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Risks {
-    /// Joints that will hit harder than before.
-    pub dangers: Vec<Danger>,
-    /// Rows that change the address of the hand, with their new values.
-    pub places: Params,
-}
-
-/// Scope of the user's consent.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Consent {
-    /// To every risk of the task.
-    Given,
-    /// To these joints hitting harder, and to nothing else.
-    To(Vec<Danger>),
-}
-
-impl Consent {
-    /// Fails if the user did not agree to every risk.
-    pub fn check(&self, risks: &Risks) -> Result<(), TaskError> {
-        let is_meant = match self {
-            Self::Given => true,
-            Self::To(agreed) => {
-                let mut dangers = risks.dangers.iter();
-                dangers.all(|danger| agreed.contains(danger)) && risks.places.is_empty()
-            }
-        };
-        if is_meant {
-            Ok(())
-        } else {
-            Err(TaskError::NotMeant(risks.clone()))
-        }
-    }
+    /// RESET_PARA is being sent.
+    Resetting,
+    /// The request to calibrate is being sent, and nothing else uses the line.
+    Calibrating,
+    /// The offsets after a calibration are measured.
+    Measuring,
 }

@@ -11,8 +11,7 @@ use crate::record::Saved;
 use crate::store::on_thread;
 use crate::tasks::hand::{Reach, rests};
 use crate::tasks::save::{back_up, save_noted};
-use crate::tasks::{TaskError, read};
-use futures::future::BoxFuture;
+use crate::tasks::{Question, TaskError, TaskStep, User, read};
 use std::path::PathBuf;
 use std::time::Duration;
 use tokio::time::timeout;
@@ -35,35 +34,6 @@ pub struct PlaceChange {
     pub places: PlacePair,
     /// True if this wire addresses the hand by the parameter, and the change may act at once.
     pub is_followed: bool,
-}
-
-/// The user's decisions. Neither is awaited before the hand is found again.
-pub struct Decisions {
-    /// True keeps the change, false reverts it.
-    pub keeps: BoxFuture<'static, bool>,
-    /// True saves a kept change to flash.
-    pub saves: BoxFuture<'static, bool>,
-}
-
-/// Progress of a change of address.
-#[derive(Debug, Clone, PartialEq)]
-pub enum PlaceStep {
-    /// The parameters are being read and backed up.
-    BackingUp,
-    /// The backup was written to this path, with these parameters.
-    BackedUp(PathBuf, Params),
-    /// The hand, or another one, is searched for at this address.
-    Looking(WhichPlace),
-    /// The value is written to the hand at this address.
-    Writing(WhichPlace),
-    /// The hand is at this address, or holds the value until it is power-cycled: the user confirms within [`CONFIRM_TIMEOUT`].
-    Keeping(WhichPlace),
-    /// The previous value is being written back.
-    Returning,
-    /// Kept: the user decides whether it is saved to flash.
-    Offering(WhichPlace),
-    /// SAVE is under way.
-    Saving(WhichPlace),
 }
 
 /// Outcome of the change, with the address of the hand.
@@ -129,10 +99,10 @@ pub async fn change_place<R: Reach>(
     reach: &mut R,
     change: &PlaceChange,
     backups: &Backups,
-    decisions: Decisions,
-    mut notify: impl FnMut(PlaceStep),
+    user: &mut impl User,
+    mut notify: impl FnMut(TaskStep),
 ) -> Result<PlaceReport, TaskError> {
-    notify(PlaceStep::BackingUp);
+    notify(TaskStep::BackingUp);
     let hand = reach.reach(&change.places.old).await;
     let hand = hand.ok_or(TaskError::NotReached)?;
     let params = read::rows(&hand, |_, _| ()).await.with(|_| true)?;
@@ -143,7 +113,7 @@ pub async fn change_place<R: Reach>(
         ..change.clone()
     };
     let backup = back_up(backups, &params, "before apply").await?;
-    notify(PlaceStep::BackedUp(backup.clone(), params.clone()));
+    notify(TaskStep::BackedUp(backup.clone(), params.clone()));
     let mut run = ChangeRun {
         reach,
         change,
@@ -164,8 +134,8 @@ pub async fn change_place<R: Reach>(
         Some(Moved::Refused { reason }) => PlaceEnd::NotTaken {
             reason: Some(*reason),
         },
-        Some(Moved::There) => run.decide(WhichPlace::New, params, decisions).await,
-        Some(Moved::Waits) => run.decide(WhichPlace::Old, params, decisions).await,
+        Some(Moved::There) => run.decide(WhichPlace::New, params, user).await,
+        Some(Moved::Waits) => run.decide(WhichPlace::Old, params, user).await,
     };
     Ok(PlaceReport {
         backup,
@@ -185,10 +155,10 @@ struct ChangeRun<'a, R, T> {
     not_noted: Option<String>,
 }
 
-impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
+impl<R: Reach, T: FnMut(TaskStep)> ChangeRun<'_, R, T> {
     /// Value of the row in the hand that answers at this address; `None` if none answers.
     async fn holds(&mut self, at: WhichPlace) -> Option<Value> {
-        (self.notify)(PlaceStep::Looking(at));
+        (self.notify)(TaskStep::Looking(at));
         self.seen = None;
         let hand = self.reach.reach(self.change.places.endpoint(at)).await?;
         let span = span_of(self.change.id);
@@ -207,7 +177,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         if may_be_taken && self.holds(from.other()).await.is_some() {
             return Some(Moved::Occupied);
         }
-        (self.notify)(PlaceStep::Writing(from));
+        (self.notify)(TaskStep::Writing(from));
         let hand = self.reach.reach(self.change.places.endpoint(from)).await?;
         if !rests(&hand).await {
             return None;
@@ -239,18 +209,17 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
     }
 
     /// The hand answers: the user keeps the change, or it is reverted.
-    async fn decide(&mut self, at: WhichPlace, params: Params, decisions: Decisions) -> PlaceEnd {
-        (self.notify)(PlaceStep::Keeping(at));
-        let keeps = timeout(CONFIRM_TIMEOUT, decisions.keeps).await;
+    async fn decide(&mut self, at: WhichPlace, params: Params, user: &mut impl User) -> PlaceEnd {
+        let keeps = timeout(CONFIRM_TIMEOUT, user.ask(Question::KeepPlace(at))).await;
         if !keeps.unwrap_or(false) {
-            (self.notify)(PlaceStep::Returning);
+            (self.notify)(TaskStep::Returning);
             return self.revert(at).await;
         }
         if at == WhichPlace::New {
             self.adopt(WhichPlace::New, WhichPlace::Old).await;
         }
-        (self.notify)(PlaceStep::Offering(at));
-        if decisions.saves.await {
+        (self.notify)(TaskStep::Kept(at));
+        if user.ask(Question::SavePlace(at)).await {
             self.save(at, params).await
         } else {
             PlaceEnd::Kept { at, saved: None }
@@ -308,7 +277,7 @@ impl<R: Reach, T: FnMut(PlaceStep)> ChangeRun<'_, R, T> {
         params.put(self.change.id, self.change.wanted);
         let there = self.backups.beside(place);
         let notify = &mut self.notify;
-        let ended = save_noted(&hand, &there, &params, || notify(PlaceStep::Saving(at))).await;
+        let ended = save_noted(&hand, &there, &params, || notify(TaskStep::Saving)).await;
         drop(hand);
         let (saved, not_noted) = match ended {
             Ok(ended) => ended,

@@ -12,23 +12,12 @@ use crate::system::SystemError;
 use crate::tasks::hand::{Reach, once_at_rest};
 use crate::tasks::read::ReadRows;
 use crate::tasks::save::back_up;
-use crate::tasks::{TaskError, read};
+use crate::tasks::{TaskError, TaskStep, read};
 use crate::transport::Endpoint;
 use std::path::PathBuf;
 
 /// Rounds of the search for the hand: a restart takes a few seconds.
 const ROUNDS: u8 = 3;
-
-/// Progress of a reset.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ResetStep {
-    /// The parameters are being read and backed up.
-    BackingUp,
-    /// RESET_PARA is being sent.
-    Sending,
-    /// The hand is searched for at this address; the new address is the factory's.
-    Looking(WhichPlace),
-}
 
 /// Outcome of a reset, with the address of the hand.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -110,14 +99,14 @@ pub async fn reset<R: Reach>(
     reach: &mut R,
     places: &PlacePair,
     backups: &Backups,
-    mut notify: impl FnMut(ResetStep),
+    mut notify: impl FnMut(TaskStep),
 ) -> Result<ResetReport, TaskError> {
-    notify(ResetStep::BackingUp);
+    notify(TaskStep::BackingUp);
     let hand = reach.reach(&places.old).await;
     let hand = hand.ok_or(TaskError::NotReached)?;
     let before = read::rows(&hand, |_, _| ()).await.with(|_| true)?;
     let backup = back_up(backups, &before, "before reset").await?;
-    notify(ResetStep::Sending);
+    notify(TaskStep::Resetting);
     let not_sent = |reset: &Reset| match reset {
         Reset::NotSent(why) => Some(*why),
         _ => None,
@@ -152,7 +141,7 @@ async fn find<R: Reach>(
     reach: &mut R,
     places: &PlacePair,
     before: &Params,
-    notify: &mut impl FnMut(ResetStep),
+    notify: &mut impl FnMut(TaskStep),
 ) -> ResetEnd {
     let mut answered = None;
     for _round in 0..ROUNDS {
@@ -160,7 +149,7 @@ async fn find<R: Reach>(
             if at == WhichPlace::Old && places.old == places.new {
                 continue;
             }
-            notify(ResetStep::Looking(at));
+            notify(TaskStep::Looking(at));
             let Some(hand) = reach.reach(places.endpoint(at)).await else {
                 continue;
             };

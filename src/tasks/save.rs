@@ -10,7 +10,7 @@ use crate::store::calendar::since_1970;
 use crate::store::on_thread;
 use crate::system::SystemError;
 use crate::tasks::hand::once_at_rest;
-use crate::tasks::{BackupError, Consent, ParamStep, Risks, TaskError, read};
+use crate::tasks::{BackupError, Question, Risks, TaskError, TaskStep, User, read};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -25,10 +25,10 @@ const APART: Duration = Duration::from_secs(6);
 pub struct Save {
     /// Location of backup and notes.
     pub backups: Backups,
-    /// Parameters with which the hand would start so far: only joints that would hit harder than with these need consent.
+    /// Parameters with which the hand would start so far: the user is asked about joints that would hit harder than with these.
     pub before: Params,
-    /// The user's consent.
-    pub consent: Consent,
+    /// Risks that the user confirmed already.
+    pub agreed: Risks,
     /// Overshoot of the hand, as measured by trials.
     pub overshoot: Arc<OvershootMap>,
 }
@@ -53,23 +53,25 @@ pub struct SaveReport {
 pub async fn save(
     hand: &LinkHandle,
     task: &Save,
-    mut notify: impl FnMut(ParamStep),
+    user: &mut impl User,
+    mut notify: impl FnMut(TaskStep),
 ) -> Result<SaveReport, TaskError> {
-    let on_read = |span, bytes: &[u8]| notify(ParamStep::Read(span, bytes.to_vec()));
+    let on_read = |span, bytes: &[u8]| notify(TaskStep::Read(span, bytes.to_vec()));
     let params = read::rows(hand, on_read).await.with(|_| true)?;
     let risks = Risks {
         dangers: worse(&task.before, &params, &task.overshoot),
         ..Risks::default()
     };
-    task.consent.check(&risks)?;
-    notify(ParamStep::Meant(risks));
-    notify(ParamStep::BackingUp);
+    if !task.agreed.contain(&risks) && !user.ask(Question::Save(risks.clone())).await {
+        return Err(TaskError::Declined(risks));
+    }
+    notify(TaskStep::BackingUp);
     let backup = back_up(&task.backups, &params, "before save").await?;
     if let Some(ago) = task.backups.since_attempt(SystemTime::now()) {
         sleep(APART.saturating_sub(ago)).await;
     }
     let (saved, not_noted) = save_noted(hand, &task.backups, &params, || {
-        notify(ParamStep::Saving);
+        notify(TaskStep::Saving);
     })
     .await?;
     Ok(SaveReport {

@@ -8,7 +8,7 @@ use crate::setup::soak;
 use handscope::app::action::Action;
 use handscope::app::env::Env;
 use handscope::app::params::state::ParamAction;
-use handscope::app::procedures::{Procedure, ProcedureAction, ProcedureStage};
+use handscope::app::procedures::{PlaceProcedure, Procedure, ProcedureAction, ProcedureStage};
 use handscope::app::program::App;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
@@ -19,8 +19,8 @@ use handscope::params::place::{PlacePair, WhichPlace};
 use handscope::params::rows::{ParamId, Value};
 use handscope::record::{LinkState, Saved};
 use handscope::sim::{BaudEffect, Effect, FlashWrite, Personality};
-use handscope::tasks::TaskError;
-use handscope::tasks::place::{PlaceEnd, PlaceReport, PlaceStep};
+use handscope::tasks::Question;
+use handscope::tasks::place::{PlaceEnd, PlaceReport};
 use handscope::transport::Endpoint;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -133,11 +133,9 @@ impl Program {
     }
 }
 
-type Stage = ProcedureStage<PlaceStep, Result<PlaceReport, TaskError>>;
-
-fn stage(state: &State) -> Option<(Stage, PlacePair)> {
+fn card(state: &State) -> Option<&PlaceProcedure> {
     match state.hand().procedures.card.as_ref()? {
-        Procedure::Place(card) => Some((card.stage.clone(), card.change.places.clone())),
+        Procedure::Place(card) => Some(card),
         _ => None,
     }
 }
@@ -170,27 +168,25 @@ async fn run(program: &mut Program, person: Person, case: &str) -> Option<PlaceR
         program.tick().await;
         let state = program.app.state();
         let is_live = state.hand().connection.status.state.is_live();
-        let (stage, _) = stage(state).unwrap_or_else(|| panic!("{case}: no card"));
-        match stage {
-            ProcedureStage::Doing(PlaceStep::Keeping(_), _) => {
-                let began = *keeping.get_or_insert_with(Instant::now);
-                let due = began.elapsed() >= person.after;
-                match person.keeps.filter(|_| due) {
-                    Some(true) if is_live => program.act(Action::Procedure(ProcedureAction::Keep)),
-                    Some(false) => program.act(Action::Procedure(ProcedureAction::GoBack)),
-                    _ => {}
-                }
-            }
-            ProcedureStage::Doing(PlaceStep::Offering(_), _) if person.saves => {
-                program.act(Action::Procedure(ProcedureAction::Save));
-            }
-            ProcedureStage::Doing(PlaceStep::Offering(_), _) => {
-                program.act(Action::Procedure(ProcedureAction::LeaveUnsaved));
-            }
+        let card = card(state).unwrap_or_else(|| panic!("{case}: no card"));
+        match &card.stage {
             ProcedureStage::Doing(..) => {}
-            ProcedureStage::Over(Ok(report)) => return Some(report),
+            ProcedureStage::Over(Ok(report)) => return Some(report.clone()),
             ProcedureStage::Over(Err(_)) => return None,
             ProcedureStage::Asking => panic!("{case}: it did not begin"),
+        }
+        let question = card.question().map(|(question, _)| question.clone());
+        let yes = match question {
+            Some(Question::KeepPlace(_)) => {
+                let began = *keeping.get_or_insert_with(Instant::now);
+                let due = began.elapsed() >= person.after;
+                person.keeps.filter(|yes| due && (is_live || !yes))
+            }
+            Some(_) => Some(person.saves),
+            None => None,
+        };
+        if let Some((question, yes)) = question.zip(yes) {
+            program.act(Action::Answer(question, yes));
         }
     }
 }
@@ -285,7 +281,7 @@ async fn check(
     end: &PlaceEnd,
     (row, before, wanted): (Span, &[u8], &[u8]),
 ) {
-    let (_, places) = stage(program.app.state()).unwrap();
+    let places = card(program.app.state()).unwrap().change.places.clone();
     let PlacePair { old, new } = places.clone();
     let line = Arc::clone(&program.line);
     let lost_power = line.lost_power.load(Ordering::Relaxed);

@@ -1,9 +1,10 @@
-//! A background task of the window: its timestamped steps, and its result.
+//! A background task of the window: its timestamped steps, its questions, and its result.
 
 use crate::app::env::{Env, LostSteps};
 use crate::hand::Moment;
+use crate::tasks::{Question, User};
 use tokio::sync::broadcast::error::TryRecvError;
-use tokio::sync::{broadcast, oneshot};
+use tokio::sync::{broadcast, mpsc, oneshot};
 use tokio_util::task::AbortOnDrop;
 
 /// Capacity of the step queue: five seconds of a following hand. A window that does not read for longer gets the newest steps.
@@ -14,13 +15,24 @@ const STEPS_MAX: usize = 1024;
 pub(crate) struct Running<S, E> {
     steps: broadcast::Receiver<(Moment, S)>,
     lost: LostSteps,
+    questions: mpsc::Receiver<OpenQuestion>,
+    question: Option<OpenQuestion>,
     end: oneshot::Receiver<E>,
     _task: AbortOnDrop,
 }
 
-/// Sender of a task's steps.
+/// A question that waits for its answer.
+#[derive(Debug)]
+struct OpenQuestion {
+    question: Question,
+    since: Moment,
+    answer: oneshot::Sender<bool>,
+}
+
+/// Sender of a task's steps and questions.
 pub(crate) struct Steps<S> {
     sender: broadcast::Sender<(Moment, S)>,
+    questions: mpsc::Sender<OpenQuestion>,
     env: Env,
 }
 
@@ -32,6 +44,22 @@ impl<S> Steps<S> {
     }
 }
 
+impl<S: Send> User for &Steps<S> {
+    async fn ask(&mut self, question: Question) -> bool {
+        let (answer, answered) = oneshot::channel();
+        let open = OpenQuestion {
+            question,
+            since: self.env.clock.now(),
+            answer,
+        };
+        if self.questions.send(open).await.is_err() {
+            return false;
+        }
+        (self.env.wake)();
+        answered.await.unwrap_or(false)
+    }
+}
+
 impl<S: Clone + Send + 'static, E: Send + 'static> Running<S, E> {
     /// Starts a task.
     pub(crate) fn start<F>(env: &Env, task: impl FnOnce(Steps<S>) -> F) -> Self
@@ -39,9 +67,12 @@ impl<S: Clone + Send + 'static, E: Send + 'static> Running<S, E> {
         F: Future<Output = E> + Send + 'static,
     {
         let (sender, steps) = broadcast::channel(STEPS_MAX);
+        // A task waits for each answer before it asks again.
+        let (asked, questions) = mpsc::channel(1);
         let env = env.clone();
         let work = task(Steps {
             sender,
+            questions: asked,
             env: env.clone(),
         });
         let task = env.runtime.spawn(work);
@@ -58,6 +89,8 @@ impl<S: Clone + Send + 'static, E: Send + 'static> Running<S, E> {
         Self {
             steps,
             lost: env.lost_steps,
+            questions,
+            question: None,
             end,
             _task: abort,
         }
@@ -66,7 +99,27 @@ impl<S: Clone + Send + 'static, E: Send + 'static> Running<S, E> {
     /// Returns the steps since the last call, and the result once the task has ended. All steps come before the result.
     pub(crate) fn news(&mut self) -> (Vec<(Moment, S)>, Option<E>) {
         let end = self.end.try_recv().ok();
+        // A task that stopped waiting for the answer has withdrawn its question.
+        self.question.take_if(|open| open.answer.is_closed());
+        if self.question.is_none() {
+            self.question = self.questions.try_recv().ok();
+        }
         (waiting(&mut self.steps, &self.lost), end)
+    }
+}
+
+impl<S, E> Running<S, E> {
+    /// The open question, and the time since which it is open.
+    pub(crate) fn question(&self) -> Option<(&Question, Moment)> {
+        let open = self.question.as_ref()?;
+        Some((&open.question, open.since))
+    }
+
+    /// Answers the question if it is the open one; true if it was.
+    pub(crate) fn answer(&mut self, question: &Question, yes: bool) -> bool {
+        let is_it = |open: &mut OpenQuestion| open.question == *question;
+        let open = self.question.take_if(is_it);
+        open.is_some_and(|open| open.answer.send(yes).is_ok())
     }
 }
 

@@ -12,7 +12,7 @@ use crate::app::hands::free_force::HandFreeForce;
 use crate::app::hands::running::{AskedSeries, MotionRun, RunningMotion};
 use crate::app::inputs::HandInputs;
 use crate::app::notices::{HandNotices, NoticeKind, RequestKind};
-use crate::app::params::ParamsState;
+use crate::app::params::{ParamsState, rest_refusal};
 use crate::app::procedures::Procedures;
 use crate::app::readings::{Measurements, Readings};
 use crate::app::recordings::recording::HandRecording;
@@ -30,6 +30,7 @@ use crate::motion::drive::Armed;
 use crate::motion::play::{self, PlayCommand, PlayStart};
 use crate::poses::player::{PlayMode, PlayPlan, PlayView};
 use crate::record::{ArmRefusal, LinkState, Record};
+use crate::tasks::Question;
 use crate::transport::Endpoint;
 use crate::trials::TrialPlan;
 use std::time::Duration;
@@ -532,6 +533,15 @@ impl Hand {
     ) -> bool {
         let asked = self.connection.request(what, command, ctx.env);
         asked.map_err(|error| self.failed(what, error, ctx)).is_ok()
+    }
+
+    /// Passes the user's answer to the task that asked. To write, the hand must be disarmed and at rest, as before the question.
+    pub(crate) fn answer(&mut self, question: &Question, yes: bool) {
+        let is_write = matches!(question, Question::Apply(_) | Question::Save(_));
+        if !(yes && is_write && rest_refusal(&self.connection.status).is_some()) {
+            let _is_open =
+                self.params.answer(question, yes) || self.procedures.answer(question, yes);
+        }
     }
 
     /// Notifies the user of the results of requests.

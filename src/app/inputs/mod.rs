@@ -6,21 +6,23 @@ mod work;
 
 use crate::app::env::running::Running;
 use crate::app::slot::SlotId;
-use crate::inputs::dds::source::{DdsSource, DdsView};
-use crate::inputs::follow::FollowLimits;
-use crate::inputs::mirror::{MirrorScale, MirrorSource, MirrorView};
-use crate::inputs::pad::source::{PadSource, PadView};
+use crate::inputs::dds::source::DdsView;
+use crate::inputs::mirror::{MirrorScale, MirrorView};
+use crate::inputs::pad::source::PadView;
 use crate::inputs::pad::{PadMap, PadTrouble};
-use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
-use crate::link::{LinkHandle, LinkStopper, Owner};
-use crate::motion::follow::{FollowEnd, FollowTerms, FollowView};
+use crate::inputs::stream::{StreamPlace, StreamView};
+use crate::link::Owner;
+use crate::motion::follow::{FollowTerms, FollowView};
+use crate::motion::following::FollowLimits;
 use crate::motion::program::Ended;
-use crate::share::dds::{DdsCounts, SharedOnDds};
-use crate::share::fleet::{FleetCard, OtherFollowers};
+use crate::motion::source::{Source, SourceKind};
+use crate::share::dds::DdsCounts;
+use crate::share::fleet::FleetCard;
 use crate::share::foxglove::FoxgloveServer;
 use crate::share::gateway::{ClientId, Gateway, GatewayClient};
 use crate::system::SystemError;
 use crate::transport::dds::DdsError;
+use std::collections::BTreeMap;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use tokio::sync::watch;
@@ -41,7 +43,7 @@ pub enum InputAction {
     /// Watch the hand of this slot, to follow it at this scale; `None` stops watching. Only reads that hand.
     Mirror(Option<(SlotId, MirrorScale)>),
     /// Grant control to this source.
-    Grant(InputSource),
+    Grant(SourceKind),
     /// Grant control to a client of the gateway.
     GrantClient(ClientId),
     /// End the control of the party outside this window; the hand is stopped.
@@ -52,28 +54,12 @@ pub enum InputAction {
     Map(PadMap),
 }
 
-/// A source that the user may grant control to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum InputSource {
-    /// A program that sends lines.
-    Stream,
-    /// A program that sends over DDS.
-    Dds,
-    Pad,
-    /// Another hand of this window.
-    Mirror,
-}
-
 /// Inputs and outlets that the user can open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InputKind {
-    /// Lines of another program.
-    Stream,
-    /// The gamepad.
-    Pad,
+    Source(SourceKind),
     Gateway,
     Viewers,
-    Dds,
 }
 
 /// Reason why an input or outlet was not opened.
@@ -93,14 +79,25 @@ impl From<io::Error> for OpenRefusal {
     }
 }
 
+impl From<PadTrouble> for OpenRefusal {
+    fn from(trouble: PadTrouble) -> Self {
+        Self::Pad(trouble)
+    }
+}
+
+impl From<DdsError> for OpenRefusal {
+    fn from(error: DdsError) -> Self {
+        Self::Dds(error)
+    }
+}
+
 /// The inputs and the gateway of one connection. Dropping it closes them.
 #[derive(Debug, Default)]
 pub struct HandInputs {
-    pub(crate) stream: Option<StreamSource>,
-    pub(crate) pad: Option<PadSource>,
+    /// Open sources, at most one of each kind.
+    sources: BTreeMap<SourceKind, Source>,
     pub(crate) gateway: Option<Gateway>,
     pub(crate) foxglove: Option<FoxgloveServer>,
-    pub(crate) dds: Option<JoinedDds>,
     /// The watched hand.
     pub mirror: Option<HandMirror>,
     /// Address at which lines are received.
@@ -120,13 +117,6 @@ pub struct HandInputs {
     pub refused: Option<(InputKind, OpenRefusal)>,
 }
 
-#[derive(Debug)]
-pub(crate) struct JoinedDds {
-    pub(crate) shared: SharedOnDds,
-    pub(crate) others: OtherFollowers,
-    pub(crate) source: DdsSource,
-}
-
 /// State of DDS.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DdsState {
@@ -137,6 +127,16 @@ pub struct DdsState {
     pub view: DdsView,
     /// Another hand that follows the same sender.
     pub other: Option<FleetCard>,
+}
+
+/// Another hand of this window that is watched. Closed with its link.
+#[derive(Debug)]
+pub struct HandMirror {
+    pub leader: SlotId,
+    /// Scale of its bends for following.
+    pub scale: MirrorScale,
+    /// Newest state of the watched hand.
+    pub view: MirrorView,
 }
 
 /// A hand that follows a source.
@@ -153,7 +153,7 @@ pub struct FollowRun {
 /// Result of following.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FollowOutcome {
-    pub(crate) end: Ended<FollowEnd>,
+    pub(crate) end: Ended<()>,
     /// The leading hand was stopped, too.
     pub(crate) leader_stopped: bool,
 }
@@ -161,70 +161,49 @@ pub(crate) struct FollowOutcome {
 impl HandInputs {
     /// Updates the state of all inputs and outlets.
     pub(crate) fn refresh(&mut self) {
-        self.stream_at = self.stream.as_ref().map(StreamSource::local);
-        let lines = self.stream.as_ref().map(StreamSource::view);
-        self.stream_view = lines.unwrap_or_default();
+        (self.stream_at, self.pad_view, self.dds_view) = (None, None, None);
+        self.stream_view = StreamView::default();
+        self.sources.retain(|_, source| !source.is_over());
+        for source in self.sources.values() {
+            match source {
+                Source::Stream(source) => {
+                    self.stream_at = Some(source.local());
+                    self.stream_view = source.view();
+                }
+                Source::Pad(source) => self.pad_view = Some(source.view()),
+                Source::Dds(joined) => {
+                    self.dds_view = Some(DdsState {
+                        at: joined.shared.node.address(),
+                        told: joined.shared.counts(),
+                        view: joined.source.view(),
+                        other: source.other_follower(),
+                    });
+                }
+                Source::Mirror(source, _) => {
+                    if let Some(mirror) = &mut self.mirror {
+                        mirror.view = source.view();
+                    }
+                }
+            }
+        }
+        if !self.sources.contains_key(&SourceKind::Mirror) {
+            self.mirror = None;
+        }
         self.gateway_at = self.gateway.as_ref().map(Gateway::address);
-        self.pad_view = self.pad.as_ref().map(PadSource::view);
         let clients = self.gateway.as_ref().map(Gateway::clients);
         self.clients = clients.unwrap_or_default();
         let viewed = |server: &FoxgloveServer| (server.address(), server.viewers().len());
         self.foxglove_at = self.foxglove.as_ref().map(viewed);
-        self.mirror.take_if(|mirror| mirror.is_over());
-        if let Some(mirror) = &mut self.mirror {
-            mirror.refresh();
-        }
-        self.dds_view = self.dds.as_ref().map(|joined| DdsState {
-            at: joined.shared.node.address(),
-            told: joined.shared.counts(),
-            view: joined.source.view(),
-            other: joined.others.now(),
-        });
     }
 
-    /// True if another hand follows the same sender on DDS.
-    pub(crate) fn other_follows_dds(&self) -> bool {
-        let mut joined = self.dds.iter();
-        joined.any(|joined| joined.others.now().is_some())
+    /// The open source of this kind.
+    pub(crate) fn source(&self, kind: SourceKind) -> Option<&Source> {
+        self.sources.get(&kind)
     }
 
     /// True while an input or outlet is open; a badge shows that.
     pub const fn is_open(&self) -> bool {
         let is_served = self.gateway_at.is_some() || self.foxglove_at.is_some();
         is_served || self.stream_at.is_some() || self.pad_view.is_some() || self.dds_view.is_some()
-    }
-}
-
-/// Another hand of this window that is watched. Closed with its link.
-#[derive(Debug)]
-pub struct HandMirror {
-    pub leader: SlotId,
-    /// Scale of its bends for following.
-    pub scale: MirrorScale,
-    /// Newest state of the watched hand.
-    pub view: MirrorView,
-    pub(crate) source: MirrorSource,
-    pub(crate) stopper: LinkStopper,
-}
-
-impl HandMirror {
-    /// Starts watching. Must be called within a tokio runtime.
-    pub(crate) fn open(leader: SlotId, link: &LinkHandle, scale: MirrorScale) -> Self {
-        Self {
-            leader,
-            scale,
-            view: MirrorView::default(),
-            source: MirrorSource::open(link.records(), scale),
-            stopper: link.stopper(),
-        }
-    }
-
-    pub(crate) fn refresh(&mut self) {
-        self.view = self.source.view();
-    }
-
-    /// True once its link was closed.
-    pub(crate) fn is_over(&self) -> bool {
-        self.source.is_over()
     }
 }

@@ -2,16 +2,18 @@
 
 use crate::app::env::Env;
 use crate::app::hand::Connection;
-use crate::app::inputs::{HandInputs, InputKind, JoinedDds, OpenRefusal};
+use crate::app::inputs::{HandInputs, HandMirror, InputKind, OpenRefusal};
 use crate::app::settings::Settings;
+use crate::app::slot::SlotId;
 use crate::hand::kinematics::Side;
-use crate::inputs::dds::source::{DdsCommands, DdsSource, DdsSourceConfig};
+use crate::inputs::mirror::{MirrorScale, MirrorView};
+use crate::inputs::offer::SourceSite;
 use crate::inputs::pad::PadInput;
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
-use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource};
-use crate::link::ArmRequest;
+use crate::inputs::stream::{StreamPlace, StreamSource};
+use crate::link::{ArmRequest, LinkHandle};
+use crate::motion::source::{JoinedDds, Source, SourceKind};
 use crate::record::file::Opening;
-use crate::share::dds::SharedOnDds;
 use crate::share::fleet::{FleetCard, OtherFollowers};
 use crate::share::foxglove::{FoxgloveConfig, FoxgloveServer};
 use crate::share::gateway::{Gateway, GatewayConfig, SILENCE, Writers};
@@ -21,6 +23,22 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 impl HandInputs {
+    /// Opens a source in place of one of the same kind, or notes why it was not opened.
+    fn open(
+        &mut self,
+        kind: SourceKind,
+        opened: impl FnOnce() -> Option<Result<Source, OpenRefusal>>,
+    ) {
+        self.refused = None;
+        self.sources.remove(&kind);
+        match opened() {
+            Some(Ok(source)) => drop(self.sources.insert(kind, source)),
+            Some(Err(why)) => self.refused = Some((InputKind::Source(kind), why)),
+            None => {}
+        }
+    }
+
+    /// Listens for lines at this place; `None` ends that.
     pub(crate) fn listen(
         &mut self,
         place: Option<StreamPlace>,
@@ -28,53 +46,71 @@ impl HandInputs {
         side: Side,
         env: &Env,
     ) {
-        self.refused = None;
-        self.stream = None;
-        let Some((place, link)) = place.zip(connection.link().cloned()) else {
-            return;
-        };
-        let config = StreamConfig {
-            place,
-            side,
-            clock: env.clock,
-            stop: Arc::new(move || drop(link.stop())),
-            wake: Arc::clone(&env.wake),
-        };
-        match StreamSource::open(config, &env.runtime) {
-            Ok(source) => self.stream = Some(source),
-            Err(error) => self.refused = Some((InputKind::Stream, error.into())),
-        }
+        self.open(SourceKind::Stream, || {
+            let (place, link) = place.zip(connection.link())?;
+            let site = SourceSite::of(link, side, Arc::clone(&env.wake));
+            let source = StreamSource::open(place, site, &env.runtime);
+            Some(source.map(Source::Stream).map_err(OpenRefusal::from))
+        });
     }
 
+    /// Starts or ends reading the gamepad.
     pub(crate) fn read_pad(
         &mut self,
         on: bool,
         connection: &Connection,
-        settings: &Settings,
+        (settings, side): (&Settings, Side),
         env: &Env,
     ) {
-        self.refused = None;
-        self.pad = None;
-        let Some(link) = connection.link().filter(|_| on).cloned() else {
-            return;
-        };
-        let clock = env.clock;
-        match (env.pads)(Arc::new(move || clock.now())) {
-            Ok(reader) => {
-                let _entered = env.runtime.enter();
-                let source = PadSource::open(PadSourceConfig {
+        self.open(SourceKind::Pad, || {
+            let link = connection.link().filter(|_| on)?;
+            let _entered = env.runtime.enter();
+            let clock = env.clock;
+            let reader = (env.pads)(Arc::new(move || clock.now()));
+            let source = reader.map(|reader| {
+                PadSource::open(PadSourceConfig {
                     reader,
                     // Its poses are updated in each frame.
                     input: PadInput::new(settings.pad_map()),
                     records: link.records(),
-                    clock,
-                    stop: Arc::new(move || drop(link.stop())),
-                    wake: Arc::clone(&env.wake),
-                });
-                self.pad = Some(source);
-            }
-            Err(error) => self.refused = Some((InputKind::Pad, OpenRefusal::Pad(error))),
-        }
+                    site: SourceSite::of(link, side, Arc::clone(&env.wake)),
+                })
+            });
+            Some(source.map(Source::Pad).map_err(OpenRefusal::from))
+        });
+    }
+
+    /// Joins DDS at this place; `None` leaves it. `allowed` limits the requests of messages.
+    pub(crate) fn join_dds(
+        &mut self,
+        place: Option<(DdsPlace, FleetCard)>,
+        allowed: ArmRequest,
+        connection: &Connection,
+        env: &Env,
+    ) {
+        self.open(SourceKind::Dds, || {
+            let ((place, card), link) = place.zip(connection.link())?;
+            let _entered = env.runtime.enter();
+            let site = SourceSite::of(link, card.side, Arc::clone(&env.wake));
+            let joined = DdsNode::open(&place).map(|node| {
+                let others = OtherFollowers::open(&node, card.side, env.clock);
+                JoinedDds::open((node, others), card, allowed, site, link)
+            });
+            Some(joined.map(Source::Dds).map_err(OpenRefusal::from))
+        });
+    }
+
+    /// Watches the hand of this slot and link; `None` ends that. Must be called within a tokio runtime.
+    pub(crate) fn watch_hand(&mut self, leader: Option<(SlotId, &LinkHandle, MirrorScale)>) {
+        self.mirror = leader.map(|(leader, _, scale)| HandMirror {
+            leader,
+            scale,
+            view: MirrorView::default(),
+        });
+        self.open(SourceKind::Mirror, || {
+            let (_, link, scale) = leader?;
+            Some(Ok(Source::mirror(link, scale)))
+        });
     }
 
     pub(crate) fn share(
@@ -127,40 +163,6 @@ impl HandInputs {
                 self.foxglove = Some(server);
             }
             Err(error) => self.refused = Some((InputKind::Viewers, error.into())),
-        }
-    }
-
-    /// Joins DDS at this place; `None` leaves it. `allowed` limits the requests of messages.
-    pub(crate) fn join_dds(
-        &mut self,
-        place: Option<(DdsPlace, FleetCard)>,
-        allowed: ArmRequest,
-        connection: &Connection,
-        env: &Env,
-    ) {
-        self.refused = None;
-        self.dds = None;
-        let Some(((place, card), link)) = place.zip(connection.link()) else {
-            return;
-        };
-        let _entered = env.runtime.enter();
-        let stops = link.clone();
-        let side = card.side;
-        let config = DdsSourceConfig {
-            side,
-            allowed,
-            clock: env.clock,
-            stop: Arc::new(move || drop(stops.stop())),
-            wake: Arc::clone(&env.wake),
-        };
-        let joined = DdsNode::open(&place).map(|node| JoinedDds {
-            others: OtherFollowers::open(&node, side, env.clock),
-            source: DdsSource::open(config, DdsCommands::of(&node, side)),
-            shared: SharedOnDds::open(node, link, card),
-        });
-        match joined {
-            Ok(joined) => self.dds = Some(joined),
-            Err(error) => self.refused = Some((InputKind::Dds, OpenRefusal::Dds(error))),
         }
     }
 }

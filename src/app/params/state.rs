@@ -13,15 +13,13 @@ use crate::params::danger::{Danger, worse};
 use crate::params::file::ParamsFile;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::{ParamDifference, Params};
-use crate::record::{LinkState, Rest, Saved};
+use crate::record::{LinkState, Rest};
 use crate::store::{FileError, JobKind, Jobs};
-use crate::system::SystemError;
-use crate::tasks::apply::Applied;
-use crate::tasks::read::ReadRows;
 use crate::tasks::save::SaveReport;
-use crate::tasks::{BackupError, ParamStep, TaskError};
+use crate::tasks::{Question, TaskError, TaskStep};
 use crate::transport::Endpoint;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -39,6 +37,8 @@ const VIEW_GAP_MAX: Duration = Duration::from_millis(500);
 pub enum Doing {
     #[default]
     Nothing,
+    /// A question to the user is open; nothing is sent meanwhile.
+    Asking,
     /// Rows are being read.
     Reading,
     /// Staged rows are being written and read back.
@@ -47,41 +47,6 @@ pub enum Doing {
     BackingUp,
     /// SAVE was sent; its result is pending.
     Saving,
-}
-
-/// A write that awaits the user's confirmation.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WriteQuestion {
-    /// Requested write.
-    pub what: WriteRequest,
-    /// Reasons why confirmation is required.
-    pub dangers: Vec<Danger>,
-    /// Rows that were staged before; restored if the user declines.
-    pub staged_before: Params,
-}
-
-/// Write requested by the user.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum WriteRequest {
-    /// Write these rows to the hand's memory.
-    Apply(Params),
-    /// Save the hand's parameters to its flash; staged rows are applied first.
-    Save,
-}
-
-/// Result of a SAVE.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum SaveEnd {
-    /// SAVE was sent, with or without a reply from the hand.
-    Reported(Saved),
-    /// The backup or the record could not be written: no SAVE was sent.
-    NoBackup(BackupError),
-    /// The hand was not reachable: no SAVE was sent.
-    NotAsked(RequestError),
-    /// Not all staged rows were applied: no SAVE was sent.
-    NotApplied,
-    /// SAVE was sent with this result, which could not be recorded.
-    NotNoted(Saved, SystemError),
 }
 
 /// Known state of a hand's persistent parameters.
@@ -102,12 +67,10 @@ pub struct ParamsState {
     pub doing: Doing,
     /// Reason why the last read is incomplete.
     pub trouble: Option<RequestError>,
-    /// Write that awaits the user's confirmation.
-    pub question: Option<WriteQuestion>,
     /// Values that undo the last apply.
     pub undo: Params,
     /// Result and time of the last SAVE in this session.
-    pub save: Option<(SaveEnd, Moment)>,
+    pub save: Option<(Result<SaveReport, TaskError>, Moment)>,
     /// Files of this hand; `None` if nothing is stored.
     pub files: Option<Backups>,
     /// Last save by this program.
@@ -120,10 +83,8 @@ pub struct ParamsState {
     pub compared: Option<FileComparison>,
     /// Reason why the last file was not opened.
     pub file_refused: Option<NoticeKind>,
-    /// Save to perform after the running apply, with the dangers that the user has accepted.
-    pub(crate) save_next: Option<Vec<Danger>>,
     /// Running task.
-    pub(crate) task: Option<Running<ParamStep, ParamsEnd>>,
+    pub(crate) task: Option<Running<TaskStep, ParamsEffect>>,
     /// Hand whose files were listed last.
     pub(crate) listed: Option<Endpoint>,
     pub(crate) jobs: Jobs<ParamsJob>,
@@ -364,10 +325,10 @@ impl ParamsState {
         self.outcomes.insert(row.id, row);
     }
 
-    /// True if all staged rows were applied.
-    pub(crate) fn is_applied(&self) -> bool {
-        let mut ends = self.outcomes.values();
-        self.to_apply().is_empty() && ends.all(|end| end.verdict == RowVerdict::Applied)
+    /// The question of the running task, if it waits for the user's answer.
+    pub fn question(&self) -> Option<&Question> {
+        let (question, _) = self.task.as_ref()?.question()?;
+        Some(question)
     }
 
     /// True while a SAVE is in progress.
@@ -395,10 +356,6 @@ pub enum ParamAction {
     Save,
     /// Stage these values and save. If the user declines, they are unstaged.
     SaveWith(Params),
-    /// Confirm: continue despite the dangers shown.
-    Agree,
-    /// Decline: nothing is written.
-    Decline,
     /// Stage the hand's current speeds and forces as the power-up defaults. Writes nothing.
     CopyLive,
     /// Unstage everything.
@@ -494,12 +451,13 @@ impl FileComparison {
     }
 }
 
-/// Result of a task.
-#[derive(Debug)]
-pub(crate) enum ParamsEnd {
-    Read(ReadRows),
-    Applied(Params, Result<Applied, TaskError>),
-    Saved(Result<SaveReport, TaskError>),
+/// Applies the result of a task.
+pub(crate) struct ParamsEffect(pub(crate) Box<dyn FnOnce(&mut ParamsState, Moment) + Send>);
+
+impl fmt::Debug for ParamsEffect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("ParamsEffect")
+    }
 }
 
 /// Contents of a hand's files.

@@ -7,15 +7,13 @@ use crate::app::env::running::{Running, Steps};
 use crate::app::files::open::open;
 use crate::app::hand::Connection;
 use crate::app::params::state::{
-    Doing, FileComparison, FilesRead, ParamAction, ParamsEnd, ParamsJob, ParamsState, SaveEnd,
-    WriteQuestion, WriteRequest,
+    Doing, FileComparison, FilesRead, ParamAction, ParamsEffect, ParamsJob, ParamsState,
 };
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Dof, HandSample, Moment};
 use crate::link::{LinkHandle, LinkStatus};
 use crate::params::backups::{Backups, Known, folder_beside};
 use crate::params::changes;
-use crate::params::danger::Danger;
 use crate::params::file::{self, ParamsFile};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
@@ -23,7 +21,7 @@ use crate::store::on_thread;
 use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
 use crate::tasks::read::{ReadRows, rows};
 use crate::tasks::save::{Save, SaveReport, save};
-use crate::tasks::{Consent, ParamStep, TaskError};
+use crate::tasks::{Question, Risks, TaskError, TaskStep, User as _};
 use crate::transport::Endpoint;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -55,41 +53,20 @@ impl ParamsState {
             ParamAction::Read if self.read_refusal(link).is_some() => {}
             ParamAction::Read => self.read_rows(hand),
             ParamAction::Apply if self.apply_refusal(link).is_some() => {}
-            ParamAction::Apply => self.apply_rows(self.to_apply(), Vec::new(), hand),
+            ParamAction::Apply => self.apply_rows(self.to_apply(), hand),
             ParamAction::Undo if self.undo_refusal(link).is_some() => {}
             ParamAction::Undo => {
                 let undo = self.undo.clone();
                 self.stage_all(&undo);
-                self.apply_rows(undo, Vec::new(), hand);
+                self.apply_rows(undo, hand);
             }
             ParamAction::Save if self.save_refusal(link).is_some() => {}
-            ParamAction::Save => self.ask_save(self.staged.clone(), hand.overshoot),
+            ParamAction::Save => self.save(self.staged.clone(), hand),
             ParamAction::SaveWith(values) => {
                 if self.save_refusal_with(&values, link).is_none() {
                     let before = self.staged.clone();
                     self.stage_all(&values);
-                    self.ask_save(before, hand.overshoot);
-                }
-            }
-            ParamAction::Agree if self.write_refusal(link).is_some() => {}
-            ParamAction::Agree => {
-                let Some(WriteQuestion { what, dangers, .. }) = self.question.take() else {
-                    return;
-                };
-                match what {
-                    WriteRequest::Apply(wanted) => self.apply_rows(wanted, dangers, hand),
-                    WriteRequest::Save if self.to_apply().is_empty() => {
-                        self.save(dangers, hand);
-                    }
-                    WriteRequest::Save => {
-                        self.apply_rows(self.to_apply(), dangers.clone(), hand);
-                        self.save_next = Some(dangers);
-                    }
-                }
-            }
-            ParamAction::Decline => {
-                if let Some(declined) = self.question.take() {
-                    self.staged = declined.staged_before;
+                    self.save(before, hand);
                 }
             }
             ParamAction::CopyLive => self.copy_live(sample, link, now),
@@ -141,64 +118,99 @@ impl ParamsState {
         }
     }
 
-    /// Starts a task that reads or writes rows, if there is a link.
-    fn start<F>(
+    /// Starts a task that reads or writes rows, if there is a link; the task ends with the effect of its result.
+    fn start<F, E>(
         &mut self,
         doing: Doing,
         hand: ParamsHand<'_>,
-        task: impl FnOnce(LinkHandle, Steps<ParamStep>) -> F,
+        task: impl FnOnce(LinkHandle, Steps<TaskStep>) -> F,
     ) where
-        F: Future<Output = ParamsEnd> + Send + 'static,
+        F: Future<Output = E> + Send + 'static,
+        E: FnOnce(&mut Self, Moment) + Send + 'static,
     {
         if let Some(link) = hand.connection.link().cloned() {
             self.begin(doing);
-            self.task = Some(Running::start(hand.env, |steps| task(link, steps)));
+            self.task = Some(Running::start(hand.env, |steps| {
+                let work = task(link, steps);
+                async move { ParamsEffect(Box::new(work.await)) }
+            }));
         }
     }
 
     fn read_rows(&mut self, hand: ParamsHand<'_>) {
         self.start(Doing::Reading, hand, |link, steps| async move {
-            let report = |span, bytes: &[u8]| steps.send(ParamStep::Read(span, bytes.to_vec()));
-            ParamsEnd::Read(rows(&link, report).await)
+            let report = |span, bytes: &[u8]| steps.send(TaskStep::Read(span, bytes.to_vec()));
+            let read = rows(&link, report).await;
+            move |params: &mut Self, now| params.rows_read(read, now)
         });
     }
 
-    fn apply_rows(&mut self, wanted: Params, agreed: Vec<Danger>, hand: ParamsHand<'_>) {
-        let task = Apply {
-            wanted,
-            consent: Consent::To(agreed),
-            backups: None,
-            otherwise: Otherwise::Stay,
-            overshoot: Arc::clone(hand.overshoot),
-        };
+    fn apply_rows(&mut self, wanted: Params, hand: ParamsHand<'_>) {
+        let task = apply_task(wanted, Risks::default(), hand);
         self.start(Doing::Applying, hand, |link, steps| async move {
-            let end = apply(&link, &task, |step| steps.send(step)).await;
-            ParamsEnd::Applied(task.wanted, end)
+            let end = apply(&link, &task, &mut &steps, |step| steps.send(step)).await;
+            move |params: &mut Self, now| params.rows_applied(end, now)
         });
     }
 
-    /// Asks the user to confirm a SAVE, with its dangers.
-    fn ask_save(&mut self, staged_before: Params, overshoot: &OvershootMap) {
-        self.question = Some(WriteQuestion {
-            what: WriteRequest::Save,
-            dangers: self.save_dangers(overshoot),
-            staged_before,
-        });
-    }
-
-    fn save(&mut self, agreed: Vec<Danger>, hand: ParamsHand<'_>) {
+    /// Asks whether to save, applies the staged rows, and saves. If the user declines, the rows that were staged before are restored.
+    fn save(&mut self, staged_before: Params, hand: ParamsHand<'_>) {
         let Some(backups) = self.files.clone() else {
             return;
         };
+        let agreed = Risks {
+            dangers: self.save_dangers(hand.overshoot),
+            ..Risks::default()
+        };
+        let staged = self.to_apply();
+        let staged = (!staged.is_empty()).then(|| apply_task(staged, agreed.clone(), hand));
         let task = Save {
             backups,
             before: self.before_changes(&Params::default()),
-            consent: Consent::To(agreed),
+            agreed: agreed.clone(),
             overshoot: Arc::clone(hand.overshoot),
         };
-        self.start(Doing::BackingUp, hand, |link, steps| async move {
-            ParamsEnd::Saved(save(&link, &task, |step| steps.send(step)).await)
+        self.start(Doing::Asking, hand, |link, steps| async move {
+            let report = |step| steps.send(step);
+            let mut user = &steps;
+            let is_meant = user.ask(Question::Save(agreed.clone())).await;
+            let mut applied = None;
+            let mut end = Err(TaskError::Declined(agreed));
+            if is_meant {
+                if let Some(staged) = &staged {
+                    applied = Some(apply(&link, staged, &mut user, report).await);
+                }
+                end = match &applied {
+                    Some(applied) if !applied.as_ref().is_ok_and(Applied::is_whole) => {
+                        Err(TaskError::NotApplied)
+                    }
+                    _ => save(&link, &task, &mut user, report).await,
+                };
+            }
+            move |params: &mut Self, now| {
+                if let Some(applied) = applied {
+                    params.rows_applied(applied, now);
+                }
+                if !is_meant {
+                    params.staged = staged_before;
+                }
+                params.save_ended(end, now);
+            }
         });
+    }
+
+    /// Passes the user's answer to the running task; true if it had asked that.
+    pub(crate) fn answer(&mut self, question: &Question, yes: bool) -> bool {
+        let task = self.task.as_mut();
+        let is_open = task.is_some_and(|task| task.answer(question, yes));
+        if is_open && yes {
+            self.outcomes.clear();
+            self.doing = match question {
+                Question::Save(_) if self.to_apply().is_empty() => Doing::BackingUp,
+                _ => Doing::Applying,
+            };
+        }
+        is_open
     }
 
     fn open_file(&mut self, typed: Option<PathBuf>, env: &Env) {
@@ -224,23 +236,11 @@ impl ParamsState {
 
     /// Applies results of tasks and file reads, and lists the files of the current hand.
     pub(crate) fn tick(&mut self, hand: ParamsHand<'_>, ctx: &mut Ctx<'_>) {
-        let connection = hand.connection;
-        let (link, now) = (&connection.status, ctx.now);
-        self.apply_task(now);
-        if !self.is_busy()
-            && let Some(agreed) = self.save_next.take()
-            && self.question.is_none()
-        {
-            if self.is_applied() && self.save_refusal(link).is_none() {
-                self.save(agreed, hand);
-            } else {
-                self.save = Some((SaveEnd::NotApplied, now));
-            }
-        }
+        self.apply_task(ctx.now);
         while let Some(effect) = self.jobs.next_ended() {
             effect(self, ctx);
         }
-        self.list_files(connection.endpoint.as_ref(), ctx.env);
+        self.list_files(hand.connection.endpoint.as_ref(), ctx.env);
     }
 
     fn list_files(&mut self, hand: Option<&Endpoint>, env: &Env) {
@@ -278,16 +278,24 @@ impl ParamsState {
     }
 }
 
+/// Rows to write, with the risks that the user confirmed already.
+fn apply_task(wanted: Params, agreed: Risks, hand: ParamsHand<'_>) -> Apply {
+    Apply {
+        wanted,
+        agreed,
+        backups: None,
+        otherwise: Otherwise::Stay,
+        overshoot: Arc::clone(hand.overshoot),
+    }
+}
+
 impl ParamsState {
     fn begin(&mut self, doing: Doing) {
         self.is_asked = true;
         (self.trouble, self.doing) = (None, doing);
-        if doing != Doing::Reading {
-            self.question = None;
-        }
         match doing {
             Doing::Applying => self.outcomes.clear(),
-            Doing::BackingUp => self.save = None,
+            Doing::Asking => self.save = None,
             _ => {}
         }
     }
@@ -295,20 +303,30 @@ impl ParamsState {
     fn apply_task(&mut self, now: Moment) {
         let Some(task) = &mut self.task else { return };
         let (steps, end) = task.news();
+        let is_asking = task.question().is_some();
         for (at, step) in steps {
             match step {
-                ParamStep::Read(span, bytes) => self.apply_read(span, &bytes, at),
-                ParamStep::Row(row) => self.written(row, at),
-                ParamStep::Saving => self.doing = Doing::Saving,
-                ParamStep::BackingUp | ParamStep::Meant(_) | ParamStep::Writing => {}
+                TaskStep::Read(span, bytes) => self.apply_read(span, &bytes, at),
+                TaskStep::Row(row) => self.written(row, at),
+                TaskStep::Writing(_) => self.doing = Doing::Applying,
+                TaskStep::BackingUp => self.doing = Doing::BackingUp,
+                TaskStep::Saving => self.doing = Doing::Saving,
+                // Of other tasks.
+                TaskStep::BackedUp(..)
+                | TaskStep::Looking(_)
+                | TaskStep::Returning
+                | TaskStep::Kept(_)
+                | TaskStep::Resetting
+                | TaskStep::Calibrating
+                | TaskStep::Measuring => {}
             }
         }
-        let Some(end) = end else { return };
-        (self.task, self.doing) = (None, Doing::Nothing);
-        match end {
-            ParamsEnd::Read(rows) => self.rows_read(rows, now),
-            ParamsEnd::Applied(wanted, end) => self.rows_applied(wanted, end, now),
-            ParamsEnd::Saved(end) => self.save_ended(end, now),
+        if is_asking {
+            self.doing = Doing::Asking;
+        }
+        if let Some(ParamsEffect(effect)) = end {
+            (self.task, self.doing) = (None, Doing::Nothing);
+            effect(self, now);
         }
     }
 
@@ -319,7 +337,7 @@ impl ParamsState {
         self.trouble = rows.troubles.into_iter().next_back();
     }
 
-    fn rows_applied(&mut self, wanted: Params, end: Result<Applied, TaskError>, now: Moment) {
+    fn rows_applied(&mut self, end: Result<Applied, TaskError>, now: Moment) {
         match end {
             Ok(applied) => {
                 self.read_at = Some(now);
@@ -331,35 +349,25 @@ impl ParamsState {
                 }
                 self.trouble = applied.broken_off;
             }
-            Err(error) => self.refused(WriteRequest::Apply(wanted), error),
+            Err(error) => self.not_begun(error),
         }
     }
 
     fn save_ended(&mut self, end: Result<SaveReport, TaskError>, now: Moment) {
-        let end = match end {
-            Ok(report) => match report.not_noted {
-                None => SaveEnd::Reported(report.saved),
-                Some(error) => SaveEnd::NotNoted(report.saved, error),
-            },
-            Err(TaskError::NoBackup(why)) => SaveEnd::NoBackup(why),
-            Err(TaskError::NotAsked(error)) => SaveEnd::NotAsked(error),
-            Err(error) => return self.refused(WriteRequest::Save, error),
-        };
-        self.files = None;
-        self.save = Some((end, now));
+        match end {
+            Err(error @ (TaskError::NotRead { .. } | TaskError::Declined(_))) => {
+                self.not_begun(error);
+            }
+            end => {
+                self.files = None;
+                self.save = Some((end, now));
+            }
+        }
     }
 
-    fn refused(&mut self, what: WriteRequest, error: TaskError) {
-        match error {
-            TaskError::NotMeant(risks) => {
-                self.question = Some(WriteQuestion {
-                    what,
-                    dangers: risks.dangers,
-                    staged_before: self.staged.clone(),
-                });
-            }
-            TaskError::NotRead { why, .. } | TaskError::NotAsked(why) => self.trouble = Some(why),
-            TaskError::NotReached | TaskError::NoBackup { .. } => {}
+    fn not_begun(&mut self, error: TaskError) {
+        if let TaskError::NotRead { why, .. } | TaskError::NotAsked(why) = error {
+            self.trouble = Some(why);
         }
     }
 

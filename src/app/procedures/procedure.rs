@@ -5,13 +5,12 @@ use crate::hand::Moment;
 use crate::link::{LinkHandle, Wake};
 use crate::params::danger::Danger;
 use crate::params::place::{PlacePair, WhichPlace};
-use crate::tasks::calibrate::{CalibrateReport, CalibrateStep, Checks, Offsets};
+use crate::tasks::calibrate::{CalibrateReport, Checks, Offsets};
 use crate::tasks::hand::{REACH_TIMEOUT, answers};
-use crate::tasks::place::{PlaceChange, PlaceReport, PlaceStep};
-use crate::tasks::reset::{ResetReport, ResetStep};
-use crate::tasks::{Reach, TaskError};
+use crate::tasks::place::{PlaceChange, PlaceReport};
+use crate::tasks::reset::ResetReport;
+use crate::tasks::{Question, Reach, TaskError, TaskStep};
 use crate::transport::Endpoint;
-use futures::future::BoxFuture;
 use std::path::PathBuf;
 use tokio::sync::{mpsc, oneshot};
 
@@ -20,29 +19,21 @@ use tokio::sync::{mpsc, oneshot};
 pub enum ProcedureAction {
     /// Start the procedure.
     Begin,
-    /// Keep the new address.
-    Keep,
-    /// Revert the change.
-    GoBack,
-    /// Save to flash.
-    Save,
-    /// Do not save to flash.
-    LeaveUnsaved,
     /// Close the card.
     Close,
 }
 
 /// Stage of a card.
 #[derive(Debug, Clone, PartialEq)]
-pub enum ProcedureStage<S, E> {
+pub enum ProcedureStage<E> {
     /// Waiting for the user to start.
     Asking,
     /// In progress: the current step and its start.
-    Doing(S, Moment),
+    Doing(TaskStep, Moment),
     Over(E),
 }
 
-impl<S, E> ProcedureStage<S, E> {
+impl<E> ProcedureStage<E> {
     /// True while the procedure is running.
     pub const fn is_doing(&self) -> bool {
         matches!(self, Self::Doing(..))
@@ -51,11 +42,10 @@ impl<S, E> ProcedureStage<S, E> {
     /// Applies the steps of the task; returns true once it has ended. The callback returns true for steps to show.
     pub(crate) fn apply_news(
         &mut self,
-        run: &mut Option<Running<S, E>>,
-        mut is_shown: impl FnMut(&S, Moment) -> bool,
+        run: &mut Option<Running<TaskStep, E>>,
+        mut is_shown: impl FnMut(&TaskStep, Moment) -> bool,
     ) -> bool
     where
-        S: Clone + Send + 'static,
         E: Send + 'static,
     {
         let Some(running) = run else { return false };
@@ -94,13 +84,11 @@ pub enum Procedure {
 #[derive(Debug)]
 pub struct PlaceProcedure {
     pub change: PlaceChange,
-    pub stage: ProcedureStage<PlaceStep, Result<PlaceReport, TaskError>>,
+    pub stage: ProcedureStage<Result<PlaceReport, TaskError>>,
     pub backup: Option<PathBuf>,
     /// Dangers of a SAVE, which also saves the hand's other parameters.
     pub dangers: Vec<Danger>,
-    pub(crate) run: Option<Running<PlaceStep, Result<PlaceReport, TaskError>>>,
-    pub(crate) keeps: Option<oneshot::Sender<bool>>,
-    pub(crate) saves: Option<oneshot::Sender<bool>>,
+    pub(crate) run: Option<Running<TaskStep, Result<PlaceReport, TaskError>>>,
 }
 
 /// Reset to factory parameters.
@@ -108,8 +96,8 @@ pub struct PlaceProcedure {
 pub struct ResetProcedure {
     /// Addresses of the hand before and after.
     pub places: PlacePair,
-    pub stage: ProcedureStage<ResetStep, Result<ResetReport, TaskError>>,
-    pub(crate) run: Option<Running<ResetStep, Result<ResetReport, TaskError>>>,
+    pub stage: ProcedureStage<Result<ResetReport, TaskError>>,
+    pub(crate) run: Option<Running<TaskStep, Result<ResetReport, TaskError>>>,
 }
 
 /// Calibration of the force sensors.
@@ -119,8 +107,8 @@ pub struct CalibrateProcedure {
     pub checks: Checks,
     /// Offsets before the calibration; `None` until it has started.
     pub before: Option<Offsets>,
-    pub stage: ProcedureStage<CalibrateStep, CalibrateReport>,
-    pub(crate) run: Option<Running<CalibrateStep, CalibrateReport>>,
+    pub stage: ProcedureStage<CalibrateReport>,
+    pub(crate) run: Option<Running<TaskStep, CalibrateReport>>,
 }
 
 /// The open card of a hand, if any, and its task's requests for a link.
@@ -142,11 +130,19 @@ impl Procedure {
 }
 
 impl PlaceProcedure {
+    /// The open question of the task, and the time since which it is open.
+    pub fn question(&self) -> Option<(&Question, Moment)> {
+        self.run.as_ref()?.question()
+    }
+
     /// Address at which the hand is, as far as the card knows; `None` if unknown.
     pub fn place(&self) -> Option<WhichPlace> {
+        if let Some((Question::KeepPlace(at) | Question::SavePlace(at), _)) = self.question() {
+            return Some(*at);
+        }
         match &self.stage {
             ProcedureStage::Over(Ok(report)) => report.end.place(),
-            ProcedureStage::Doing(PlaceStep::Keeping(at) | PlaceStep::Offering(at), _) => Some(*at),
+            ProcedureStage::Doing(TaskStep::Kept(at), _) => Some(*at),
             ProcedureStage::Asking | ProcedureStage::Doing(..) | ProcedureStage::Over(Err(_)) => {
                 Some(WhichPlace::Old)
             }
@@ -179,9 +175,4 @@ impl Reach for LinkRequester {
         let hand = open.await.ok()?;
         answers(&hand, REACH_TIMEOUT).await.then_some(hand)
     }
-}
-
-/// The user's decision on the card; a closed card yields false.
-pub(crate) fn decided(answer: oneshot::Receiver<bool>) -> BoxFuture<'static, bool> {
-    Box::pin(async { answer.await.unwrap_or(false) })
 }

@@ -6,7 +6,7 @@ use crate::app::hand::Connection;
 use crate::app::params::{ParamsState, rest_refusal};
 use crate::app::procedures::procedure::{
     CalibrateProcedure, LinkRequest, LinkRequester, PlaceProcedure, Procedure, ProcedureAction,
-    ProcedureStage, Procedures, ResetProcedure, decided,
+    ProcedureStage, Procedures, ResetProcedure,
 };
 use crate::app::settings::Settings;
 use crate::hand::HandSample;
@@ -16,13 +16,13 @@ use crate::params::backups::{Backups, folder_beside};
 use crate::params::danger::worse;
 use crate::params::place::{PlacePair, new_place, setting};
 use crate::params::rows::{ParamId, Value};
-use crate::tasks::calibrate::{CalibrateStep, Checks, calibrate};
-use crate::tasks::place::{Decisions, PlaceChange, PlaceEnd, PlaceStep, change_place};
-use crate::tasks::reset::{self, ResetStep, reset};
-use crate::tasks::{BackupError, TaskError};
+use crate::tasks::calibrate::{Checks, calibrate};
+use crate::tasks::place::{PlaceChange, PlaceEnd, change_place};
+use crate::tasks::reset::{self, reset};
+use crate::tasks::{BackupError, Question, TaskError, TaskStep};
 use crate::transport::Endpoint;
 use std::sync::Arc;
-use tokio::sync::{mpsc, oneshot};
+use tokio::sync::mpsc;
 
 impl Procedures {
     /// Opens the card of an address change. None is opened if the wire could not follow the hand.
@@ -58,8 +58,6 @@ impl Procedures {
             backup: None,
             dangers: Vec::new(),
             run: None,
-            keeps: None,
-            saves: None,
         }));
     }
 
@@ -99,26 +97,21 @@ impl Procedures {
         sample: &HandSample,
         ctx: &Ctx<'_>,
     ) {
-        let Some(procedure) = &mut self.card else {
-            return;
-        };
-        match (action, procedure) {
+        match (action, &self.card) {
             (ProcedureAction::Begin, _) => self.begin(connection, sample, ctx),
-            (ProcedureAction::Close, own) if own.may_close() => self.close(),
+            (ProcedureAction::Close, Some(card)) if card.may_close() => self.close(),
             (ProcedureAction::Close, _) => {}
-            (action, Procedure::Place(card)) => {
-                let (answer, agrees) = match action {
-                    ProcedureAction::Begin | ProcedureAction::Close => return,
-                    ProcedureAction::Keep => (card.keeps.take(), true),
-                    ProcedureAction::GoBack => (card.keeps.take(), false),
-                    ProcedureAction::Save => (card.saves.take(), true),
-                    ProcedureAction::LeaveUnsaved => (card.saves.take(), false),
-                };
-                // A finished task no longer listens.
-                let _received = answer.map(|answer| answer.send(agrees));
-            }
-            (_, Procedure::Reset(_) | Procedure::Calibrate(_)) => {}
         }
+    }
+
+    /// Answers a question of the card's task; true if it had asked it.
+    pub(crate) fn answer(&mut self, question: &Question, yes: bool) -> bool {
+        // The other procedures ask nothing.
+        let Some(Procedure::Place(card)) = &mut self.card else {
+            return false;
+        };
+        let run = card.run.as_mut();
+        run.is_some_and(|run| run.answer(question, yes))
     }
 
     fn begin(&mut self, connection: &Connection, sample: &HandSample, ctx: &Ctx<'_>) {
@@ -141,23 +134,16 @@ impl Procedures {
             Some(Procedure::Place(card)) if card.stage == ProcedureStage::Asking => {
                 let change = card.change.clone();
                 let backups = backups(&change.places.old);
-                let (keeps, kept) = oneshot::channel();
-                let (saves, saved) = oneshot::channel();
-                (card.keeps, card.saves) = (Some(keeps), Some(saves));
-                let decisions = Decisions {
-                    keeps: decided(kept),
-                    saves: decided(saved),
-                };
-                card.stage = ProcedureStage::Doing(PlaceStep::BackingUp, now);
+                card.stage = ProcedureStage::Doing(TaskStep::BackingUp, now);
                 card.run = Some(Running::start(env, |steps| async move {
                     let report = |step| steps.send(step);
-                    change_place(&mut reach, &change, &backups?, decisions, report).await
+                    change_place(&mut reach, &change, &backups?, &mut &steps, report).await
                 }));
             }
             Some(Procedure::Reset(card)) if card.stage == ProcedureStage::Asking => {
                 let places = card.places.clone();
                 let backups = backups(&places.old);
-                card.stage = ProcedureStage::Doing(ResetStep::BackingUp, now);
+                card.stage = ProcedureStage::Doing(TaskStep::BackingUp, now);
                 card.run = Some(Running::start(env, |steps| async move {
                     reset(&mut reach, &places, &backups?, |step| steps.send(step)).await
                 }));
@@ -168,7 +154,7 @@ impl Procedures {
                     return;
                 };
                 card.before = card.checks.mean();
-                card.stage = ProcedureStage::Doing(CalibrateStep::Calibrating, now);
+                card.stage = ProcedureStage::Doing(TaskStep::Calibrating, now);
                 let (link, clock) = (link.clone(), env.clock);
                 card.run = Some(Running::start(env, |steps| async move {
                     calibrate(&link, clock, |step| steps.send(step)).await
@@ -205,18 +191,18 @@ impl Procedures {
             Some(Procedure::Place(card)) => {
                 let is_over = card.stage.apply_news(&mut card.run, |step, at| {
                     match step {
-                        PlaceStep::BackedUp(path, held) => {
+                        TaskStep::BackedUp(path, held) => {
                             let before = params.before_changes(held);
                             card.dangers = worse(&before, held, overshoot);
                             card.backup = Some(path.clone());
                         }
-                        PlaceStep::Writing(_) => params.lost_at = Some(at),
-                        PlaceStep::Offering(place) => {
+                        TaskStep::Writing(_) => params.lost_at = Some(at),
+                        TaskStep::Kept(place) => {
                             settings.remember(card.change.places.endpoint(*place));
                         }
                         _ => {}
                     }
-                    !matches!(step, PlaceStep::BackedUp(..))
+                    !matches!(step, TaskStep::BackedUp(..))
                 });
                 if is_over
                     && let Some(Ok(report)) = card.stage.end()
@@ -228,7 +214,7 @@ impl Procedures {
                 is_over
             }
             Some(Procedure::Reset(card)) => card.stage.apply_news(&mut card.run, |step, at| {
-                if *step == ResetStep::Sending {
+                if *step == TaskStep::Resetting {
                     params.lost_at = Some(at);
                 }
                 true

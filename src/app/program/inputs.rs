@@ -4,7 +4,7 @@ use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::hands::Hand;
 use crate::app::hands::running::MotionRun;
-use crate::app::inputs::{FollowRun, InputAction, InputSource};
+use crate::app::inputs::{FollowRun, InputAction};
 use crate::app::notices::NoticeKind;
 use crate::app::poses::PoseState;
 use crate::app::program::leading;
@@ -14,6 +14,7 @@ use crate::hand::{Moment, Setpoints};
 use crate::inputs::pad::file;
 use crate::link::Owner;
 use crate::motion::follow::{FollowStart, FollowTerms};
+use crate::motion::source::{Source, SourceKind};
 use crate::record::{ArmRefusal, Disarmed};
 use crate::share::fleet::{self, FleetCard};
 use crate::share::gateway::Gateway;
@@ -29,7 +30,9 @@ pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
     let (side, connection) = (hand.side, &hand.connection);
     match action {
         InputAction::Listen(place) => hand.inputs.listen(place, connection, side, env),
-        InputAction::ReadPad(on) => hand.inputs.read_pad(on, connection, settings, env),
+        InputAction::ReadPad(on) => {
+            hand.inputs.read_pad(on, connection, (settings, side), env);
+        }
         InputAction::Share(place) => hand.inputs.share(place, connection, settings, env),
         InputAction::Show(place) => hand.inputs.show_viewers(place, connection, side, env),
         InputAction::JoinDds(interface) => {
@@ -41,7 +44,7 @@ pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
             hand.inputs.join_dds(place, allowed, connection, env);
         }
         InputAction::Mirror(wanted) => leading::watch_hand(state, wanted, env),
-        InputAction::Grant(InputSource::Mirror) if !may_be_led => {}
+        InputAction::Grant(SourceKind::Mirror) if !may_be_led => {}
         InputAction::Grant(source) => follow(hand, source, settings, (env, now)),
         InputAction::GrantClient(client) => {
             let gateway = hand.inputs.gateway.as_ref();
@@ -54,16 +57,17 @@ pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
         InputAction::Map(map) => {
             settings.pad_map = Some(file::write(&map));
             // Controls that are held have to be pressed again.
-            if hand.inputs.pad.is_some() {
-                hand.inputs.read_pad(true, connection, settings, env);
+            if hand.inputs.source(SourceKind::Pad).is_some() {
+                hand.inputs
+                    .read_pad(true, connection, (settings, side), env);
             }
         }
     }
 }
 
 /// Grants control to a source; whatever moved the hand before loses it.
-fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now): (&Env, Moment)) {
-    let Some(offered) = hand.inputs.offered(source, now) else {
+fn follow(hand: &mut Hand, kind: SourceKind, settings: &Settings, (env, now): (&Env, Moment)) {
+    let Some((source, owner)) = hand.inputs.offered(kind, now) else {
         return;
     };
     let refusal = hand.arm_refusal(now);
@@ -75,7 +79,7 @@ fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now):
     let Some(link) = hand.connection.link() else {
         return;
     };
-    let lease = link.grant(offered.owner);
+    let lease = link.grant(owner);
     // An armed hand may have the speed and force of a played entry: the new source starts with the user's.
     let armed = hand.connection.status.armed;
     if let Some(mut own) = armed.map(Setpoints::none) {
@@ -91,7 +95,7 @@ fn follow(hand: &mut Hand, source: InputSource, settings: &Settings, (env, now):
         seen: hand.readings.sample,
         clock: env.clock,
     };
-    let run = FollowRun::begin(offered, link.clone(), start, (terms, env));
+    let run = FollowRun::begin((source, owner), link.clone(), start, (terms, env));
     hand.running.0 = Some(MotionRun::Follow(run));
 }
 
@@ -108,16 +112,16 @@ pub(super) fn tick(hand: &mut Hand, settings: &Settings, poses: &PoseState, ctx:
     let terms = terms(hand, settings);
     let (card, follows_dds) = (fleet_card(hand, settings), hand.running.follows(Owner::Dds));
     let inputs = &mut hand.inputs;
-    if let Some(pad) = &inputs.pad {
+    if let Some(Source::Pad(pad)) = inputs.source(SourceKind::Pad) {
         pad.set_poses(poses.on_pad(&settings.pad_map(), &settings.hidden_poses));
     }
     inputs.refresh();
-    if let Some(joined) = &inputs.dds {
+    if let Some(source @ Source::Dds(joined)) = inputs.source(SourceKind::Dds) {
         joined.shared.announce(card);
-    }
-    if follows_dds && inputs.other_follows_dds() {
-        // Each program sees the other, and both stop.
-        hand.connection.end_outside(Disarmed::Stop);
+        if follows_dds && source.other_follower().is_some() {
+            // Each program sees the other, and both stop.
+            hand.connection.end_outside(Disarmed::Stop);
+        }
     }
     let Some(MotionRun::Follow(run)) = &mut hand.running.0 else {
         return;

@@ -1,7 +1,6 @@
 //! One hand of the window that leads another: choosing the watched hand, the condition for leading, and the effect of a stop.
 
 use crate::app::env::Env;
-use crate::app::inputs::HandMirror;
 use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::inputs::mirror::MirrorScale;
@@ -11,16 +10,19 @@ use crate::record::{Disarmed, LinkState};
 pub(super) fn watch_hand(state: &mut State, wanted: Option<(SlotId, MirrorScale)>, env: &Env) {
     let _entered = env.runtime.enter();
     let own = state.hand().label.slot;
-    let mirror = wanted.and_then(|(leader, scale)| {
+    let leader = wanted.and_then(|(leader, scale)| {
         let mut others = state.hands.iter().filter(|hand| hand.label.slot != own);
         let link = others
             .find(|hand| hand.label.slot == leader)?
             .connection
             .link()?;
-        Some(HandMirror::open(leader, link, scale))
+        Some((leader, link.clone(), scale))
     });
     let hand = state.hand_mut();
-    hand.inputs.mirror = mirror.filter(|_| hand.connection.open.is_some());
+    let leader = leader.filter(|_| hand.connection.open.is_some());
+    let leader = leader.as_ref();
+    hand.inputs
+        .watch_hand(leader.map(|(slot, link, scale)| (*slot, link, *scale)));
 }
 
 /// True if the watched hand may lead the shown one: it must not be led by it.

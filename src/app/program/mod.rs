@@ -285,6 +285,7 @@ impl App {
                 let sample = hand.readings.sample;
                 hand.procedures.act(action, &hand.connection, &sample, ctx);
             }),
+            Action::Answer(question, yes) => state.hand_mut().answer(&question, yes),
             Action::Connect(endpoint) => hand_actions::connect(state, Some(endpoint), env),
             Action::Disconnect => hand_actions::connect(state, None, env),
             Action::Hands(action) => hands::act(state, action, env),

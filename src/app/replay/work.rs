@@ -432,7 +432,7 @@ impl FileWork {
 /// True while a live hand needs the user's attention.
 fn is_busy(state: &State) -> bool {
     let is_busy = |hand: &Hand| {
-        let asks = hand.procedures.card.is_some() || hand.params.question.is_some();
+        let asks = hand.procedures.card.is_some() || hand.params.question().is_some();
         hand.runs_series() || asks
     };
     state.hands.iter().any(is_busy) || state.exhibit.is_some()

@@ -7,9 +7,9 @@ use crate::cli::parse::{self, number};
 use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
 use crate::hand::{DriveHeat, Force, HandSample, Moment, PerDof, Speed};
-use crate::inputs::follow::{FollowLimits, FollowPhase};
 use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates, Records};
-use crate::motion::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
+use crate::motion::follow::{FollowStart, FollowTerms, FollowView, follow};
+use crate::motion::following::{FollowLimits, FollowPhase};
 use crate::motion::program::Ended;
 use crate::record::{Abort, Disarmed, Record};
 use crate::shell::interrupt::Interrupt;
@@ -215,7 +215,7 @@ impl FollowCommand<'_> {
     }
 
     /// Follows until that ends; a failed progress report ends it as well.
-    async fn follow(&mut self, owner: Owner) -> anyhow::Result<Ended<FollowEnd>> {
+    async fn follow(&mut self, owner: Owner) -> anyhow::Result<Ended<()>> {
         let offers = self.source.follow();
         let start = FollowStart {
             lease: self.link.grant(owner),
@@ -291,9 +291,9 @@ impl FollowCommand<'_> {
 }
 
 /// Reason why following ended, and its effect on the hand.
-fn ended(end: Ended<FollowEnd>, sender: &str) -> String {
+fn ended(end: Ended<()>, sender: &str) -> String {
     let why = match end {
-        Ok(FollowEnd::Silent | FollowEnd::Gone) => format!("{sender} fell silent"),
+        Ok(()) => format!("{sender} fell silent"),
         Err(why @ Abort::TakenOver) => return why.to_string(),
         Err(Abort::LinkLost) => {
             let why = Disarmed::LinkLost;

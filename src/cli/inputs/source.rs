@@ -6,14 +6,16 @@ use crate::cli::{listen, parse, session};
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::Offer;
-use crate::inputs::dds::source::{DdsCommands, DdsSource, DdsSourceConfig, DdsView};
-use crate::inputs::mirror::{MirrorScale, MirrorSource};
+use crate::inputs::dds::source::DdsView;
+use crate::inputs::mirror::MirrorScale;
+use crate::inputs::offer::SourceSite;
 use crate::inputs::pad::device::{FOLDER, PadReader};
 use crate::inputs::pad::report::PadTrouble;
 use crate::inputs::pad::source::{PadSource, PadSourceConfig};
 use crate::inputs::pad::{PadInput, PadMap, file};
-use crate::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
+use crate::inputs::stream::{StreamPlace, StreamSource, StreamView};
 use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates};
+use crate::motion::source::{JoinedDds, Source};
 use crate::share::dds::SharedOnDds;
 use crate::share::fleet::{FleetCard, OtherFollowers};
 use crate::store::toml_file;
@@ -73,6 +75,12 @@ impl SourceArgs {
         self.side
     }
 
+    /// Place of lines to listen at.
+    fn stream(&self) -> Option<StreamPlace> {
+        let udp = self.udp.map(StreamPlace::Udp);
+        udp.or(self.tcp.map(StreamPlace::Tcp))
+    }
+
     /// Reason why these arguments cannot apply to this hand, if any.
     pub(super) fn wrong(&self, hand: &Endpoint) -> Option<&'static str> {
         // Each built-in hand is a separate one.
@@ -95,11 +103,10 @@ pub(super) struct Allowed {
 }
 
 /// The source that the hand follows.
-pub(super) enum FollowSource {
-    Stream(StreamPlace, StreamSource),
-    Dds(DdsSource, SharedOnDds, OtherFollowers),
-    Pad(PadSource),
-    Mirror(Endpoint, LinkHandle, MirrorSource),
+pub(super) struct FollowSource {
+    source: Source,
+    /// Endpoint and link of a leading hand.
+    leader: Option<(Endpoint, LinkHandle)>,
 }
 
 impl FollowSource {
@@ -114,129 +121,80 @@ impl FollowSource {
             let leader = session::open(other, PollRates::default(), clock);
             session::answered(&leader, other).await?;
             let scale = args.scale.unwrap_or(MirrorScale::WHOLE);
-            let source = MirrorSource::open(leader.records(), scale);
-            return Ok(Self::Mirror(other.clone(), leader, source));
+            return Ok(Self {
+                source: Source::mirror(&leader, scale),
+                leader: Some((other.clone(), leader)),
+            });
         }
-        let card = FleetCard {
-            side: args.side,
-            ..args.dds.card(hand)
-        };
+        let site = SourceSite::of(link, args.side, Arc::new(|| ()));
         let can = if allowed.moves {
             "read this hand and move it"
         } else {
             "read this hand and send to it"
         };
-        if let Some(node) = args.dds.join(can)? {
-            return Self::on_dds(node, card, (link, clock), allowed).await;
-        }
-        let stops = link.clone();
-        let stop = Arc::new(move || drop(stops.stop()));
-        let udp = args.udp.map(StreamPlace::Udp);
-        let Some(place) = udp.or(args.tcp.map(StreamPlace::Tcp)) else {
+        let source = if let Some(node) = args.dds.join(can)? {
+            let card = FleetCard {
+                side: args.side,
+                follows: allowed.moves,
+                ..args.dds.card(hand)
+            };
+            on_dds(node, card, link, site, allowed).await?
+        } else if let Some(place) = args.stream() {
+            stream(place, site, allowed)?
+        } else {
             let input = pad_input(args.map.as_deref())?;
             is_folder(&args.devices)?;
-            return Ok(Self::Pad(PadSource::open(PadSourceConfig {
+            Source::Pad(PadSource::open(PadSourceConfig {
                 reader: PadReader::start(args.devices.clone(), Arc::new(move || clock.now()))?,
                 input,
                 records: link.records(),
-                clock,
-                stop,
-                wake: Arc::new(|| ()),
-            })));
+                site,
+            }))
         };
-        let config = StreamConfig {
-            place,
-            side: args.side,
-            clock,
-            stop,
-            wake: Arc::new(|| ()),
-        };
-        let (StreamPlace::Udp(at) | StreamPlace::Tcp(at)) = place;
-        let source = StreamSource::open(config, &Handle::current())
-            .map_err(|error| listen::refused(at, &error))?;
-        let can = if allowed.moves {
-            "move this hand"
-        } else {
-            "send to this hand"
-        };
-        listen::warn_if_reachable(source.local(), can);
-        Ok(Self::Stream(place, source))
-    }
-
-    /// Opens DDS, but refuses a second hand of the same side: both would obey the same sender. A sender starts at the first state
-    /// that it receives, so none is published before this is known.
-    async fn on_dds(
-        node: DdsNode,
-        card: FleetCard,
-        (link, clock): (&LinkHandle, Clock),
-        allowed: Allowed,
-    ) -> anyhow::Result<Self> {
-        let others = OtherFollowers::open(&node, card.side, clock);
-        if allowed.moves
-            && let Some(other) = others.was_there().await
-        {
-            bail!(followed(&other));
-        }
-        let commands = DdsCommands::of(&node, card.side);
-        let stops = link.clone();
-        let config = DdsSourceConfig {
-            side: card.side,
-            allowed: allowed.limits,
-            clock,
-            stop: Arc::new(move || drop(stops.stop())),
-            wake: Arc::new(|| ()),
-        };
-        let follows = allowed.moves;
-        let out = SharedOnDds::open(node, link, FleetCard { follows, ..card });
-        Ok(Self::Dds(DdsSource::open(config, commands), out, others))
+        Ok(Self {
+            source,
+            leader: None,
+        })
     }
 
     /// Waits for a reason why the hand must not move any longer, and returns it.
     pub(super) async fn must_end(&self) -> String {
-        match self {
-            Self::Dds(_, _, others) => followed(&others.appears().await),
-            Self::Stream(..) | Self::Pad(_) | Self::Mirror(..) => std::future::pending().await,
-        }
+        followed(&self.source.other_follower_appears().await)
     }
 
     /// Line that reports readiness.
     pub(super) fn ready(&self) -> String {
-        match self {
-            Self::Stream(StreamPlace::Udp(_), source) => format!("ready udp {}", source.local()),
-            Self::Stream(StreamPlace::Tcp(_), source) => format!("ready tcp {}", source.local()),
-            Self::Dds(_, shared, _) => dds::ready(shared),
-            Self::Pad(_) => "ready gamepad".into(),
-            Self::Mirror(other, ..) => format!("ready mirror {other}"),
+        match &self.source {
+            Source::Stream(source) => match source.place() {
+                StreamPlace::Udp(at) => format!("ready udp {at}"),
+                StreamPlace::Tcp(at) => format!("ready tcp {at}"),
+            },
+            Source::Dds(joined) => dds::ready(&joined.shared),
+            Source::Pad(_) => "ready gamepad".into(),
+            Source::Mirror(..) => format!("ready mirror {}", self.leader_name()),
         }
     }
 
     pub(super) fn follow(&self) -> mpsc::Receiver<Offer> {
-        match self {
-            Self::Stream(_, source) => source.follow(),
-            Self::Dds(source, ..) => source.follow(),
-            Self::Pad(source) => source.follow(),
-            Self::Mirror(_, _, source) => source.follow(),
-        }
+        self.source.follow()
     }
 
     /// The source that would move the hand now, and its name.
     pub(super) fn owner(&self, now: Moment) -> Option<(Owner, String)> {
-        match self {
-            Self::Stream(_, source) => {
-                let view = source.view();
-                Some((view.owner(now)?, view.intake.sender?.0.to_string()))
+        let name = match &self.source {
+            Source::Stream(source) => source.view().intake.sender?.0.to_string(),
+            Source::Dds(joined) => {
+                format!("the program on DDS ({})", joined.source.view().sender?.0)
             }
-            Self::Dds(source, ..) => {
-                let view = source.view();
-                let name = format!("the program on DDS ({})", view.sender?.0);
-                Some((view.owner(now)?, name))
-            }
-            Self::Pad(source) => {
-                let view = source.view();
-                Some((view.owner()?, view.name?))
-            }
-            Self::Mirror(other, _, source) => Some((source.view().owner(now)?, other.to_string())),
-        }
+            Source::Pad(source) => source.view().name?,
+            Source::Mirror(..) => self.leader_name(),
+        };
+        Some((self.source.owner(now)?, name))
+    }
+
+    fn leader_name(&self) -> String {
+        let leader = self.leader.as_ref();
+        leader.map_or_else(String::new, |(endpoint, _)| endpoint.to_string())
     }
 
     /// Number of irregular stops, which were obeyed despite another error in the message, and the newest one as text.
@@ -244,25 +202,25 @@ impl FollowSource {
         let text = |sender: &dyn Display, why: &dyn Display| {
             format!("{sender} sent a stop, which was carried out; irregular in it: {why}")
         };
-        match self {
-            Self::Stream(_, source) => {
+        match &self.source {
+            Source::Stream(source) => {
                 let intake = source.view().intake;
                 let (sender, why) = intake.last_odd?;
                 Some((intake.odd_stops, text(&sender, &why)))
             }
-            Self::Dds(source, ..) => {
-                let view = source.view();
+            Source::Dds(joined) => {
+                let view = joined.source.view();
                 let (sender, why) = view.last_odd?;
                 Some((view.odd_stops, text(&sender, &why)))
             }
-            Self::Pad(_) | Self::Mirror(..) => None,
+            Source::Pad(_) | Source::Mirror(..) => None,
         }
     }
 
     /// Progress as text and as an object.
     pub(super) fn progress(&self, now: Moment) -> (String, Value) {
-        match self {
-            Self::Stream(_, source) => {
+        match &self.source {
+            Source::Stream(source) => {
                 let StreamView {
                     intake,
                     not_granted,
@@ -293,8 +251,8 @@ impl FollowSource {
                 });
                 (words, object)
             }
-            Self::Dds(source, out, _) => dds_progress(&source.view(), out),
-            Self::Pad(source) => {
+            Source::Dds(joined) => dds_progress(&joined.source.view(), &joined.shared),
+            Source::Pad(source) => {
                 let view = source.view();
                 let held = if view.is_held { "held" } else { "not held" };
                 let words = match (&view.name, &view.trouble) {
@@ -307,9 +265,11 @@ impl FollowSource {
                     json!({"gamepad": view.name, "trouble": trouble, "held": view.is_held});
                 (words, object)
             }
-            Self::Mirror(other, leader, source) => {
-                let view = source.view();
-                let trouble = leader.status().trouble.map(|trouble| trouble.to_string());
+            Source::Mirror(source, _) => {
+                let (view, other) = (source.view(), self.leader_name());
+                let leader = self.leader.as_ref();
+                let trouble = leader.and_then(|(_, link)| link.status().trouble);
+                let trouble = trouble.map(|trouble| trouble.to_string());
                 // A silent hand has no rate.
                 let rate_hz = view.owner(now).map(|_| view.rate_hz);
                 let words = match (&trouble, rate_hz) {
@@ -317,12 +277,44 @@ impl FollowSource {
                     (None, Some(rate)) => format!("{rate:6.1} readings/s of {other}"),
                     (None, None) => format!("{other} does not report its angles"),
                 };
-                let object =
-                    json!({"mirror": other.to_string(), "rate_hz": rate_hz, "trouble": trouble});
+                let object = json!({"mirror": other, "rate_hz": rate_hz, "trouble": trouble});
                 (words, object)
             }
         }
     }
+}
+
+/// Listens for lines, and warns if other computers can send them.
+fn stream(place: StreamPlace, site: SourceSite, allowed: Allowed) -> anyhow::Result<Source> {
+    let (StreamPlace::Udp(at) | StreamPlace::Tcp(at)) = place;
+    let source = StreamSource::open(place, site, &Handle::current())
+        .map_err(|error| listen::refused(at, &error))?;
+    let can = if allowed.moves {
+        "move this hand"
+    } else {
+        "send to this hand"
+    };
+    listen::warn_if_reachable(source.local(), can);
+    Ok(Source::Stream(source))
+}
+
+/// Opens DDS, but refuses a second hand of the same side: both would obey the same sender. A sender starts at the first state that it
+/// receives, so none is published before this is known.
+async fn on_dds(
+    node: DdsNode,
+    card: FleetCard,
+    link: &LinkHandle,
+    site: SourceSite,
+    allowed: Allowed,
+) -> anyhow::Result<Source> {
+    let others = OtherFollowers::open(&node, card.side, site.clock);
+    if allowed.moves
+        && let Some(other) = others.was_there().await
+    {
+        bail!(followed(&other));
+    }
+    let joined = JoinedDds::open((node, others), card, allowed.limits, site, link);
+    Ok(Source::Dds(joined))
 }
 
 fn dds_progress(view: &DdsView, out: &SharedOnDds) -> (String, Value) {

@@ -9,7 +9,7 @@ use crate::params::changes::RowOutcome;
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
-use crate::tasks::{ParamStep, TaskError};
+use crate::tasks::{Risks, TaskError, TaskStep};
 use anyhow::{anyhow, bail};
 use serde_json::json;
 
@@ -51,7 +51,7 @@ async fn rows(
 ) -> anyhow::Result<Option<bool>> {
     let task = Apply {
         wanted,
-        consent: args.consent(),
+        agreed: Risks::default(),
         backups: Some(args.common.backups()?),
         overshoot: reach::overshoot(&args.common.hand),
         otherwise: if args.partial {
@@ -65,12 +65,13 @@ async fn rows(
     let link = patience
         .see_through(reach::open(&args.common.hand), "")
         .await??;
-    let watch = |step| match step {
-        ParamStep::Meant(risks) => words::warn(&risks),
-        ParamStep::Writing => written.set(true),
-        _ => {}
+    let watch = |step| {
+        if matches!(step, TaskStep::Writing(_)) {
+            written.set(true);
+        }
     };
-    let apply = apply(&link, &task, watch);
+    let mut user = reach::answers_of(args.yes);
+    let apply = apply(&link, &task, &mut user, watch);
     let applied = patience.see_through(apply, UNKNOWN).await??;
     for row in applied.before.differences(whole) {
         if row.id.is_place() && task.wanted.get(row.id).is_none() {
@@ -86,7 +87,7 @@ async fn rows(
 /// Converts an error of the task into one of the command.
 fn explained(error: anyhow::Error) -> anyhow::Error {
     match error.downcast_ref() {
-        Some(TaskError::NotMeant(risks)) => WrongUsage::error(format!(
+        Some(TaskError::Declined(risks)) => WrongUsage::error(format!(
             "{}; add --yes if you mean it; nothing was written",
             words::risks(risks).join("; ")
         )),

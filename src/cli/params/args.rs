@@ -5,7 +5,6 @@ use crate::cli::out::WrongUsage;
 use crate::params::backups::{Backups, folder_beside};
 use crate::params::rows::ParamId;
 use crate::params::values::Params;
-use crate::tasks::Consent;
 use crate::transport::Endpoint;
 use anyhow::Context as _;
 use clap::{Args, Subcommand};
@@ -116,15 +115,6 @@ pub(crate) struct ApplyArgs {
 }
 
 impl ApplyArgs {
-    /// Consent given by --yes.
-    pub(crate) const fn consent(&self) -> Consent {
-        if self.yes {
-            Consent::Given
-        } else {
-            Consent::To(Vec::new())
-        }
-    }
-
     /// Rows of a file to write: those that --only names, else all except address rows.
     pub(crate) fn chosen(&self, params: &Params) -> Params {
         let is_named = |id| self.only.iter().any(|rows| rows.0.contains(&id));

@@ -8,9 +8,9 @@ use crate::cli::params::words;
 use crate::params::file::SaveVerdict;
 use crate::params::place::PlacePair;
 use crate::record::Saved;
-use crate::tasks::reset::{self, ResetEnd, ResetProof, ResetReport, ResetStep};
+use crate::tasks::reset::{self, ResetEnd, ResetProof, ResetReport};
 use crate::tasks::save::{self, Save};
-use crate::tasks::{Consent, ParamStep};
+use crate::tasks::{Risks, TaskStep};
 use anyhow::bail;
 use serde_json::json;
 
@@ -32,15 +32,16 @@ pub(crate) async fn save(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()> 
     let task = Save {
         backups,
         before: known.saved.map(|file| file.params).unwrap_or_default(),
-        consent: Consent::Given,
+        agreed: Risks::default(),
         overshoot: reach::overshoot(&common.hand),
     };
-    let watch = |step| match step {
-        ParamStep::Meant(risks) => words::warn(&risks),
-        ParamStep::Saving => written.set(true),
-        _ => {}
+    let watch = |step| {
+        if step == TaskStep::Saving {
+            written.set(true);
+        }
     };
-    let save = save::save(&link, &task, watch);
+    let mut user = reach::answers_of(args.yes);
+    let save = save::save(&link, &task, &mut user, watch);
     let report = patience.see_through(save, UNKNOWN_SAVE).await??;
     let sentence = words::saved(&report.saved);
     if let Some(why) = report.not_noted {
@@ -77,7 +78,7 @@ pub(crate) async fn reset(out: &mut Out, args: &FlashArgs) -> anyhow::Result<()>
     drop(patience.see_through(reach::open(hand), "").await??);
     let places = reset::places(hand);
     let watch = |step| {
-        if step == ResetStep::Sending {
+        if step == TaskStep::Resetting {
             written.set(true);
         }
     };

@@ -3,13 +3,13 @@
 use crate::cli::out::{Out, notify};
 use crate::cli::params::args::ApplyArgs;
 use crate::cli::params::patience::Patience;
-use crate::cli::params::reach::{self, LinkOpener, consent_given};
+use crate::cli::params::reach::{self, LinkOpener};
 use crate::cli::params::words;
 use crate::params::place::{self, Moved, new_place};
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
-use crate::tasks::place::{PlaceChange, PlaceReport, PlaceStep, change_place};
-use crate::tasks::{Risks, read};
+use crate::tasks::place::{PlaceChange, PlaceReport, change_place};
+use crate::tasks::{Question, Risks, TaskError, TaskStep, User as _, read};
 use crate::transport::Endpoint;
 use anyhow::bail;
 use serde_json::json;
@@ -40,8 +40,10 @@ pub(crate) async fn change(
     };
     let mut meant = Risks::default();
     meant.places.put(id, wanted);
-    args.consent().check(&meant)?;
-    words::warn(&meant);
+    let mut user = reach::answers_of(args.yes);
+    if !user.ask(Question::Apply(meant.clone())).await {
+        return Err(TaskError::Declined(meant).into());
+    }
     let new = new_place(&old, id, wanted).unwrap_or_else(|| old.clone());
     let change = PlaceChange {
         id,
@@ -52,11 +54,11 @@ pub(crate) async fn change(
     };
     let mut reach = LinkOpener::default();
     let watch = |step| {
-        if matches!(step, PlaceStep::Writing(_)) {
+        if matches!(step, TaskStep::Writing(_)) {
             written.set(true);
         }
     };
-    let changed = change_place(&mut reach, &change, &files, consent_given(), watch);
+    let changed = change_place(&mut reach, &change, &files, &mut user, watch);
     let report = patience.see_through(changed, UNKNOWN).await??;
     if let Some(why) = &report.not_noted {
         bail!(

@@ -1,15 +1,14 @@
 //! Connection to the hand for parameter commands: one link at a time, at each possible address.
 
 use crate::app::files::settings_file;
+use crate::cli::params::words;
 use crate::cli::session::{self, ANSWER_TIMEOUT};
 use crate::hand::overshoot::OvershootMap;
 use crate::link::{Clock, LinkHandle, PollRates};
-use crate::tasks::Reach;
 use crate::tasks::hand::answers;
-use crate::tasks::place::Decisions;
+use crate::tasks::{Question, Reach};
 use crate::transport::Endpoint;
 use crate::trials::overshoot_file;
-use std::future::ready;
 use std::sync::Arc;
 use std::time::Duration;
 use tokio::time::sleep;
@@ -44,11 +43,18 @@ impl Reach for LinkOpener {
     }
 }
 
-/// Decisions under --yes: the change is kept, and not saved, because SAVE is a separate command.
-pub(crate) fn consent_given() -> Decisions {
-    Decisions {
-        keeps: Box::pin(ready(true)),
-        saves: Box::pin(ready(false)),
+/// The user's answers on the command line: risks need --yes, and are named. A change of address is kept, and not saved, because SAVE
+/// is a separate command.
+pub(crate) fn answers_of(yes: bool) -> impl FnMut(&Question) -> bool + Send {
+    move |question| match question {
+        Question::Apply(risks) | Question::Save(risks) => {
+            if yes {
+                words::warn(risks);
+            }
+            yes
+        }
+        Question::KeepPlace(_) => true,
+        Question::SavePlace(_) => false,
     }
 }
 

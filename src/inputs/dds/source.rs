@@ -4,13 +4,11 @@ use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::dds::ctrl::{self, CtrlFault, CtrlMessage};
 use crate::inputs::dds::motors;
-use crate::inputs::follow::{END_TIMEOUT, is_fresh};
-use crate::inputs::offer::{Offer, OfferOutlet};
+use crate::inputs::offer::{END_TIMEOUT, Offer, OfferOutlet, SourceSite, is_fresh};
 use crate::link::stats::EventRate;
-use crate::link::{ArmRequest, Clock, Owner, Wake};
+use crate::link::{ArmRequest, Owner};
 use crate::transport::dds::{DdsMessage, DdsNode, DdsWriterId};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 use tokio::time::interval;
@@ -18,21 +16,6 @@ use tokio_util::task::AbortOnDropHandle;
 
 /// Interval at which the statistics are published.
 const REPORT_INTERVAL: Duration = Duration::from_millis(50);
-
-/// Configuration of the source.
-#[derive(Clone)]
-pub struct DdsSourceConfig {
-    /// Side of the hand on the robot.
-    pub side: Side,
-    /// Highest speeds and forces that a message may request.
-    pub allowed: ArmRequest,
-    /// The program's clock.
-    pub clock: Clock,
-    /// Stops the hand. Called for each message that requests it, from any sender.
-    pub stop: Arc<dyn Fn() + Send + Sync>,
-    /// Called when the view changed. Must return at once.
-    pub wake: Wake,
-}
 
 /// Current state of the source.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -89,12 +72,13 @@ pub struct DdsSource {
 }
 
 impl DdsSource {
-    /// Receives these messages from now on. Must be called within a tokio runtime.
-    pub fn open(config: DdsSourceConfig, commands: DdsCommands) -> Self {
+    /// Receives these messages from now on; `allowed` are the highest speeds and forces that one may request. Must be called within a tokio runtime.
+    pub fn open(allowed: ArmRequest, site: SourceSite, commands: DdsCommands) -> Self {
         let (views, view) = watch::channel(DdsView::default());
         let outlet = OfferOutlet::default();
         let receiver = DdsReceiver {
-            config,
+            allowed,
+            site,
             view: DdsView::default(),
             rate: EventRate::default(),
             outlet: outlet.clone(),
@@ -119,7 +103,8 @@ impl DdsSource {
 }
 
 struct DdsReceiver {
-    config: DdsSourceConfig,
+    allowed: ArmRequest,
+    site: SourceSite,
     view: DdsView,
     rate: EventRate,
     outlet: OfferOutlet,
@@ -136,7 +121,7 @@ impl DdsReceiver {
                     None => return self.publish(),
                 },
                 Some(message) = commands.motors.recv() => {
-                    let asked = motors::parse(&message.bytes, self.config.side);
+                    let asked = motors::parse(&message.bytes, self.site.side);
                     self.receive(message.from, asked);
                 }
                 _ = tick.tick() => self.publish(),
@@ -147,9 +132,9 @@ impl DdsReceiver {
     fn receive_ctrl(&mut self, message: &DdsMessage) {
         let is_stop = ctrl::is_stop(&message.bytes);
         if is_stop {
-            (self.config.stop)();
+            (self.site.stop)();
         }
-        let asked = CtrlMessage::parse(&message.bytes, &self.config.allowed);
+        let asked = CtrlMessage::parse(&message.bytes, &self.allowed);
         if is_stop {
             self.stopped(message.from, asked.err());
         } else {
@@ -158,7 +143,7 @@ impl DdsReceiver {
     }
 
     fn receive(&mut self, from: DdsWriterId, asked: Result<CtrlMessage, CtrlFault>) {
-        let now = self.config.clock.now();
+        let now = self.site.clock.now();
         let asked = asked.and_then(|asked| self.in_turn(from, now).map(|()| asked));
         let asked = match asked {
             Ok(asked) => asked,
@@ -192,7 +177,7 @@ impl DdsReceiver {
     /// Counts a stop and any error in its message.
     fn stopped(&mut self, from: DdsWriterId, odd: Option<CtrlFault>) {
         self.view.taken += 1;
-        self.rate.hit(self.config.clock.now());
+        self.rate.hit(self.site.clock.now());
         if let Some(odd) = odd {
             self.view.odd_stops += 1;
             self.view.last_odd = Some((from, odd));
@@ -211,7 +196,7 @@ impl DdsReceiver {
     }
 
     fn publish(&mut self) {
-        self.view.rate_hz = self.rate.hz(self.config.clock.now());
+        self.view.rate_hz = self.rate.hz(self.site.clock.now());
         let is_news = self.views.send_if_modified(|view| {
             let is_news = *view != self.view;
             if is_news {
@@ -220,7 +205,7 @@ impl DdsReceiver {
             is_news
         });
         if is_news {
-            (self.config.wake)();
+            (self.site.wake)();
         }
     }
 }

@@ -1,14 +1,13 @@
 //! A gamepad as a source for a hand to follow: reports in, offers out, STOP at once.
 
 use crate::hand::{Angle, AngleReading, PerDof};
-use crate::inputs::offer::{Offer, OfferOutlet};
+use crate::inputs::offer::{Offer, OfferOutlet, SourceSite};
 use crate::inputs::pad::device::PadReader;
 use crate::inputs::pad::input::{FingerChoice, PadEvent, PadInput, PadPoses};
 use crate::inputs::pad::report::{PadNews, PadTrouble};
 use crate::inputs::pad::state::PadState;
-use crate::link::{Clock, Owner, Records, Wake};
+use crate::link::{Owner, Records};
 use crate::record::Record;
-use std::sync::Arc;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 use tokio::time::{MissedTickBehavior, interval};
@@ -25,12 +24,8 @@ pub struct PadSourceConfig {
     pub input: PadInput,
     /// Readings of the hand, for the actual angles.
     pub records: Records,
-    /// The program's clock.
-    pub clock: Clock,
-    /// Stops the hand. Called when STOP is pressed.
-    pub stop: Arc<dyn Fn() + Send + Sync>,
-    /// Called when the view changed. Must return at once.
-    pub wake: Wake,
+    /// The program.
+    pub site: SourceSite,
 }
 
 /// Current state of the gamepad.
@@ -124,7 +119,7 @@ async fn run(
                     _ => {}
                 }
                 match config.input.receive(&report) {
-                    Some(PadEvent::Stop) => (config.stop)(),
+                    Some(PadEvent::Stop) => (config.site.stop)(),
                     Some(PadEvent::Gone) => view.name = None,
                     _ => {}
                 }
@@ -144,7 +139,7 @@ async fn run(
         if let Ok(true) = poses.has_changed() {
             config.input.set_poses(poses.borrow_and_update().clone());
         }
-        let now = config.clock.now();
+        let now = config.site.clock.now();
         view.is_held = config.input.is_held(now);
         view.state.clone_from(config.input.state());
         view.fingers = config.input.fingers();
@@ -157,7 +152,7 @@ async fn run(
             }
             is_news
         }) {
-            (config.wake)();
+            (config.site.wake)();
         }
         if let Some(offer) = offer {
             outlet.offer(offer);

@@ -3,13 +3,13 @@
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::params::state::ParamAction;
-use crate::app::procedures::{Procedure, ProcedureAction, ProcedureStage};
+use crate::app::procedures::{Procedure, ProcedureAction};
 use crate::app::state::State;
 use crate::exhibit::stage::ExhibitWish;
 use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
 use crate::shell::headless::driver::{ANSWER_TIMEOUT, Driver};
-use crate::tasks::place::PlaceStep;
+use crate::tasks::Question;
 use crate::transport::Endpoint;
 use std::net::Ipv4Addr;
 use std::time::Duration;
@@ -119,7 +119,7 @@ impl Driver {
         }
         self.act(Action::Param(ParamAction::Apply));
         self.until(ANSWER_TIMEOUT, |state| {
-            state.hand().params.question.is_some()
+            state.hand().params.question().is_some()
         });
     }
 }
@@ -128,5 +128,5 @@ fn is_kept_open(state: &State) -> bool {
     let Some(Procedure::Place(run)) = &state.hand().procedures.card else {
         return false;
     };
-    matches!(run.stage, ProcedureStage::Doing(PlaceStep::Keeping(_), _))
+    matches!(run.question(), Some((Question::KeepPlace(_), _)))
 }

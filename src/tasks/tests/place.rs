@@ -7,11 +7,9 @@ use crate::params::backups::Backups;
 use crate::params::place::{Moved, PlacePair, WhichPlace};
 use crate::params::rows::{ParamId, Value};
 use crate::record::Saved;
-use crate::tasks::TaskError;
-use crate::tasks::place::{
-    CONFIRM_TIMEOUT, Decisions, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, change_place,
-};
+use crate::tasks::place::{CONFIRM_TIMEOUT, PlaceChange, PlaceEnd, PlaceReport, change_place};
 use crate::tasks::tests::reach::{FakeReach, place_write};
+use crate::tasks::{Question, TaskError, TaskStep, User};
 use crate::transport::Endpoint;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -175,20 +173,31 @@ impl World {
     }
 }
 
-/// Whoever decides.
+/// A user, who may not answer whether the change is kept.
 struct Someone {
     keeps: Option<bool>,
     saves: bool,
+    asked: Vec<(Question, Instant)>,
 }
 
 impl Someone {
-    fn decides(self) -> Decisions {
-        Decisions {
-            keeps: match self.keeps {
-                Some(keeps) => Box::pin(std::future::ready(keeps)),
-                None => Box::pin(std::future::pending()),
-            },
-            saves: Box::pin(std::future::ready(self.saves)),
+    fn new(keeps: Option<bool>, saves: bool) -> Self {
+        Self {
+            keeps,
+            saves,
+            asked: Vec::new(),
+        }
+    }
+}
+
+impl User for Someone {
+    async fn ask(&mut self, question: Question) -> bool {
+        self.asked.push((question.clone(), Instant::now()));
+        match (&question, self.keeps) {
+            (Question::KeepPlace(_), Some(keeps)) => keeps,
+            (Question::KeepPlace(_), None) => std::future::pending().await,
+            (Question::SavePlace(_), _) => self.saves,
+            (Question::Apply(_) | Question::Save(_), _) => panic!("not asked here: {question:?}"),
         }
     }
 }
@@ -222,15 +231,15 @@ async fn run(
         hand,
         is_there: move |place: &Endpoint| shared.lock().unwrap().reach(place),
     };
-    let person = {
+    let mut person = {
         let choices = &mut world.lock().unwrap().choices;
-        Someone {
-            keeps: [Some(true), Some(false), None][choices.pick(3)],
-            saves: choices.pick(2) == 0,
-        }
+        Someone::new(
+            [Some(true), Some(false), None][choices.pick(3)],
+            choices.pick(2) == 0,
+        )
     };
     let backups = Backups::new(folder, &change.places.old);
-    change_place(&mut reach, change, &backups, person.decides(), |_| ()).await
+    change_place(&mut reach, change, &backups, &mut person, |_| ()).await
 }
 
 fn check(world: &World, end: &PlaceEnd) {
@@ -335,8 +344,12 @@ async fn run_change(
     change: &PlaceChange,
     hand: &FakeHand,
     is_there: impl FnMut(&Endpoint) -> bool + Send,
-    person: Someone,
-) -> (PlaceReport, Vec<(PlaceStep, Instant)>) {
+    mut person: Someone,
+) -> (
+    PlaceReport,
+    Vec<(TaskStep, Instant)>,
+    Vec<(Question, Instant)>,
+) {
     let folder = TempDir::new().unwrap();
     let backups = Backups::new(folder.path(), &change.places.old);
     let mut reach = FakeReach {
@@ -344,10 +357,11 @@ async fn run_change(
         is_there,
     };
     let mut steps = Vec::new();
-    let end = change_place(&mut reach, change, &backups, person.decides(), |step| {
+    let end = change_place(&mut reach, change, &backups, &mut person, |step| {
         steps.push((step, Instant::now()));
     });
-    (end.await.unwrap(), steps)
+    let report = end.await.unwrap();
+    (report, steps, person.asked)
 }
 
 /// Where a hand that acts at once answers.
@@ -366,30 +380,27 @@ fn at_its_place(
 async fn without_an_answer_it_goes_back_after_fifteen_seconds_and_not_before() {
     let (change, hand) = (change(Follows::Wire), FakeHand::new());
     let there = at_its_place(&hand, &change.places);
-    let nobody = Someone {
-        keeps: None,
-        saves: true,
-    };
-    let (report, steps) = run_change(&change, &hand, there, nobody).await;
+    let nobody = Someone::new(None, true);
+    let (report, steps, asked) = run_change(&change, &hand, there, nobody).await;
     assert_eq!(
         (report.moved, report.end),
         (Some(Moved::There), PlaceEnd::Back)
     );
-    let when = |wanted: PlaceStep| {
-        let at = steps.iter().find(|(step, _)| *step == wanted);
-        at.unwrap_or_else(|| panic!("{wanted:?}")).1
+    let returns = steps.iter().find(|(step, _)| *step == TaskStep::Returning);
+    let [(Question::KeepPlace(WhichPlace::New), since)] = asked[..] else {
+        panic!("asked once: {asked:?}");
     };
-    let waited = when(PlaceStep::Returning) - when(PlaceStep::Keeping(WhichPlace::New));
+    let waited = returns.unwrap().1 - since;
     assert!(waited >= CONFIRM_TIMEOUT && waited < CONFIRM_TIMEOUT + Duration::from_millis(5));
     let words: Vec<_> = steps.into_iter().map(|(step, _)| step).collect();
-    let back = words.iter().position(|step| *step == PlaceStep::Returning);
+    let back = words.iter().position(|step| *step == TaskStep::Returning);
     assert_eq!(
         words[back.unwrap() + 1..],
         [
-            PlaceStep::Looking(WhichPlace::New),
-            PlaceStep::Looking(WhichPlace::Old),
-            PlaceStep::Writing(WhichPlace::New),
-            PlaceStep::Looking(WhichPlace::Old),
+            TaskStep::Looking(WhichPlace::New),
+            TaskStep::Looking(WhichPlace::Old),
+            TaskStep::Writing(WhichPlace::New),
+            TaskStep::Looking(WhichPlace::Old),
         ],
         "is the old id free, before it is taken"
     );
@@ -398,12 +409,9 @@ async fn without_an_answer_it_goes_back_after_fifteen_seconds_and_not_before() {
 
 #[tokio::test(start_paused = true)]
 async fn an_id_that_another_hand_has_is_not_written_over_it_on_the_way_there_or_back() {
-    let keeper = || Someone {
-        keeps: Some(true),
-        saves: true,
-    };
+    let keeper = || Someone::new(Some(true), true);
     let (change, hand) = (change(Follows::Wire), FakeHand::new());
-    let (report, _) = run_change(&change, &hand, |_| true, keeper()).await;
+    let (report, ..) = run_change(&change, &hand, |_| true, keeper()).await;
     assert_eq!(report.end, PlaceEnd::Occupied);
     assert!(!hand.asked().iter().any(is_write));
 
@@ -412,11 +420,8 @@ async fn an_id_that_another_hand_has_is_not_written_over_it_on_the_way_there_or_
     let mut own = at_its_place(&hand, &change.places);
     let asked = hand.clone();
     let there = move |place: &Endpoint| own(place) || asked.holds(ParamId::HandId) == Some(NEW);
-    let leaver = Someone {
-        keeps: Some(false),
-        saves: false,
-    };
-    let (report, _) = run_change(&change, &hand, there, leaver).await;
+    let leaver = Someone::new(Some(false), false);
+    let (report, ..) = run_change(&change, &hand, there, leaver).await;
     assert_eq!(report.end, PlaceEnd::NotBack(WhichPlace::New));
     let writes = hand.asked().into_iter().filter(is_write);
     assert!(writes.eq([place_write(ParamId::HandId, NEW)]));
@@ -450,14 +455,11 @@ async fn a_third_value_is_put_back_before_anybody_can_save_it() {
                 then.clone()
             }
         });
-        let keeper = Someone {
-            keeps: Some(true),
-            saves: true,
-        };
-        let (report, steps) = run_change(&change, &hand, |_| true, keeper).await;
+        let keeper = Someone::new(Some(true), true);
+        let (report, steps, asked) = run_change(&change, &hand, |_| true, keeper).await;
         assert_eq!(report.end, expected);
-        let asks = |step: &PlaceStep| matches!(step, PlaceStep::Keeping(_) | PlaceStep::Saving(_));
-        assert!(!steps.iter().any(|(step, _)| asks(step)));
+        let saves = steps.iter().any(|(step, _)| *step == TaskStep::Saving);
+        assert!(asked.is_empty() && !saves);
         let holds = hand.holds(ParamId::HandId);
         assert_eq!(holds == Some(THIRD), expected != PlaceEnd::Back);
     }
@@ -513,11 +515,8 @@ async fn moved(
         }
         holds.is_some()
     };
-    let keeper = Someone {
-        keeps: Some(true),
-        saves: false,
-    };
-    let (report, _) = run_change(&change, &hand, is_there, keeper).await;
+    let keeper = Someone::new(Some(true), false);
+    let (report, ..) = run_change(&change, &hand, is_there, keeper).await;
     let writes = hand.asked().into_iter().filter(is_write).count();
     (report.moved.unwrap(), writes)
 }
@@ -605,11 +604,8 @@ async fn nothing_is_written_where_no_backup_can_be_made_or_no_hand_answers() {
             hand: hand.clone(),
             is_there: move |_: &_| is_there,
         };
-        let keeper = Someone {
-            keeps: Some(true),
-            saves: true,
-        };
-        let end = change_place(&mut reach, &change, &backups, keeper.decides(), |_| ()).await;
+        let mut keeper = Someone::new(Some(true), true);
+        let end = change_place(&mut reach, &change, &backups, &mut keeper, |_| ()).await;
         assert!(
             matches!(end, Err(TaskError::NoBackup { .. } | TaskError::NotReached)),
             "{end:?}"
@@ -626,11 +622,8 @@ async fn what_is_taken_back_is_what_the_hand_held_and_not_what_a_person_was_show
         ..change(Follows::Wire)
     };
     let there = at_its_place(&hand, &shown.places);
-    let leaver = Someone {
-        keeps: Some(false),
-        saves: false,
-    };
-    let (report, _) = run_change(&shown, &hand, there, leaver).await;
+    let leaver = Someone::new(Some(false), false);
+    let (report, ..) = run_change(&shown, &hand, there, leaver).await;
     assert_eq!(report.end, PlaceEnd::Back);
     assert_eq!(hand.holds(ParamId::HandId), Some(OLD));
 }

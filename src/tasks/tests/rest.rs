@@ -8,13 +8,13 @@ use crate::params::place::PlacePair;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 use crate::record::{Calibrated, NotSent, Rest, Saved};
-use crate::tasks::Consent;
 use crate::tasks::apply::{Apply, Otherwise, apply};
 use crate::tasks::calibrate::{CalibrationCondition, Checks, calibrate};
-use crate::tasks::place::{Decisions, PlaceChange, PlaceEnd, change_place};
+use crate::tasks::place::{PlaceChange, PlaceEnd, change_place};
 use crate::tasks::reset::{ResetEnd, places, reset};
 use crate::tasks::save::{Save, save};
 use crate::tasks::tests::reach::FakeReach;
+use crate::tasks::{Question, Risks};
 use std::time::Duration;
 use tempfile::TempDir;
 use tokio::time::{Instant, sleep};
@@ -30,6 +30,11 @@ fn unknown() -> FakeHand {
         _ => Fate::NotSent(WHY),
     });
     hand
+}
+
+/// A user who agrees to everything.
+fn agrees(_: &Question) -> bool {
+    true
 }
 
 fn wanted() -> Params {
@@ -51,11 +56,11 @@ async fn rest_that_is_unknown_refuses_apply_save_reset_and_calibration() {
     let task = Apply {
         overshoot: std::sync::Arc::default(),
         wanted: wanted(),
-        consent: Consent::Given,
+        agreed: Risks::default(),
         backups: None,
         otherwise: Otherwise::Undo,
     };
-    let applied = apply(&hand, &task, |_| ()).await.unwrap();
+    let applied = apply(&hand, &task, &mut agrees, |_| ()).await.unwrap();
     let verdicts: Vec<_> = applied.rows.iter().map(|row| &row.verdict).collect();
     assert_eq!(verdicts, [&RowVerdict::NotSent(WHY)]);
 
@@ -64,9 +69,9 @@ async fn rest_that_is_unknown_refuses_apply_save_reset_and_calibration() {
         overshoot: std::sync::Arc::default(),
         backups: backups.clone(),
         before: Params::default(),
-        consent: Consent::Given,
+        agreed: Risks::default(),
     };
-    let saved = save(&hand, &task, |_| ()).await.unwrap();
+    let saved = save(&hand, &task, &mut agrees, |_| ()).await.unwrap();
     assert_eq!(saved.saved, Saved::NotSent(WHY));
     assert!(backups.known().unwrap().doubtful.is_none());
 
@@ -89,12 +94,12 @@ async fn what_is_refused_for_rest_is_asked_again_for_eight_seconds_and_then_give
     let task = Apply {
         overshoot: std::sync::Arc::default(),
         wanted: wanted(),
-        consent: Consent::Given,
+        agreed: Risks::default(),
         backups: None,
         otherwise: Otherwise::Stay,
     };
     let begun = Instant::now();
-    let applied = apply(&hand, &task, |_| ()).await.unwrap();
+    let applied = apply(&hand, &task, &mut agrees, |_| ()).await.unwrap();
     let took = begun.elapsed();
     assert!(!applied.is_whole());
     assert!((8..10).contains(&took.as_secs()), "{took:?}");
@@ -107,7 +112,12 @@ async fn what_is_refused_for_rest_is_asked_again_for_eight_seconds_and_then_give
         }
         _ => Fate::Answered,
     });
-    assert!(apply(&hand, &task, |_| ()).await.unwrap().is_whole());
+    assert!(
+        apply(&hand, &task, &mut agrees, |_| ())
+            .await
+            .unwrap()
+            .is_whole()
+    );
 }
 
 #[tokio::test(start_paused = true)]
@@ -122,11 +132,11 @@ async fn an_armed_hand_is_not_asked_again() {
     let task = Apply {
         overshoot: std::sync::Arc::default(),
         wanted,
-        consent: Consent::Given,
+        agreed: Risks::default(),
         backups: None,
         otherwise: Otherwise::Stay,
     };
-    let applied = apply(&hand, &task, |_| ()).await.unwrap();
+    let applied = apply(&hand, &task, &mut agrees, |_| ()).await.unwrap();
     let asked = hand.asked();
     let writes = asked.iter().filter(|one| matches!(one, Asked::Keep(_)));
     assert_eq!(writes.count(), 1, "nor for the next group");
@@ -155,11 +165,7 @@ async fn where_a_hand_is_found_is_not_changed_unless_it_is_known_to_rest() {
             is_there: move |place: &_| *place == old,
         };
         let (_folder, backups) = files();
-        let eager = Decisions {
-            keeps: Box::pin(std::future::ready(true)),
-            saves: Box::pin(std::future::ready(true)),
-        };
-        let end = change_place(&mut reach, &change, &backups, eager, |_| ()).await;
+        let end = change_place(&mut reach, &change, &backups, &mut agrees, |_| ()).await;
         assert_eq!(end.unwrap().end, PlaceEnd::NotWritten, "{rest:?}");
         let asked = hand.asked();
         let is_write = |one: &Asked| matches!(one, Asked::SetUnread(Setting::Id(_)));

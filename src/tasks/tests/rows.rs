@@ -11,10 +11,10 @@ use crate::params::values::{Params, SPANS};
 use crate::record::{Doubt, NotSent, Saved, Verdict};
 use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
 use crate::tasks::read::{group, rows};
-use crate::tasks::reset::{ResetEnd, ResetReport, ResetStep, places, reset};
+use crate::tasks::reset::{ResetEnd, ResetReport, places, reset};
 use crate::tasks::save::{Save, SaveReport, save};
 use crate::tasks::tests::reach::FakeReach;
-use crate::tasks::{Consent, ParamStep, TaskError};
+use crate::tasks::{Question, Risks, TaskError, TaskStep};
 use tempfile::TempDir;
 
 const INDEX: ParamId = ParamId::DefaultSpeed(Dof::Index);
@@ -25,6 +25,11 @@ fn one(id: ParamId, number: i32) -> Params {
     params
 }
 
+/// A user who agrees to nothing.
+fn nobody(_: &Question) -> bool {
+    false
+}
+
 fn reads() -> Vec<Asked> {
     SPANS.map(Asked::Read).to_vec()
 }
@@ -33,11 +38,11 @@ async fn applied(hand: &FakeHand, wanted: Params) -> Result<Applied, TaskError> 
     let task = Apply {
         overshoot: std::sync::Arc::default(),
         wanted,
-        consent: Consent::To(Vec::new()),
+        agreed: Risks::default(),
         backups: None,
         otherwise: Otherwise::Stay,
     };
-    apply(hand, &task, |_| ()).await
+    apply(hand, &task, &mut nobody, |_| ()).await
 }
 
 fn row(applied: &Applied, id: ParamId) -> &RowOutcome {
@@ -207,7 +212,7 @@ async fn what_could_hurt_is_asked_first_and_written_only_when_meant() {
     let hand = FakeHand::new();
     let mut wanted = one(INDEX, 1000);
     wanted.put(ParamId::DefaultForce(Dof::Index), Value::Number(1000));
-    let Err(TaskError::NotMeant(risks)) = applied(&hand, wanted.clone()).await else {
+    let Err(TaskError::Declined(risks)) = applied(&hand, wanted.clone()).await else {
         panic!("nobody agreed");
     };
     assert_eq!(hand.asked(), reads(), "nothing before the answer");
@@ -216,16 +221,21 @@ async fn what_could_hurt_is_asked_first_and_written_only_when_meant() {
     let task = Apply {
         overshoot: std::sync::Arc::default(),
         wanted,
-        consent: Consent::To(risks.dangers),
+        agreed: risks,
         backups: None,
         otherwise: Otherwise::Stay,
     };
-    assert!(apply(&hand, &task, |_| ()).await.unwrap().is_whole());
+    assert!(
+        apply(&hand, &task, &mut nobody, |_| ())
+            .await
+            .unwrap()
+            .is_whole()
+    );
     assert_eq!(hand.holds(INDEX), Some(Value::Number(1000)));
 
     let elsewhere = applied(&hand, one(ParamId::HandId, 7)).await;
     assert!(
-        matches!(elsewhere, Err(TaskError::NotMeant(_))),
+        matches!(elsewhere, Err(TaskError::Declined(_))),
         "where the hand is goes another way"
     );
 }
@@ -239,11 +249,13 @@ async fn what_cannot_be_applied_whole_is_put_back_where_that_is_wanted() {
     let task = Apply {
         overshoot: std::sync::Arc::default(),
         wanted,
-        consent: Consent::Given,
+        agreed: Risks::default(),
         backups: None,
         otherwise: Otherwise::Undo,
     };
-    let end = apply(&hand, &task, |_| ()).await.unwrap();
+    let end = apply(&hand, &task, &mut |_: &Question| true, |_| ())
+        .await
+        .unwrap();
     assert_eq!((end.is_whole(), end.undone), (false, Some(true)));
     assert_eq!(hand.holds(INDEX), Some(Value::Number(100)));
 }
@@ -257,15 +269,15 @@ fn files() -> (TempDir, Backups) {
 async fn saved(
     hand: &FakeHand,
     backups: Backups,
-) -> (Result<SaveReport, TaskError>, Vec<ParamStep>) {
+) -> (Result<SaveReport, TaskError>, Vec<TaskStep>) {
     let task = Save {
         overshoot: std::sync::Arc::default(),
         backups,
         before: Params::default(),
-        consent: Consent::To(Vec::new()),
+        agreed: Risks::default(),
     };
     let mut steps = Vec::new();
-    let end = save(hand, &task, |step| steps.push(step)).await;
+    let end = save(hand, &task, &mut nobody, |step| steps.push(step)).await;
     (end, steps)
 }
 
@@ -285,7 +297,7 @@ async fn no_save_goes_out_without_a_backup_and_its_result_is_noted() {
     let end = end.unwrap();
     assert_eq!((end.saved, end.not_noted), (Saved::Confirmed, None));
     assert!(end.backup.exists());
-    assert_eq!(steps.last(), Some(&ParamStep::Saving));
+    assert_eq!(steps.last(), Some(&TaskStep::Saving));
     assert_eq!(hand.asked().last(), Some(&Asked::Save));
     let known = backups.known().unwrap();
     assert_eq!(known.saved.unwrap().params, end.params);
@@ -319,7 +331,7 @@ async fn reset_of(
     place: &str,
     fate: Fate,
     mut is_there: impl FnMut(usize) -> bool + Send,
-) -> (Result<ResetReport, TaskError>, Vec<ResetStep>) {
+) -> (Result<ResetReport, TaskError>, Vec<TaskStep>) {
     let (_folder, backups) = files();
     let hand = FakeHand::new();
     hand.put(ParamId::HandId, Value::Number(7));
@@ -338,9 +350,9 @@ async fn reset_of(
     (end, steps)
 }
 
-fn places_tried(steps: &[ResetStep]) -> Vec<WhichPlace> {
+fn places_tried(steps: &[TaskStep]) -> Vec<WhichPlace> {
     let looks = steps.iter().filter_map(|step| match step {
-        ResetStep::Looking(place) => Some(*place),
+        TaskStep::Looking(place) => Some(*place),
         _ => None,
     });
     looks.collect()

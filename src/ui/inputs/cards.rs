@@ -2,9 +2,10 @@
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
-use crate::app::inputs::{InputAction, InputKind, InputSource};
+use crate::app::inputs::{InputAction, InputKind};
 use crate::inputs::stream::StreamPlace;
 use crate::link::Owner;
+use crate::motion::source::SourceKind;
 use crate::share::gateway::{ClientLease, GatewayClient};
 use crate::ui::inputs::mirror_card::mirror_ui;
 use crate::ui::inputs::pad_card::pad_source_ui;
@@ -117,7 +118,12 @@ impl SourceCards {
                 look.fill(inputs::HZ_FROM, &[&rate, &sender])
             }
         };
-        state_ui(ui, pane, Some(InputKind::Stream), &words);
+        state_ui(
+            ui,
+            pane,
+            Some(InputKind::Source(SourceKind::Stream)),
+            &words,
+        );
         if at.is_some() {
             let refused = view.intake.refused.iter();
             let refused = refused.map(|(fault, count)| (inputs::fault(*fault), *count));
@@ -129,7 +135,7 @@ impl SourceCards {
             let odd = odd.filter(|(_, count)| *count > 0);
             counts_ui(ui, pane, counts.into_iter().chain(odd).chain(refused));
         }
-        grant_ui(ui, pane, InputSource::Stream, silence(pane, owner));
+        grant_ui(ui, pane, SourceKind::Stream, silence(pane, owner));
     }
 
     fn dds_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
@@ -152,7 +158,7 @@ impl SourceCards {
             (Some(_), None) => look.tr(inputs::NOBODY_SENDS).to_owned(),
             (Some(view), Some(_)) => format!("{:.0} Hz", view.view.rate_hz),
         };
-        state_ui(ui, pane, Some(InputKind::Dds), &words);
+        state_ui(ui, pane, Some(InputKind::Source(SourceKind::Dds)), &words);
         if let Some(view) = view {
             let counts = [
                 (inputs::STATES, view.told.states),
@@ -171,7 +177,7 @@ impl SourceCards {
         let other =
             other.map(|other| look.fill(inputs::OTHER_FOLLOWS, &[&other.host, &other.name]));
         let missing = other.as_deref().or(silence(pane, owner));
-        grant_ui(ui, pane, InputSource::Dds, missing);
+        grant_ui(ui, pane, SourceKind::Dds, missing);
     }
 
     fn gateway_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {

@@ -2,10 +2,11 @@
 
 use crate::app::action::Action;
 use crate::app::inputs::HandMirror;
-use crate::app::inputs::{InputAction, InputSource};
+use crate::app::inputs::InputAction;
 use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::inputs::mirror::MirrorScale;
+use crate::motion::source::SourceKind;
 use crate::ui::inputs::owner::leader_name;
 use crate::ui::inputs::source::{CardSwitch, grant_ui, state_ui, switch_ui};
 use crate::ui::kit::{self, Label, NumberField, Pane};
@@ -45,7 +46,7 @@ pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     };
     state_ui(ui, pane, None, &words);
     let missing = missing(state, mirror).map(|text| look.tr(text));
-    grant_ui(ui, pane, InputSource::Mirror, missing);
+    grant_ui(ui, pane, SourceKind::Mirror, missing);
 }
 
 /// The other hands of the window, each with its name.

@@ -1,12 +1,13 @@
 //! The gamepad: device, assignment of its controls, and the pose it requests.
 
 use crate::app::action::Action;
-use crate::app::inputs::{InputAction, InputKind, InputSource};
+use crate::app::inputs::{InputAction, InputKind};
 use crate::app::settings::Language;
 use crate::app::state::State;
 use crate::hand::{Angle, PerDof};
 use crate::inputs::pad::PadControl;
 use crate::inputs::pad::source::PadView;
+use crate::motion::source::SourceKind;
 use crate::ui::hand::tile::pose_ui;
 use crate::ui::inputs::pad_picture::{PadShown, PoseName, pad_picture_ui};
 use crate::ui::inputs::pad_table::pad_table_ui;
@@ -81,9 +82,9 @@ pub(crate) fn pad_source_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             None => look.tr(inputs::PLUG_IN).to_owned(),
         },
     };
-    state_ui(ui, pane, Some(InputKind::Pad), &words);
+    state_ui(ui, pane, Some(InputKind::Source(SourceKind::Pad)), &words);
     let missing = name.is_none().then(|| look.tr(inputs::NONE));
-    grant_ui(ui, pane, InputSource::Pad, missing);
+    grant_ui(ui, pane, SourceKind::Pad, missing);
 }
 
 /// Poses that can be assigned to a button.

@@ -1,8 +1,8 @@
 //! Common parts of the source cards: switch, state, and grant of control.
 
 use crate::app::action::Action;
-use crate::app::inputs::{InputAction, InputKind, InputSource};
-use crate::link::Owner;
+use crate::app::inputs::{InputAction, InputKind};
+use crate::motion::source::SourceKind;
 use crate::record::ArmRefusal;
 use crate::share::gateway::GatewayClient;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
@@ -68,18 +68,18 @@ pub(crate) fn state_ui(ui: &mut Ui, pane: &Pane<'_>, kind: Option<InputKind>, wo
 pub(crate) fn grant_ui(
     ui: &mut Ui,
     pane: &mut Pane<'_>,
-    source: InputSource,
+    source: SourceKind,
     missing: Option<&str>,
 ) {
     let look = pane.look;
     let owner = pane.hand().connection.outside_owner();
-    let (name, moves) = match source {
-        InputSource::Stream => (inputs::STREAM, matches!(owner, Some(Owner::Stream(_)))),
-        InputSource::Dds => (inputs::DDS, owner == Some(Owner::Dds)),
-        InputSource::Pad => (inputs::PAD, owner == Some(Owner::Gamepad)),
-        InputSource::Mirror => (inputs::MIRROR, owner == Some(Owner::Mirror)),
+    let name = match source {
+        SourceKind::Stream => inputs::STREAM,
+        SourceKind::Dds => inputs::DDS,
+        SourceKind::Pad => inputs::PAD,
+        SourceKind::Mirror => inputs::MIRROR,
     };
-    if moves {
+    if owner.is_some_and(|owner| source.is(owner)) {
         Label::new(look.tr(inputs::MOVES), look.palette.accent).ui(ui);
         return;
     }

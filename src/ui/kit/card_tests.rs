@@ -1,7 +1,6 @@
 //! A card over a window of one button: what reaches what.
 
 use crate::app::action::Action;
-use crate::app::params::state::ParamAction;
 use crate::app::settings::{Language, Theme};
 use crate::ui::kit::card::{ButtonRole, Card, CardButton, CardView};
 use crate::ui::kit::controls::{Button, pressed};
@@ -71,7 +70,7 @@ fn card() -> Card {
 }
 
 fn titled(title: &'static str) -> Card {
-    let decline = Action::Param(ParamAction::Decline);
+    let decline = Action::Leave;
     let cancel = CardButton::new(cards::CANCEL, ButtonRole::Safe, decline);
     offering(card_named(title).choice(cancel))
 }
@@ -161,7 +160,7 @@ fn enter_does_what_is_safe_and_never_what_is_dangerous() {
     harness.run_steps(3);
     let room = harness.state();
     assert!(room.card.is_none());
-    assert_eq!(room.asked, [Action::Param(ParamAction::Decline)]);
+    assert_eq!(room.asked, [Action::Leave]);
 
     let mut harness = open(card(), LARGE);
     harness.get_by_role_and_label(Role::Button, DANGER).focus();

@@ -4,9 +4,8 @@ use crate::app::procedures::{CalibrateProcedure, ProcedureAction, ProcedureStage
 use crate::app::state::State;
 use crate::hand::{Dof, ForceReading};
 use crate::record::Calibrated;
-use crate::tasks::calibrate::{
-    CalibrateReport, CalibrateStep, CalibrationCondition, Checks, Offsets, TAKES,
-};
+use crate::tasks::TaskStep;
+use crate::tasks::calibrate::{CalibrateReport, CalibrationCondition, Checks, Offsets, TAKES};
 use crate::ui::kit::{ButtonRole, Card, Look, format};
 use crate::ui::params::choices::{asking, close, step};
 use crate::ui::text::{Text, cards, errors, words};
@@ -15,11 +14,11 @@ pub(crate) fn card(state: &State, look: Look, run: &CalibrateProcedure) -> Card 
     let card = Card::new(look, cards::CALIBRATE_TITLE);
     match &run.stage {
         ProcedureStage::Asking => confirm(state, card, &run.checks),
-        ProcedureStage::Doing(CalibrateStep::Calibrating, since) => {
+        ProcedureStage::Doing(TaskStep::Measuring, _) => card.progress(1.0, cards::MEASURING),
+        ProcedureStage::Doing(_, since) => {
             let part = state.now.since(*since).as_secs_f32() / TAKES.as_secs_f32();
             card.progress(part, cards::CALIBRATING)
         }
-        ProcedureStage::Doing(CalibrateStep::Measuring, _) => card.progress(1.0, cards::MEASURING),
         ProcedureStage::Over(report) => over(look, card, run.before, report),
     }
 }

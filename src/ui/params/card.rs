@@ -1,49 +1,47 @@
 //! The card before dangerous values are written or saved: joints, values at power-up, and the force measured with them.
 //! Nothing is written while it is open.
 
-use crate::app::action::Action;
-use crate::app::params::state::ParamAction;
-use crate::app::params::state::{WriteQuestion, WriteRequest};
+use crate::app::params::rest_refusal;
 use crate::app::state::State;
 use crate::hand::impact::{NOTABLE_G, SLOWEST, overshoot_g};
 use crate::hand::overshoot::MeasuredOn;
 use crate::params::danger::Danger;
-use crate::ui::kit::{ButtonRole, Card, CardButton, Look};
+use crate::tasks::Question;
+use crate::ui::kit::{ButtonRole, Card, Look};
+use crate::ui::params::choices::answer;
 use crate::ui::params::table::value_text;
 use crate::ui::text::{cards, device, main, poses, tune, words};
 
-/// Card of the question that awaits confirmation, if there is one.
+/// Card of the question that a write asks, if there is one.
 pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
-    let question = state.hand().params.question.as_ref()?;
-    Some(card(state, look, question))
-}
-
-fn card(state: &State, look: Look, question: &WriteQuestion) -> Card {
-    let hurts = !question.dangers.is_empty();
+    let question = state.hand().params.question()?;
+    let (Question::Apply(risks) | Question::Save(risks)) = question else {
+        return None;
+    };
+    let hurts = !risks.dangers.is_empty();
+    let is_save = matches!(question, Question::Save(_));
     let staged = !state.hand().params.to_apply().is_empty();
     let is_nothing = state.hand().params.unsaved().is_empty();
-    let (title, agree) = match question.what {
-        WriteRequest::Apply(_) => (device::DANGER_APPLY, device::AGREE_APPLY),
-        WriteRequest::Save if hurts => (device::DANGER_SAVE, device::AGREE_SAVE),
-        WriteRequest::Save if is_nothing => (device::SAVE_NOTHING, device::AGREE_SAVE),
-        WriteRequest::Save if staged => (device::SAVE_TITLE, device::AGREE_APPLY_SAVE),
-        WriteRequest::Save => (device::SAVE_TITLE, device::AGREE),
+    let (title, agree) = match is_save {
+        false => (device::DANGER_APPLY, device::AGREE_APPLY),
+        true if hurts => (device::DANGER_SAVE, device::AGREE_SAVE),
+        true if is_nothing => (device::SAVE_NOTHING, device::AGREE_SAVE),
+        true if staged => (device::SAVE_TITLE, device::AGREE_APPLY_SAVE),
+        true => (device::SAVE_TITLE, device::AGREE),
     };
     let mut card = Card::new(look, title);
-    if matches!(question.what, WriteRequest::Save) {
+    if is_save {
         card = changes(state, look, card);
     }
     let mut role = ButtonRole::Main;
     if hurts {
-        card = dangers(look, card, &question.dangers);
+        card = dangers(look, card, &risks.dangers);
         role = ButtonRole::Danger;
     }
-    let hand = state.hand();
-    let why = hand.params.write_refusal(&hand.connection.status);
-    let decline = Action::Param(ParamAction::Decline);
-    let agree = CardButton::new(agree, role, Action::Param(ParamAction::Agree));
-    card.choice(CardButton::new(device::DECLINE, ButtonRole::Safe, decline))
-        .choice(agree.disabled(why.map(device::refusal)))
+    let why = rest_refusal(&state.hand().connection.status).map(device::refusal);
+    let decline = answer(device::DECLINE, ButtonRole::Safe, question, false);
+    let agree = answer(agree, role, question, true);
+    Some(card.choice(decline).choice(agree.disabled(why)))
 }
 
 /// Adds the changes that a SAVE makes for the next power-up, row by row.

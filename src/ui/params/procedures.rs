@@ -10,16 +10,14 @@ use crate::hand::Moment;
 use crate::params::place::{PlacePair, WhichPlace};
 use crate::params::rows::ParamId;
 use crate::record::Saved;
-use crate::tasks::TaskError;
-use crate::tasks::place::{
-    CONFIRM_TIMEOUT, PlaceChange, PlaceEnd, PlaceReport, PlaceStep, taken_back_at,
-};
-use crate::tasks::reset::{ResetEnd, ResetProof, ResetReport, ResetStep};
+use crate::tasks::place::{CONFIRM_TIMEOUT, PlaceChange, PlaceEnd, PlaceReport, taken_back_at};
+use crate::tasks::reset::{ResetEnd, ResetProof, ResetReport};
+use crate::tasks::{Question, TaskError, TaskStep};
 use crate::transport::Endpoint;
 use crate::ui::kit::{ButtonRole, Card, CardButton, Look};
 use crate::ui::params::calibration;
 use crate::ui::params::card as device_card;
-use crate::ui::params::choices::{asking, close, step};
+use crate::ui::params::choices::{answer, asking, close, step};
 use crate::ui::params::table::value_text;
 use crate::ui::text::{Text, cards, device, errors, main};
 use std::path::Path;
@@ -93,27 +91,37 @@ fn place_card(state: &State, look: Look, run: &PlaceProcedure) -> Card {
     let change = &run.change;
     let places = &change.places;
     let card = Card::new(look, cards::CHANGING);
+    match run.question() {
+        Some((Question::KeepPlace(place), since)) => {
+            return keep_card(state, change, *place, since);
+        }
+        Some((question, _)) => return offer_card(look, run, question),
+        None => {}
+    }
     match &run.stage {
         ProcedureStage::Asking => confirm_change(state, look, run),
         ProcedureStage::Over(Ok(report)) => change_over(look, card, places, report),
         ProcedureStage::Over(Err(error)) => not_begun(look, card, error),
-        ProcedureStage::Doing(step, since) => match step {
-            PlaceStep::BackingUp | PlaceStep::BackedUp(..) => {
-                card.progress(0.1, device::BACKING_UP)
-            }
-            PlaceStep::Looking(place) => {
-                card.progress(0.6, (cards::LOOKING, places.endpoint(*place)))
-            }
-            PlaceStep::Writing(place) => {
-                card.progress(0.4, (cards::WRITING, places.endpoint(*place)))
-            }
-            PlaceStep::Keeping(place) => keep_card(state, change, *place, *since),
-            PlaceStep::Returning => Card::new(look, cards::GOING_BACK).progress(0.9, String::new()),
-            PlaceStep::Offering(_) => offer_card(look, run),
-            PlaceStep::Saving(_) => {
-                Card::new(look, cards::OFFER_TITLE).progress(0.8, device::SAVING)
-            }
-        },
+        ProcedureStage::Doing(step, _) => progress(look, card, step, places),
+    }
+}
+
+/// The card of a task in progress.
+fn progress(look: Look, card: Card, step: &TaskStep, places: &PlacePair) -> Card {
+    match step {
+        TaskStep::Looking(place) => card.progress(0.6, (cards::LOOKING, places.endpoint(*place))),
+        TaskStep::Writing(place) => card.progress(0.4, (cards::WRITING, places.endpoint(*place))),
+        TaskStep::Resetting => card.progress(0.4, cards::RESET_SENDING),
+        TaskStep::Returning => Card::new(look, cards::GOING_BACK).progress(0.9, String::new()),
+        TaskStep::Kept(_) | TaskStep::Saving => {
+            Card::new(look, cards::OFFER_TITLE).progress(0.8, device::SAVING)
+        }
+        TaskStep::BackingUp
+        | TaskStep::BackedUp(..)
+        | TaskStep::Read(..)
+        | TaskStep::Row(_)
+        | TaskStep::Calibrating
+        | TaskStep::Measuring => card.progress(0.1, device::BACKING_UP),
     }
 }
 
@@ -123,8 +131,9 @@ fn keep_card(state: &State, change: &PlaceChange, place: WhichPlace, since: Mome
     let part = seconds / CONFIRM_TIMEOUT.as_secs_f32();
     let left = format!("{:.0} s", seconds.ceil());
     let lost = (!state.hand().connection.status.state.is_live()).then_some(main::REFUSED_OFFLINE);
-    let keep = step(cards::KEEP, ButtonRole::Main, ProcedureAction::Keep);
-    let back = step(cards::GO_BACK, ButtonRole::Plain, ProcedureAction::GoBack);
+    let question = Question::KeepPlace(place);
+    let keep = answer(cards::KEEP, ButtonRole::Main, &question, true);
+    let back = answer(cards::GO_BACK, ButtonRole::Plain, &question, false);
     Card::new(look, cards::KEEP_TITLE)
         .words(from_to(look, change))
         .words(match place {
@@ -137,7 +146,7 @@ fn keep_card(state: &State, change: &PlaceChange, place: WhichPlace, since: Mome
         .choice(keep.disabled(lost))
 }
 
-fn offer_card(look: Look, run: &PlaceProcedure) -> Card {
+fn offer_card(look: Look, run: &PlaceProcedure, question: &Question) -> Card {
     let mut card =
         Card::new(look, cards::OFFER_TITLE).words((cards::OFFER, &run.change.places.old));
     let (mut text, mut role) = (cards::SAVE, ButtonRole::Main);
@@ -145,9 +154,8 @@ fn offer_card(look: Look, run: &PlaceProcedure) -> Card {
         card = device_card::dangers(look, card.words(cards::OFFER_ALL), &run.dangers);
         (text, role) = (device::AGREE_SAVE, ButtonRole::Danger);
     }
-    let leave = ProcedureAction::LeaveUnsaved;
-    card.choice(step(cards::UNSAVED, ButtonRole::Safe, leave))
-        .choice(step(text, role, ProcedureAction::Save))
+    card.choice(answer(cards::UNSAVED, ButtonRole::Safe, question, false))
+        .choice(answer(text, role, question, true))
 }
 
 fn change_over(look: Look, card: Card, places: &PlacePair, report: &PlaceReport) -> Card {
@@ -236,11 +244,7 @@ fn reset_card(state: &State, look: Look, run: &ResetProcedure) -> Card {
             let card = now_and_then(card, places).typed(RESET_WORD);
             asking(state, card, begin(cards::RESET))
         }
-        ProcedureStage::Doing(ResetStep::BackingUp, _) => card.progress(0.1, device::BACKING_UP),
-        ProcedureStage::Doing(ResetStep::Sending, _) => card.progress(0.4, cards::RESET_SENDING),
-        ProcedureStage::Doing(ResetStep::Looking(place), _) => {
-            card.progress(0.7, (cards::LOOKING, places.endpoint(*place)))
-        }
+        ProcedureStage::Doing(step, _) => progress(look, card, step, places),
         ProcedureStage::Over(Ok(report)) => reset_over(look, card, places, report),
         ProcedureStage::Over(Err(error)) => not_begun(look, card, error),
     }

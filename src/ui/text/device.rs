@@ -1,10 +1,11 @@
 //! Sentences of the hand's parameters: rows, verdicts, SAVE, files.
 
-use crate::app::params::state::ParamRefusal;
-use crate::app::params::state::{Doing, SaveEnd};
+use crate::app::params::state::{Doing, ParamRefusal};
 use crate::params::changes::{RowOutcome, RowVerdict};
 use crate::params::rows::ParamId;
 use crate::record::{Doubt, NotSent, SaveDoubt, Saved};
+use crate::tasks::TaskError;
+use crate::tasks::save::SaveReport;
 use crate::ui::style::Look;
 use crate::ui::style::phrase::{Text, texts};
 use crate::ui::text::{errors, main, words};
@@ -161,7 +162,7 @@ texts! {
 /// Operation in progress; `None` if there is none.
 pub(crate) const fn doing(doing: Doing) -> Option<Text> {
     match doing {
-        Doing::Nothing => None,
+        Doing::Nothing | Doing::Asking => None,
         Doing::Reading => Some(READING),
         Doing::Applying => Some(APPLYING),
         Doing::BackingUp => Some(BACKING_UP),
@@ -244,24 +245,37 @@ fn not_sent(look: Look, why: NotSent) -> String {
 }
 
 /// Outcome of a SAVE.
-pub(crate) fn save_end(look: Look, end: &SaveEnd) -> String {
-    match end {
-        SaveEnd::Reported(result) => saved(look, result),
-        SaveEnd::NoBackup(why) => look.tr_with(SAVE_NO_BACKUP, errors::backup(look, why)),
-        SaveEnd::NotAsked(error) => look.tr_with(SAVE_NOT_SENT, errors::request(look, error)),
-        SaveEnd::NotApplied => look.tr(SAVE_NOT_APPLIED).into(),
-        SaveEnd::NotNoted(result, error) => format!(
-            "{} {} {}",
-            saved(look, result),
+pub(crate) fn save_end(look: Look, end: &Result<SaveReport, TaskError>) -> String {
+    let report = match end {
+        Ok(report) => report,
+        Err(TaskError::NoBackup(why)) => {
+            return look.tr_with(SAVE_NO_BACKUP, errors::backup(look, why));
+        }
+        Err(TaskError::NotAsked(error)) => {
+            return look.tr_with(SAVE_NOT_SENT, errors::request(look, error));
+        }
+        Err(TaskError::NotApplied) => return look.tr(SAVE_NOT_APPLIED).into(),
+        Err(error) => return errors::task(look, error),
+    };
+    let result = saved(look, &report.saved);
+    match &report.not_noted {
+        None => result,
+        Some(error) => format!(
+            "{result} {} {}",
             look.tr(SAVE_NOT_NOTED),
             errors::system_error(look, error)
         ),
     }
 }
 
-/// True if the parameters are saved, as far as the wire shows.
-pub(crate) const fn is_saved(end: &SaveEnd) -> bool {
-    matches!(end, SaveEnd::Reported(Saved::Confirmed | Saved::ReadBack))
+/// True if the parameters are saved, as far as the wire shows, and that was recorded.
+pub(crate) const fn is_saved(end: &Result<SaveReport, TaskError>) -> bool {
+    match end {
+        Ok(report) => {
+            report.not_noted.is_none() && matches!(report.saved, Saved::Confirmed | Saved::ReadBack)
+        }
+        Err(_) => false,
+    }
 }
 
 pub(crate) fn saved(look: Look, saved: &Saved) -> String {
@@ -309,7 +323,9 @@ pub(crate) fn why(look: Look, why: &str) -> String {
 mod tests {
     use super::*;
     use crate::app::settings::{Language, Theme};
+    use crate::params::values::Params;
     use crate::ui::theme::Palette;
+    use std::path::PathBuf;
     use std::time::Duration;
 
     #[test]
@@ -336,7 +352,12 @@ mod tests {
             ),
             (Saved::NotSent(NotSent::TooSoon { wait }), "wait 3 s", false),
         ] {
-            let end = SaveEnd::Reported(saved);
+            let end = Ok(SaveReport {
+                params: Params::default(),
+                backup: PathBuf::new(),
+                saved,
+                not_noted: None,
+            });
             let text = save_end(look, &end);
             assert!(text.contains(words), "{text}");
             assert_eq!(is_saved(&end), is_ok, "{text}");

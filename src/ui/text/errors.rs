@@ -200,7 +200,8 @@ chinese! {
     fn task_zh(&TaskError) as task {
         TaskError::NotRead { id, why } => "无法读取 {}：{}", id.name(), request_zh(why);
         TaskError::NotReached => "灵巧手没有应答。";
-        TaskError::NotMeant(_) => "没有确认要这样做。";
+        TaskError::Declined(_) => "没有确认要这样做。";
+        TaskError::NotApplied => "并非所有行都已应用，因此未保存。";
         TaskError::NoBackup(why) => "无法备份，未向灵巧手写入任何内容：{}。", backup_zh(why);
         TaskError::NotAsked(error) => "{}", request_zh(error);
     }
@@ -645,7 +646,8 @@ mod tests {
                 why: RequestError::LinkLost,
             },
             TaskError::NotReached,
-            TaskError::NotMeant(Risks::default()),
+            TaskError::Declined(Risks::default()),
+            TaskError::NotApplied,
             TaskError::NoBackup(BackupError::NoFolder),
             TaskError::NoBackup(BackupError::System(system(28))),
             TaskError::NotAsked(RequestError::NotArmed),

@@ -1,9 +1,9 @@
 //! Sentences of inputs that may move the hand besides the window: streams, the gateway, a gamepad with its controls and actions.
 
 use crate::inputs::dds::ctrl::CtrlFault;
-use crate::inputs::follow::FollowPhase;
 use crate::inputs::line::StreamLineFault;
 use crate::inputs::pad::{PadAction, PadControl};
+use crate::motion::following::FollowPhase;
 use crate::ui::style::phrase::texts;
 
 texts! {

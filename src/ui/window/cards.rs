@@ -11,7 +11,7 @@ use crate::ui::trials::compare;
 
 pub(super) fn is_covered(state: &State) -> bool {
     state.hand().procedures.card.is_some()
-        || state.hand().params.question.is_some()
+        || state.hand().params.question().is_some()
         || state.trials.to_confirm.is_some()
         || state.recordings.to_delete.is_some()
         || state.leave.is_some()

@@ -7,10 +7,10 @@ use crate::setup::time::in_virtual_time;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{Dof, Force, PerDof, Speed};
 use handscope::inputs::dds::ctrl::CtrlFault;
-use handscope::inputs::dds::source::{DdsCommands, DdsSource, DdsSourceConfig};
-use handscope::inputs::follow::FollowPhase;
+use handscope::inputs::dds::source::{DdsCommands, DdsSource};
+use handscope::inputs::offer::SourceSite;
 use handscope::link::{ArmRequest, Owner};
-use handscope::motion::follow::FollowEnd;
+use handscope::motion::following::FollowPhase;
 use handscope::record::Abort;
 use handscope::record::{Disarmed, Record, WriteCause};
 use handscope::transport::dds::{DdsMessage, DdsWriterId};
@@ -36,20 +36,9 @@ fn message(from: DdsWriterId, [angle, force, speed]: [i16; 3], mode: u8) -> DdsM
 fn source(stage: &Stage, allowed: ArmRequest) -> (mpsc::Sender<DdsMessage>, DdsSource) {
     let (messages, ctrl) = mpsc::channel(64);
     let (_none, motors) = mpsc::channel(1);
-    let config = DdsSourceConfig {
-        side: Side::Right,
-        allowed,
-        clock: stage.clock(),
-        stop: {
-            let link = stage.link().clone();
-            Arc::new(move || drop(link.stop()))
-        },
-        wake: Arc::new(|| ()),
-    };
-    (
-        messages,
-        DdsSource::open(config, DdsCommands { ctrl, motors }),
-    )
+    let site = SourceSite::of(stage.link(), Side::Right, Arc::new(|| ()));
+    let source = DdsSource::open(allowed, site, DdsCommands { ctrl, motors });
+    (messages, source)
 }
 
 /// Sends these angles a hundred times a second.
@@ -87,7 +76,7 @@ fn a_sender_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
         stage.pass(300).await;
         assert_eq!(source.view().refused, [(CtrlFault::OtherSender, 50)].into());
         let (end, phases) = task.await.unwrap();
-        assert_eq!(end, Ok(FollowEnd::Silent));
+        assert_eq!(end, Ok(()));
         for phase in [FollowPhase::Frozen, FollowPhase::Silent] {
             assert!(phases.contains(&phase), "{phase:?}: {phases:?}");
         }
@@ -104,7 +93,7 @@ fn a_sender_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
         assert_eq!(stage.index().last().unwrap().to, 1000);
         drop(messages);
         stage.pass(1500).await;
-        assert_eq!(task.await.unwrap().0, Ok(FollowEnd::Silent));
+        assert_eq!(task.await.unwrap().0, Ok(()));
         check(&stage.index());
     });
 }
@@ -140,7 +129,7 @@ fn what_is_refused_moves_nothing_and_is_counted() {
         let view = source.view();
         assert_eq!((view.taken, view.refused), (0, refused.into()));
         stage.pass(1000).await;
-        assert_eq!(task.await.unwrap().0, Ok(FollowEnd::Silent));
+        assert_eq!(task.await.unwrap().0, Ok(()));
         // A stop, where it stands.
         let sent = stage.index();
         assert!(
@@ -183,7 +172,7 @@ fn speeds_and_forces_within_what_a_person_allows_reach_the_hand_once() {
         }
         drop((messages, source));
         stage.pass(100).await;
-        assert_eq!(task.await.unwrap().0, Ok(FollowEnd::Gone));
+        assert_eq!(task.await.unwrap().0, Ok(()));
     });
 }
 

@@ -6,10 +6,10 @@ use crate::setup::link::{gentle, to_hand};
 use crate::setup::time::in_virtual_time;
 use handscope::hand::gap::{Gap, gap_on_path};
 use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Setpoints, Target};
-use handscope::inputs::follow::{FollowLimits, FollowPhase};
 use handscope::inputs::{Offer, OfferLimits};
 use handscope::link::{self, Clock, HoldToRun, Lease, LinkHandle, Owner, Records};
-use handscope::motion::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
+use handscope::motion::follow::{FollowStart, FollowTerms, FollowView, follow};
+use handscope::motion::following::{FollowLimits, FollowPhase};
 use handscope::motion::program::Ended;
 use handscope::record::Abort;
 use handscope::record::{ArmRefusal, Disarmed, Record, WriteCause};
@@ -21,7 +21,7 @@ use tokio::task::JoinHandle;
 use tokio::time::sleep;
 
 /// A task that follows, with its end and its phases.
-type Following = JoinHandle<(Ended<FollowEnd>, Vec<FollowPhase>)>;
+type Following = JoinHandle<(Ended<()>, Vec<FollowPhase>)>;
 
 const LIMITS: FollowLimits = FollowLimits {
     lead: 120,
@@ -218,7 +218,7 @@ fn a_source_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
         drop(offers);
         stage.pass(600).await;
         let (end, phases) = task.await.unwrap();
-        assert_eq!(end, Ok(FollowEnd::Gone));
+        assert_eq!(end, Ok(()));
         assert!(phases.contains(&FollowPhase::Frozen), "{phases:?}");
         let status = stage.link.status();
         assert_eq!((status.armed, status.holder), (None, None));
@@ -235,7 +235,7 @@ fn a_source_that_starts_freezes_is_killed_and_restarts_never_jumps_the_hand() {
         // It falls silent, but is not gone.
         stage.pass(1500).await;
         let (end, phases) = task.await.unwrap();
-        assert_eq!(end, Ok(FollowEnd::Silent));
+        assert_eq!(end, Ok(()));
         assert!(phases.contains(&FollowPhase::Silent), "{phases:?}");
         assert_eq!(stage.link.status().disarmed, Some(Disarmed::Silent));
         check(&stage.index());

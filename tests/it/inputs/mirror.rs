@@ -6,10 +6,11 @@ use crate::setup::time::in_virtual_time;
 use crate::setup::{hand, link};
 use handscope::hand::register::ANGLE_SET;
 use handscope::hand::{Dof, HandSample};
-use handscope::inputs::follow::{END_TIMEOUT, FollowPhase, HOLD_TIMEOUT};
 use handscope::inputs::mirror::{MirrorScale, MirrorSource};
+use handscope::inputs::offer::{END_TIMEOUT, HOLD_TIMEOUT};
 use handscope::link::{Clock, LinkHandle, Owner, Records};
-use handscope::motion::follow::{FollowEnd, FollowStart, FollowTerms, FollowView, follow};
+use handscope::motion::follow::{FollowStart, FollowTerms, FollowView, follow};
+use handscope::motion::following::FollowPhase;
 use handscope::motion::program::Ended;
 use handscope::record::Abort;
 use handscope::record::{Disarmed, LinkState, Record, WriteCause};
@@ -122,7 +123,7 @@ struct Stage {
     source: MirrorSource,
 }
 
-type Following = JoinHandle<(Ended<FollowEnd>, Vec<FollowPhase>)>;
+type Following = JoinHandle<(Ended<()>, Vec<FollowPhase>)>;
 
 impl Stage {
     async fn begin(share: f32) -> Self {
@@ -237,7 +238,7 @@ fn a_lost_leader_holds_the_follower_and_ends_it_and_nothing_moves_when_it_is_bac
         let lost = stage.clock.now();
         let (end, phases) = following.await.unwrap();
         let took = stage.clock.now().since(lost);
-        assert_eq!(end, Ok(FollowEnd::Silent));
+        assert_eq!(end, Ok(()));
         assert!(took > END_TIMEOUT - HOLD_TIMEOUT && took < END_TIMEOUT + HOLD_TIMEOUT);
         assert_eq!(phases.last(), Some(&FollowPhase::Silent));
         assert!(stage.source.view().owner(stage.clock.now()).is_none());

@@ -4,7 +4,8 @@ use handscope::hand::Dof;
 use handscope::hand::gap::Gap;
 use handscope::hand::kinematics::Side;
 use handscope::inputs::line::StreamLineFault;
-use handscope::inputs::stream::{StreamConfig, StreamPlace, StreamSource, StreamView};
+use handscope::inputs::offer::SourceSite;
+use handscope::inputs::stream::{StreamPlace, StreamSource, StreamView};
 use handscope::link::Clock;
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -20,8 +21,7 @@ pub(super) fn free() -> SocketAddr {
 
 pub(super) fn open(place: StreamPlace, stops: &Arc<AtomicU64>) -> StreamSource {
     let stops = Arc::clone(stops);
-    let config = StreamConfig {
-        place,
+    let site = SourceSite {
         side: Side::Right,
         clock: Clock::start(),
         stop: Arc::new(move || {
@@ -29,7 +29,7 @@ pub(super) fn open(place: StreamPlace, stops: &Arc<AtomicU64>) -> StreamSource {
         }),
         wake: Arc::new(|| ()),
     };
-    StreamSource::open(config, &Handle::current()).unwrap()
+    StreamSource::open(place, site, &Handle::current()).unwrap()
 }
 
 /// Waits until what came in is as wanted.

@@ -3,6 +3,8 @@
 use crate::pad::setup::{XBOX, angles, event, facts};
 use crate::setup::link;
 use handscope::hand::Moment;
+use handscope::hand::kinematics::Side;
+use handscope::inputs::offer::SourceSite;
 use handscope::inputs::pad::device::{PadReader, find};
 use handscope::inputs::pad::input::PadAim;
 use handscope::inputs::pad::reader::{DeviceSays, OpenPad, PadDevice};
@@ -10,7 +12,6 @@ use handscope::inputs::pad::source::{PadSource, PadSourceConfig, PadView};
 use handscope::inputs::pad::{
     KernelEvent, PadFacts, PadId, PadInput, PadMap, PadNews, PadReport, PadTrouble,
 };
-use handscope::link::Clock;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, ErrorKind, Read as _, Write as _};
@@ -208,9 +209,7 @@ async fn the_poses_of_a_pad_that_is_followed_can_be_changed() {
         reader,
         input: PadInput::new(PadMap::usual()),
         records,
-        clock: Clock::start(),
-        stop: Arc::new(|| ()),
-        wake: Arc::new(|| ()),
+        site: SourceSite::of(&link, Side::Right, Arc::new(|| ())),
     });
     let until = async |so: &dyn Fn(&PadView) -> bool| {
         let waits = async {

@@ -10,7 +10,7 @@ use handscope::app::exhibit::ExhibitAction;
 use handscope::app::files::export::{Export, TrafficForm};
 use handscope::app::hand::HoldKey;
 use handscope::app::hands::list::HandsAction;
-use handscope::app::inputs::{InputAction, InputSource};
+use handscope::app::inputs::InputAction;
 use handscope::app::layout::Layout;
 use handscope::app::params::ParamAction;
 use handscope::app::procedures::ProcedureAction;
@@ -26,9 +26,11 @@ use handscope::hand::kinematics::Side;
 use handscope::hand::register::{Persistence, by_address};
 use handscope::hand::{Angle, Dof, Fault, Force, Gesture, GestureRoute, Moment, Speed};
 use handscope::history::{Mark, MarkKind};
-use handscope::inputs::follow::FollowLimits;
 use handscope::inputs::pad::PadMap;
 use handscope::link::PollPriority;
+use handscope::motion::following::FollowLimits;
+use handscope::motion::source::SourceKind;
+use handscope::params::place::WhichPlace;
 use handscope::params::rows::{ParamId, Value};
 use handscope::params::values::Params;
 use handscope::poses::edit::LibraryEdit;
@@ -36,6 +38,7 @@ use handscope::poses::library::{EntryId, PoseId, SequenceId};
 use handscope::poses::{Play, Preset};
 use handscope::record::export::ExportFormat;
 use handscope::sim::JournalEntry;
+use handscope::tasks::{Question, Risks};
 use handscope::transport::Endpoint;
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -58,10 +61,10 @@ fn inputs() -> Vec<InputAction> {
         InputAction::Show(None),
         InputAction::JoinDds(None),
         InputAction::Mirror(None),
-        InputAction::Grant(InputSource::Stream),
-        InputAction::Grant(InputSource::Dds),
-        InputAction::Grant(InputSource::Pad),
-        InputAction::Grant(InputSource::Mirror),
+        InputAction::Grant(SourceKind::Stream),
+        InputAction::Grant(SourceKind::Dds),
+        InputAction::Grant(SourceKind::Pad),
+        InputAction::Grant(SourceKind::Mirror),
         InputAction::GrantClient(Default::default()),
         InputAction::TakeBack,
         InputAction::Limit(FollowLimits::default()),
@@ -76,8 +79,6 @@ fn params() -> Vec<ParamAction> {
         ParamAction::Undo,
         ParamAction::Save,
         ParamAction::SaveWith(Params::default()),
-        ParamAction::Agree,
-        ParamAction::Decline,
         ParamAction::CopyLive,
         ParamAction::UnstageAll,
         ParamAction::Dump,
@@ -89,14 +90,7 @@ fn params() -> Vec<ParamAction> {
 }
 
 fn procedures() -> Vec<ProcedureAction> {
-    vec![
-        ProcedureAction::Begin,
-        ProcedureAction::Keep,
-        ProcedureAction::GoBack,
-        ProcedureAction::Save,
-        ProcedureAction::LeaveUnsaved,
-        ProcedureAction::Close,
-    ]
+    vec![ProcedureAction::Begin, ProcedureAction::Close]
 }
 
 fn trials() -> Vec<TrialAction> {
@@ -270,6 +264,15 @@ fn all(things: Things) -> Vec<Action> {
     all.extend(inputs().into_iter().map(Action::Input));
     all.extend(params().into_iter().map(Action::Param));
     all.extend(procedures().into_iter().map(Action::Procedure));
+    let questions = [
+        Question::Apply(Risks::default()),
+        Question::Save(Risks::default()),
+        Question::KeepPlace(WhichPlace::New),
+        Question::SavePlace(WhichPlace::New),
+    ];
+    for question in questions {
+        all.extend([true, false].map(|yes| Action::Answer(question.clone(), yes)));
+    }
     all.extend(trials().into_iter().map(Action::Trial));
     all.extend(checkups().map(Action::Checkup));
     all.extend(sessions().into_iter().map(Action::Recording));

@@ -11,11 +11,11 @@ use handscope::params::rows::{ParamId, Value};
 use handscope::params::values::Params;
 use handscope::record::{SaveDoubt, Saved, Verdict};
 use handscope::sim::{Personality, SaveAnswer};
-use handscope::tasks::Consent;
 use handscope::tasks::apply::{Apply, Otherwise, apply};
 use handscope::tasks::hand::{REACH_TIMEOUT, answers};
 use handscope::tasks::read::rows;
 use handscope::tasks::save::{Save, save};
+use handscope::tasks::{Question, Risks};
 use handscope::transport::{Pipe, pair};
 use std::sync::Arc;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -80,22 +80,26 @@ async fn one_lost_reply_makes_neither_apply_nor_save_fail() {
             let task = Apply {
                 overshoot: std::sync::Arc::default(),
                 wanted,
-                consent: Consent::Given,
+                agreed: Risks::default(),
                 backups: Some(backups.clone()),
                 otherwise: Otherwise::Undo,
             };
             lose_after(&line, Duration::from_millis(ms));
-            let applied = apply(&link, &task, |_| ()).await.unwrap();
+            let applied = apply(&link, &task, &mut |_: &Question| true, |_| ())
+                .await
+                .unwrap();
             assert!(applied.is_whole(), "{wire} after {ms} ms: {applied:?}");
             sleep(Duration::from_secs(5)).await;
             let task = Save {
                 overshoot: std::sync::Arc::default(),
                 backups: backups.clone(),
                 before: applied.before,
-                consent: Consent::Given,
+                agreed: Risks::default(),
             };
             lose_after(&line, Duration::from_millis(ms));
-            let saved = save(&link, &task, |_| ()).await.unwrap();
+            let saved = save(&link, &task, &mut |_: &Question| true, |_| ())
+                .await
+                .unwrap();
             let unanswered = Saved::Unknown {
                 why: SaveDoubt::Unanswered,
             };

@@ -4,13 +4,14 @@
 use crate::program::{Bench, spoil};
 use crate::setup::line::Trouble;
 use handscope::app::action::Action;
-use handscope::app::params::state::{Doing, SaveEnd, WriteRequest};
+use handscope::app::params::state::Doing;
 use handscope::app::params::{ParamAction, ParamRefusal};
 use handscope::app::procedures::{Procedure, ProcedureAction};
 use handscope::app::readings::Freshness;
 use handscope::hand::{Dof, Span};
 use handscope::params::rows::{ParamId, Value};
 use handscope::record::Saved;
+use handscope::tasks::Question;
 use handscope::tasks::reset::ResetEnd;
 use tokio::time::Duration;
 
@@ -19,6 +20,17 @@ const SAVE: u16 = 1005;
 
 fn ask(bench: &mut Bench, action: ParamAction) {
     bench.act(Action::Param(action));
+}
+
+/// Answers the open question; its joints that would hit harder.
+fn answer(bench: &mut Bench, yes: bool) -> Vec<Dof> {
+    let question = bench.hand().params.question().unwrap().clone();
+    let (Question::Apply(risks) | Question::Save(risks)) = &question else {
+        panic!("{question:?}");
+    };
+    let joints = risks.dangers.iter().map(|danger| danger.dof).collect();
+    bench.act(Action::Answer(question, yes));
+    joints
 }
 
 fn stage(bench: &mut Bench, id: ParamId, number: i32) {
@@ -41,8 +53,12 @@ fn staged(bench: &Bench, id: ParamId) -> Option<Value> {
 
 async fn done(bench: &mut Bench) {
     bench.run(10).await;
-    let idle = |hand: &handscope::app::hands::Hand| !hand.params.is_busy();
-    bench.until("it ends", |state| idle(state.hand())).await;
+    let idle = |hand: &handscope::app::hands::Hand| {
+        !hand.params.is_busy() || hand.params.question().is_some()
+    };
+    bench
+        .until("it ends or asks", |state| idle(state.hand()))
+        .await;
 }
 
 async fn read(bench: &mut Bench) {
@@ -166,17 +182,26 @@ async fn what_could_hurt_is_asked_first_and_written_only_when_meant() {
     ask(&mut bench, ParamAction::Apply);
     done(&mut bench).await;
     assert_eq!(bench.addresses(), [0_u16; 0], "nothing before the answer");
-    let question = bench.hand().params.question.clone().unwrap();
-    assert!(matches!(question.what, WriteRequest::Apply(_)));
-    let joints: Vec<_> = question.dangers.iter().map(|danger| danger.dof).collect();
-    assert_eq!(joints, [Dof::Index]);
-    ask(&mut bench, ParamAction::Decline);
-    ask(&mut bench, ParamAction::Agree);
+    let question = bench.hand().params.question().unwrap().clone();
+    assert!(matches!(question, Question::Apply(_)));
+    let Question::Apply(mut other) = question.clone() else {
+        panic!("{question:?}");
+    };
+    other.dangers.clear();
+    bench.act(Action::Answer(Question::Apply(other), true));
+    bench.run(100).await;
+    assert_eq!(
+        bench.hand().params.question(),
+        Some(&question),
+        "an answer to another question"
+    );
+    assert_eq!(answer(&mut bench, false), [Dof::Index]);
+    bench.act(Action::Answer(question, true));
     done(&mut bench).await;
     assert_eq!(bench.addresses(), [0_u16; 0]);
     ask(&mut bench, ParamAction::Apply);
     done(&mut bench).await;
-    ask(&mut bench, ParamAction::Agree);
+    answer(&mut bench, true);
     done(&mut bench).await;
     assert_eq!(live(&bench, INDEX), Some(Value::Number(1000)));
 }
@@ -229,11 +254,11 @@ async fn a_save_is_told_and_noted_beside_its_backup() {
     ask(&mut bench, ParamAction::Save);
     done(&mut bench).await;
     assert_eq!(bench.addresses(), [0_u16; 0], "it asks first");
-    ask(&mut bench, ParamAction::Agree);
+    answer(&mut bench, true);
     done(&mut bench).await;
     assert_eq!(bench.addresses(), [SAVE]);
     let end = bench.hand().params.save.clone().unwrap().0;
-    assert_eq!(end, SaveEnd::Reported(Saved::Confirmed));
+    assert_eq!(end.map(|report| report.saved), Ok(Saved::Confirmed));
     bench
         .until("its files are read", |state| {
             state.hand().params.known.saved.is_some()
@@ -310,13 +335,7 @@ async fn after_a_change_of_address_no_row_is_shown_as_it_was() {
     bench.act(Action::ChangePlace(ip, wanted));
     bench.act(Action::Procedure(ProcedureAction::Begin));
     let is_there = |hand: &handscope::app::hands::Hand| match &hand.procedures.card {
-        Some(Procedure::Place(card)) => {
-            card.stage.end().is_some() || {
-                use handscope::app::procedures::ProcedureStage::Doing;
-                use handscope::tasks::place::PlaceStep::Keeping;
-                matches!(card.stage, Doing(Keeping(_), _))
-            }
-        }
+        Some(Procedure::Place(card)) => card.stage.end().is_some() || card.question().is_some(),
         _ => false,
     };
     bench

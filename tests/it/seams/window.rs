@@ -13,7 +13,7 @@ use handscope::app::checkup::CheckupAction;
 use handscope::app::env::Env;
 use handscope::app::exhibit::{ExhibitAction, Exhibition};
 use handscope::app::hands::list::HandsAction;
-use handscope::app::inputs::{InputAction, InputSource};
+use handscope::app::inputs::InputAction;
 use handscope::app::procedures::procedure::ProcedureAction;
 use handscope::app::settings::Settings;
 use handscope::app::trials::{SeriesKind, TrialAction};
@@ -26,6 +26,7 @@ use handscope::hand::{Angle, Dof, Force, PerDof, Setpoints, Speed, Target};
 use handscope::inputs::mirror::MirrorScale;
 use handscope::inputs::pad::device::{OpenPads, PadReader};
 use handscope::inputs::pad::{PadNews, PadReport};
+use handscope::motion::source::SourceKind;
 use handscope::poses::Play;
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
 use handscope::poses::library::{EntryId, PoseId};
@@ -246,7 +247,7 @@ impl Window {
         let wanted = Some((leader, MirrorScale::WHOLE));
         self.act(Action::Input(InputAction::Mirror(wanted)));
         self.run(300);
-        self.act(Action::Input(InputAction::Grant(InputSource::Mirror)));
+        self.act(Action::Input(InputAction::Grant(SourceKind::Mirror)));
         self.until("led", |window| window.state() == LinkState::Armed);
         self.leader.with(|hand, now| {
             let speeds = slow().get().to_le_bytes().repeat(6);
@@ -376,8 +377,8 @@ impl Mover for Window {
 
     fn grant(&mut self, may: bool) {
         let source = match self.program.state().hand().inputs.pad_view {
-            Some(_) => InputSource::Pad,
-            None => InputSource::Mirror,
+            Some(_) => SourceKind::Pad,
+            None => SourceKind::Mirror,
         };
         self.act(Action::Input(match may {
             true => InputAction::Grant(source),

@@ -203,7 +203,7 @@ fn check_gentle(state: &State, speed: i32) {
 fn keep(person: &mut Person) {
     person.press("Make it the default");
     person.until("the question", |state| {
-        state.hand().params.question.is_some()
+        state.hand().params.question().is_some()
     });
     person.press("Apply and save");
     person.until("the end of SAVE", |state| {

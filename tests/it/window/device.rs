@@ -4,8 +4,8 @@ use crate::setup::window::{Bench, LARGE, Role, SPEED_SET};
 use egui::{Key, vec2};
 use handscope::app::action::Action;
 use handscope::app::notices::NoticeKind;
+use handscope::app::params::state::Doing;
 use handscope::app::params::state::ParamAction;
-use handscope::app::params::state::{Doing, SaveEnd};
 use handscope::app::settings::Language;
 use handscope::hand::Dof;
 use handscope::params::rows::{ParamId, Value};
@@ -367,7 +367,7 @@ fn a_stop_passes_a_card_and_nothing_is_written_until_it_is_confirmed() {
     assert!(bench.is_disabled(Role::Button, "Apply anyway"));
     bench.click_button("Back");
     bench.run(60);
-    assert_eq!(bench.state().hand().params.question, None);
+    assert_eq!(bench.state().hand().params.question(), None);
 }
 
 #[test]
@@ -509,7 +509,7 @@ fn a_save_that_failed_or_gave_no_result_is_told_so_and_is_not_the_last_saved() {
         save(&mut bench);
         settle(&mut bench);
         let (end, _) = bench.state().hand().params.save.clone().unwrap();
-        assert_eq!(end, SaveEnd::Reported(told));
+        assert_eq!(end.map(|report| report.saved), Ok(told));
         assert!(!bench.texts_with(words).is_empty(), "{value}");
         assert_eq!(bench.reading("Index speed last saved"), "-", "{value}");
         let doubtful = bench.state().hand().params.known.doubtful.is_some();

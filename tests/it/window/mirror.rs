@@ -5,13 +5,14 @@ use crate::setup::window::{ANGLE_SET, Bench, Role};
 use handscope::app::action::Action;
 use handscope::app::hands::Hand;
 use handscope::app::hands::list::HandsAction;
-use handscope::app::inputs::{InputAction, InputSource};
+use handscope::app::inputs::InputAction;
 use handscope::app::notices::NoticeKind;
 use handscope::app::slot::SlotId;
 use handscope::hand::{Angle, Dof, Fault, Gesture, register};
-use handscope::inputs::follow::FollowPhase;
 use handscope::inputs::mirror::MirrorScale;
 use handscope::link::Owner;
+use handscope::motion::following::FollowPhase;
+use handscope::motion::source::SourceKind;
 use handscope::record::{Disarmed, LinkState};
 use handscope::ui::View;
 
@@ -187,7 +188,7 @@ fn with_one_hand_there_is_none_that_could_lead() {
     let own = slot(&bench, 0);
     let itself = InputAction::Mirror(Some((own, MirrorScale::WHOLE)));
     bench.act(Action::Input(itself));
-    bench.act(Action::Input(InputAction::Grant(InputSource::Mirror)));
+    bench.act(Action::Input(InputAction::Grant(SourceKind::Mirror)));
     bench.run(300);
     let hand = hand(&bench, 0);
     assert!(hand.inputs.mirror.is_none() && hand.connection.outside_owner().is_none());
@@ -312,7 +313,7 @@ fn hands_lead_one_another_in_no_circle() {
     lead(&mut bench, 1, 0);
     watch(&mut bench, 0, 1);
     assert!(bench.is_disabled(Role::Button, GRANT));
-    bench.act(Action::Input(InputAction::Grant(InputSource::Mirror)));
+    bench.act(Action::Input(InputAction::Grant(SourceKind::Mirror)));
     bench.run(300);
     assert_eq!(hand(&bench, 0).connection.outside_owner(), None);
     // Over a third one.
@@ -325,7 +326,7 @@ fn hands_lead_one_another_in_no_circle() {
     bench.run(1000);
     assert!(!bench.texts_with(CIRCLE).is_empty(), "it says why");
     bench.point_away();
-    bench.act(Action::Input(InputAction::Grant(InputSource::Mirror)));
+    bench.act(Action::Input(InputAction::Grant(SourceKind::Mirror)));
     bench.run(300);
     assert_eq!(
         (

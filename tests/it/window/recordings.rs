@@ -6,13 +6,14 @@ use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::app::hands::Mover;
 use handscope::app::hands::list::HandsAction;
-use handscope::app::inputs::{InputAction, InputSource};
+use handscope::app::inputs::InputAction;
 use handscope::app::notices::NoticeKind;
 use handscope::app::recordings::recording::HandRecording;
 use handscope::app::recordings::{RecordingAbout, RecordingAction, RecordingExport, RecordingItem};
 use handscope::app::settings::Theme;
 use handscope::hand::{Angle, Dof, Moment};
 use handscope::inputs::mirror::MirrorScale;
+use handscope::motion::source::SourceKind;
 use handscope::record::Entry;
 use handscope::record::EventKind;
 use handscope::record::Rest;
@@ -117,7 +118,7 @@ fn the_hand_of_a_replay_leads_none() {
     bench.run(100);
     assert!(!bench.shows("Leading hand"));
     let watch = InputAction::Mirror(Some((leader, MirrorScale::WHOLE)));
-    for action in [watch, InputAction::Grant(InputSource::Mirror)] {
+    for action in [watch, InputAction::Grant(SourceKind::Mirror)] {
         bench.act(Action::Input(action));
         bench.run(300);
     }

@@ -5,10 +5,11 @@ use crate::setup::window::{Bench, LARGE, Role};
 use crate::window::layout::check;
 use egui::vec2;
 use handscope::app::action::Action;
-use handscope::app::inputs::{InputAction, InputSource};
+use handscope::app::inputs::InputAction;
 use handscope::app::scan::{IdRange, ScanStage, ScanTarget};
 use handscope::hand::kinematics::Side;
 use handscope::link::Owner;
+use handscope::motion::source::SourceKind;
 use handscope::record::LinkState;
 use handscope::share::fleet::{self, FleetCard, FleetHand};
 use handscope::sim::{SimConfig, SimHand};
@@ -306,7 +307,7 @@ fn a_hand_elsewhere_that_follows_on_dds_keeps_this_one_from_following_too() {
     told_until(&mut bench, (&writer, &hand), |bench| other(bench).is_some());
     assert_eq!(other(&bench).map(|card| card.name), Some("first".into()));
     assert!(bench.is_disabled(Role::Button, "Let it move the hand: DDS"));
-    bench.act(Action::Input(InputAction::Grant(InputSource::Dds)));
+    bench.act(Action::Input(InputAction::Grant(SourceKind::Dds)));
     bench.run(200);
     assert_eq!(bench.state().hand().connection.outside_owner(), None);
 }

@@ -19,7 +19,7 @@ use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, Records};
 use crate::motion::drive::{Armed, STOP_LOST};
-use crate::motion::follow::{FollowEnd, FollowStart, FollowTerms, follow};
+use crate::motion::follow::{FollowStart, FollowTerms, follow};
 use crate::motion::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
 use crate::motion::program::Ended;
 use crate::record::{Disarmed, LinkState, Record, Rest};
@@ -57,7 +57,7 @@ pub(crate) struct StdioHand<'a> {
 enum TaskResult {
     Armed(Result<Right, StdioRefusal>),
     Moved(Result<Box<MoveReport>, StdioRefusal>),
-    Followed(Result<Ended<FollowEnd>, StdioRefusal>),
+    Followed(Result<Ended<()>, StdioRefusal>),
     /// The hand was stopped; fails unless feedback shows that it rests.
     Stopped(anyhow::Result<()>),
     Cleared(Result<(), StdioRefusal>),
@@ -631,13 +631,10 @@ impl StdioSession<'_> {
     }
 
     /// Handles the end of following. A script that fell silent may continue; the hand was stopped.
-    fn followed(
-        &mut self,
-        followed: Result<Ended<FollowEnd>, StdioRefusal>,
-    ) -> Result<(), NobodyReads> {
+    fn followed(&mut self, followed: Result<Ended<()>, StdioRefusal>) -> Result<(), NobodyReads> {
         let lost = match followed {
             Err(no) => no,
-            Ok(Ok(FollowEnd::Silent | FollowEnd::Gone)) => {
+            Ok(Ok(())) => {
                 let granted = self.hand.link.grant(Owner::Task);
                 if let Some(right) = &mut self.right {
                     right.lease = granted;

@@ -2,16 +2,14 @@
 //! released. Pure: offers, poses and time in, orders out.
 
 use crate::hand::gap::Gap;
-use crate::hand::{Angle, Dof, Moment, PerDof};
-use crate::inputs::offer::Offer;
-use crate::inputs::pinch::{self, PinchAim, PinchStep, StepLimits};
-use crate::record::LinkState;
+use crate::hand::{Angle, ArmEpoch, Dof, Moment, PerDof, Setpoints, Target};
+use crate::inputs::offer::{END_TIMEOUT, HOLD_TIMEOUT, Offer};
+use crate::link::ArmRequest;
+use crate::motion::pinch::{self, PinchAim, PinchStep, StepLimits};
+use crate::motion::program::Order;
+use crate::record::{Disarmed, LinkState};
 use std::time::Duration;
 
-/// A source that sends nothing new for this long causes a hold …
-pub const HOLD_TIMEOUT: Duration = Duration::from_millis(200);
-/// … and after this time it loses control of the hand.
-pub const END_TIMEOUT: Duration = Duration::from_secs(1);
 /// Targets that are bit-identical for this long, away from the ends of the range, may mean that tracking is frozen.
 pub const FREEZE_TIMEOUT: Duration = Duration::from_millis(500);
 /// The target of a hold follows the hand for this long, because the hand acts late; then it stays.
@@ -20,11 +18,6 @@ const HOLD_FOLLOWS: Duration = Duration::from_millis(120);
 const REARM_DELAY: Duration = Duration::from_millis(500);
 /// A late step moves no further than a timely one.
 const STEP_LONGEST: Duration = Duration::from_millis(40);
-
-/// True if the source heard at `last` is not silent at `now`.
-pub(crate) fn is_fresh(last: Moment, now: Moment) -> bool {
-    now.since(last) < HOLD_TIMEOUT
-}
 
 /// Maximum lead and rate of targets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -81,23 +74,14 @@ pub enum FollowPhase {
 pub struct FollowInput {
     /// State of its link.
     pub state: LinkState,
+    /// Arming under which the hand may move; `None` while it is disarmed.
+    pub epoch: Option<ArmEpoch>,
+    /// Limits to arm with.
+    pub arm: ArmRequest,
     /// Fresh angles of the joints; `None` where there is none.
     pub pose: PerDof<Option<Angle>>,
     /// True while the user at this machine holds the key; `None` if none is required.
     pub held: Option<bool>,
-}
-
-/// Action that following requests.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FollowOrder {
-    /// Arm the hand.
-    Arm,
-    /// Move these joints to these targets; the others are unchanged.
-    Aim(PerDof<Option<Angle>>),
-    /// Stop the hand; it may continue once the dead-man switch is held again.
-    Halt,
-    /// Stop the hand; the source loses control.
-    End,
 }
 
 /// One source that a hand follows.
@@ -115,7 +99,10 @@ pub struct Follow {
     /// Thumb and index were open for the requested gap, and now follow their path to it.
     is_pinching: bool,
     stepped: Moment,
+    /// Time of the last arming request.
     asked_to_arm: Option<Moment>,
+    /// An arming request has no answer yet.
+    is_arming: bool,
 }
 
 impl Follow {
@@ -132,6 +119,7 @@ impl Follow {
             is_pinching: false,
             stepped: now,
             asked_to_arm: None,
+            is_arming: false,
         }
     }
 
@@ -148,6 +136,11 @@ impl Follow {
     /// Changes the limits.
     pub fn limit(&mut self, limits: FollowLimits) {
         self.limits = limits.within();
+    }
+
+    /// Receives the answer to an arming request; after a refusal it is repeated.
+    pub(crate) const fn answered(&mut self) {
+        self.is_arming = false;
     }
 
     /// Receives a newer offer.
@@ -167,10 +160,10 @@ impl Follow {
     }
 
     /// Advances the time.
-    pub fn tick(&mut self, seen: FollowInput, now: Moment) -> Option<FollowOrder> {
+    pub fn tick(&mut self, seen: FollowInput, now: Moment) -> Option<Order> {
         let age = now.since(self.newest.map_or(self.began, |offer| offer.at));
         if age >= END_TIMEOUT {
-            return Some(FollowOrder::End);
+            return Some(Order::GiveBack(Disarmed::Silent));
         }
         let offer = self.newest?;
         let is_silent = age >= HOLD_TIMEOUT;
@@ -186,17 +179,17 @@ impl Follow {
         if is_silent {
             return self.hold(seen, age);
         }
-        if seen.state != LinkState::Armed {
+        let Some(epoch) = seen.epoch.filter(|_| seen.state == LinkState::Armed) else {
             self.enter();
             self.phase = FollowPhase::Waiting;
-            let is_due = |at| now.since(at) >= REARM_DELAY;
+            let is_due = |at| !self.is_arming && now.since(at) >= REARM_DELAY;
             if seen.state == LinkState::Monitoring && self.asked_to_arm.is_none_or(is_due) {
-                self.asked_to_arm = Some(now);
-                return Some(FollowOrder::Arm);
+                (self.asked_to_arm, self.is_arming) = (Some(now), true);
+                return Some(Order::Arm(seen.arm));
             }
             return None;
-        }
-        self.asked_to_arm = None;
+        };
+        (self.asked_to_arm, self.is_arming) = (None, false);
         if self.phase == FollowPhase::Silent {
             self.enter();
         }
@@ -210,7 +203,7 @@ impl Follow {
         } else {
             FollowPhase::Following
         };
-        self.step(&offer, &seen.pose, now)
+        self.step(epoch, &offer, &seen.pose, now)
     }
 
     /// Starts from the positions of the joints, discarding previous targets.
@@ -221,32 +214,34 @@ impl Follow {
     }
 
     /// Stops a hand that may move; once held again, following starts anew.
-    fn halt(&mut self, phase: FollowPhase, state: LinkState) -> Option<FollowOrder> {
+    fn halt(&mut self, phase: FollowPhase, state: LinkState) -> Option<Order> {
         self.enter();
-        self.asked_to_arm = None;
+        (self.asked_to_arm, self.is_arming) = (None, false);
         self.phase = phase;
-        (state == LinkState::Armed).then_some(FollowOrder::Halt)
+        (state == LinkState::Armed).then_some(Order::Halt)
     }
 
     /// Makes the current position of the hand its target.
-    fn hold(&mut self, seen: FollowInput, age: Duration) -> Option<FollowOrder> {
+    fn hold(&mut self, seen: FollowInput, age: Duration) -> Option<Order> {
         let steered = self.targets.map(|target| target.is_some());
         let follows = age < HOLD_TIMEOUT + HOLD_FOLLOWS;
         let was_silent = std::mem::replace(&mut self.phase, FollowPhase::Silent);
-        if seen.state != LinkState::Armed || !follows && was_silent == FollowPhase::Silent {
+        let epoch = seen.epoch.filter(|_| seen.state == LinkState::Armed);
+        let Some(epoch) = epoch.filter(|_| follows || was_silent != FollowPhase::Silent) else {
             self.enter();
             return None;
-        }
+        };
         let pose = PerDof::from_fn(|dof| seen.pose[dof].filter(|_| steered[dof]));
-        self.send(pose)
+        self.send(epoch, pose)
     }
 
     fn step(
         &mut self,
+        epoch: ArmEpoch,
         offer: &Offer,
         pose: &PerDof<Option<Angle>>,
         now: Moment,
-    ) -> Option<FollowOrder> {
+    ) -> Option<Order> {
         let elapsed = now
             .since(std::mem::replace(&mut self.stepped, now))
             .min(STEP_LONGEST);
@@ -270,7 +265,7 @@ impl Follow {
             #[expect(clippy::cast_possible_truncation, reason = "rounded, and in range")]
             Some(Angle::nearest(target.round() as i64))
         });
-        self.send(targets)
+        self.send(epoch, targets)
     }
 
     /// Steps each joint independently.
@@ -345,13 +340,14 @@ impl Follow {
     }
 
     /// Sends the targets that changed.
-    fn send(&mut self, targets: PerDof<Option<Angle>>) -> Option<FollowOrder> {
+    fn send(&mut self, epoch: ArmEpoch, targets: PerDof<Option<Angle>>) -> Option<Order> {
         let news = PerDof::from_fn(|dof| targets[dof].filter(|to| self.sent[dof] != Some(*to)));
         for (dof, to) in news.iter() {
             self.sent[dof] = to.or(self.sent[dof].filter(|_| self.targets[dof].is_some()));
         }
-        let any = news.iter().any(|(_, to)| to.is_some());
-        any.then_some(FollowOrder::Aim(news))
+        let mut setpoints = Setpoints::none(epoch);
+        setpoints.angle = news.map(|to| to.map(Target::Go));
+        (!setpoints.is_empty()).then_some(Order::Set(setpoints))
     }
 }
 

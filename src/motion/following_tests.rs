@@ -1,13 +1,12 @@
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may")]
 
 use crate::hand::gap::{Gap, gap_on_path, pad_distance};
-use crate::hand::{Angle, Dof, Moment, PerDof};
-use crate::inputs::follow::{
-    END_TIMEOUT, FREEZE_TIMEOUT, Follow, FollowInput, FollowLimits, FollowOrder, FollowPhase,
-    HOLD_TIMEOUT,
-};
-use crate::inputs::offer::{Offer, OfferLimits};
-use crate::record::LinkState;
+use crate::hand::{Angle, ArmEpoch, Dof, Force, Moment, PerDof, Speed, Target};
+use crate::inputs::offer::{END_TIMEOUT, HOLD_TIMEOUT, Offer, OfferLimits};
+use crate::link::ArmRequest;
+use crate::motion::following::{FREEZE_TIMEOUT, Follow, FollowInput, FollowLimits, FollowPhase};
+use crate::motion::program::Order;
+use crate::record::{Disarmed, LinkState};
 use crate::soak;
 use fastrand::Rng;
 use std::time::Duration;
@@ -15,6 +14,11 @@ use std::time::Duration;
 const LIMITS: FollowLimits = FollowLimits {
     lead: 100,
     rate: 1000,
+};
+
+const GENTLE: ArmRequest = ArmRequest {
+    speed: PerDof::splat(Speed::GENTLE),
+    force: PerDof::splat(Force::GENTLE),
 };
 
 fn ms(ms: u64) -> Moment {
@@ -25,6 +29,8 @@ fn at(angle: i16) -> FollowInput {
     FollowInput {
         held: None,
         state: LinkState::Armed,
+        epoch: Some(ArmEpoch::default()),
+        arm: GENTLE,
         pose: PerDof::splat(Some(Angle::nearest(angle))),
     }
 }
@@ -40,9 +46,19 @@ fn offer(when: u64, angle: i16) -> Offer {
     }
 }
 
-fn index(order: Option<FollowOrder>) -> Option<i16> {
+/// The targets of an order that sets any.
+fn targets(order: Option<Order>) -> Option<PerDof<Option<Angle>>> {
     match order {
-        Some(FollowOrder::Aim(aims)) => aims[Dof::Index].map(Angle::get),
+        Some(Order::Set(sent)) => Some(sent.angle.map(|to| to.and_then(Target::angle))),
+        _ => None,
+    }
+}
+
+fn index(order: Option<Order>) -> Option<i16> {
+    match order {
+        Some(Order::Set(sent)) => sent.angle[Dof::Index]
+            .and_then(Target::angle)
+            .map(Angle::get),
         None => None,
         other => panic!("{other:?}"),
     }
@@ -85,9 +101,9 @@ fn to_gap(mm: f32, from: PerDof<i16>, limits: FollowLimits) -> Vec<PerDof<i16>> 
         };
         let mut next = commanded[commanded.len() - 1];
         match follow.tick(seen, now) {
-            Some(FollowOrder::Aim(aims)) => {
-                for (dof, to) in aims.iter() {
-                    if let Some(to) = to {
+            Some(Order::Set(sent)) => {
+                for (dof, to) in sent.angle.iter() {
+                    if let Some(to) = to.and_then(Target::angle) {
                         let lead = i16::try_from(limits.lead).unwrap();
                         assert!(to.get().abs_diff(hand[dof]) <= limits.lead + 1, "{lead}");
                         next[dof] = to.get();
@@ -152,7 +168,7 @@ fn what_is_left_alone_or_locked_stays_where_it_is_while_a_gap_is_gone_to() {
                     pose: hand.map(|at| Some(Angle::nearest(at))),
                     ..at(0)
                 };
-                if let Some(FollowOrder::Aim(to)) = follow.tick(seen, ms(n * 10)) {
+                if let Some(to) = targets(follow.tick(seen, ms(n * 10))) {
                     hand = PerDof::from_fn(|dof| to[dof].map_or(hand[dof], Angle::get));
                 }
             }
@@ -198,7 +214,7 @@ fn what_stops_the_index_stops_the_thumb_on_the_path_too() {
             pose: pose.map(|at| Some(Angle::nearest(at))),
             ..at(0)
         };
-        if let Some(FollowOrder::Aim(aims)) = follow.tick(seen, ms(n * 10)) {
+        if let Some(aims) = targets(follow.tick(seen, ms(n * 10))) {
             for (dof, to) in aims.iter() {
                 last[dof] = to.map_or(last[dof], Angle::get);
             }
@@ -231,14 +247,20 @@ fn a_silent_source_is_held_and_then_ended() {
     back.offer(offer(400, 0));
     assert_eq!(index(back.tick(at(752), ms(400))), Some(752));
     let end = Moment::from_duration(END_TIMEOUT);
-    assert_eq!(follow.tick(at(750), end), Some(FollowOrder::End));
+    assert_eq!(
+        follow.tick(at(750), end),
+        Some(Order::GiveBack(Disarmed::Silent))
+    );
 }
 
 #[test]
 fn a_source_that_never_says_anything_ends_too() {
     let mut follow = Follow::new(LIMITS, ms(0));
     assert_eq!(follow.tick(at(800), ms(999)), None);
-    assert_eq!(follow.tick(at(800), ms(1000)), Some(FollowOrder::End));
+    assert_eq!(
+        follow.tick(at(800), ms(1000)),
+        Some(Order::GiveBack(Disarmed::Silent))
+    );
 }
 
 /// Offers the same each 10 ms, and gives the phase and what was sent last.
@@ -290,19 +312,43 @@ fn a_dead_man_that_is_let_go_stops_and_begins_anew_when_held() {
     };
     let mut follow = Follow::new(LIMITS, ms(0));
     follow.offer(held(0, true));
-    assert_eq!(follow.tick(free, ms(0)), Some(FollowOrder::Arm));
+    assert_eq!(follow.tick(free, ms(0)), Some(Order::Arm(GENTLE)));
     assert_eq!(index(follow.tick(at(800), ms(10))), Some(800));
     follow.offer(held(20, false));
-    assert_eq!(follow.tick(at(800), ms(20)), Some(FollowOrder::Halt));
+    assert_eq!(follow.tick(at(800), ms(20)), Some(Order::Halt));
     follow.offer(held(30, false));
     assert_eq!(follow.tick(free, ms(30)), None);
     assert_eq!(follow.phase(), FollowPhase::Released);
     follow.offer(held(40, true));
-    assert_eq!(follow.tick(free, ms(40)), Some(FollowOrder::Arm));
+    assert_eq!(follow.tick(free, ms(40)), Some(Order::Arm(GENTLE)));
     assert_eq!(index(follow.tick(at(780), ms(50))), Some(780));
     // Its state grows old like a target.
-    assert_eq!(follow.tick(at(780), ms(240)), Some(FollowOrder::Halt));
+    assert_eq!(follow.tick(at(780), ms(240)), Some(Order::Halt));
     assert_eq!(follow.phase(), FollowPhase::Silent);
+}
+
+#[test]
+fn arming_is_requested_again_after_a_refusal_and_not_while_a_request_is_open() {
+    let mut follow = Follow::new(LIMITS, ms(0));
+    let disarmed = FollowInput {
+        state: LinkState::Monitoring,
+        epoch: None,
+        ..at(800)
+    };
+    let mut tick = |at: u64, answered: bool| {
+        follow.offer(offer(at, 0));
+        if answered {
+            follow.answered();
+        }
+        follow.tick(disarmed, ms(at))
+    };
+    assert_eq!(tick(0, false), Some(Order::Arm(GENTLE)));
+    for ms in (100..2000).step_by(100) {
+        assert_eq!(tick(ms, false), None, "{ms}");
+    }
+    assert_eq!(tick(2000, true), Some(Order::Arm(GENTLE)));
+    assert_eq!(tick(2100, true), None, "not at once");
+    assert_eq!(tick(2500, false), Some(Order::Arm(GENTLE)));
 }
 
 #[test]
@@ -313,7 +359,7 @@ fn a_joint_that_is_not_aimed_at_or_not_known_is_left_alone() {
     follow.offer(aims);
     let mut seen = at(800);
     seen.pose[Dof::Ring] = None;
-    let Some(FollowOrder::Aim(sent)) = follow.tick(seen, ms(0)) else {
+    let Some(sent) = targets(follow.tick(seen, ms(0))) else {
         panic!("nothing sent")
     };
     assert_eq!((sent[Dof::Index], sent[Dof::Ring]), (None, None));
@@ -344,6 +390,8 @@ impl Joints {
         FollowInput {
             held: None,
             state: self.state,
+            epoch: (self.state == LinkState::Armed).then(ArmEpoch::default),
+            arm: GENTLE,
             pose: pose.map(|at| (rng.f32() >= 0.01).then_some(at)),
         }
     }
@@ -418,30 +466,33 @@ fn no_schedule_moves_a_hand_beyond_its_limits_or_after_the_end() {
             let seen = hand.input(&mut rng);
             match follow.tick(seen, now) {
                 None => {}
-                Some(FollowOrder::Arm) => {
+                Some(Order::Arm(_)) => {
+                    follow.answered();
                     assert_ne!(offered.unwrap().held, Some(false), "seed {seed}");
                     hand.state = LinkState::Armed;
                     sent = PerDof::splat(None);
                 }
-                Some(FollowOrder::Halt) => {
+                Some(Order::Halt) => {
                     halts += 1;
                     hand.commanded = hand.at;
                     hand.state = LinkState::Monitoring;
                     sent = PerDof::splat(None);
                 }
-                Some(FollowOrder::End) => {
+                Some(Order::GiveBack(Disarmed::Silent)) => {
                     ends += 1;
                     let last = offered.map_or(ms(0), |offer| offer.at);
                     assert!(now.since(last) >= END_TIMEOUT, "seed {seed}");
                     break;
                 }
-                Some(FollowOrder::Aim(targets)) => {
+                Some(Order::Set(set)) => {
                     assert_eq!(hand.state, LinkState::Armed, "seed {seed}");
                     let offer = offered.unwrap();
                     assert_ne!(offer.held, Some(false), "seed {seed}");
                     let is_fresh = now.since(offer.at) < HOLD_TIMEOUT;
-                    for (dof, to) in targets.iter() {
-                        let Some(to) = *to else { continue };
+                    for (dof, to) in set.angle.iter() {
+                        let Some(to) = to.and_then(Target::angle) else {
+                            continue;
+                        };
                         aims += 1;
                         let actual = seen.pose[dof].expect("a pose that is known");
                         let is_entry = to == actual;
@@ -466,6 +517,7 @@ fn no_schedule_moves_a_hand_beyond_its_limits_or_after_the_end() {
                         }
                     }
                 }
+                other => panic!("seed {seed}: {other:?}"),
             }
         }
     }
