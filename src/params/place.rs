@@ -91,20 +91,10 @@ pub fn new_place(hand: &Endpoint, id: ParamId, wanted: Value) -> Option<Endpoint
     let byte = u8::try_from(number).ok()?;
     let mut place = hand.clone();
     match (&mut place, id) {
-        (Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line), ParamId::HandId) => {
-            line.id = byte
-        }
         (Endpoint::Rs485(line) | Endpoint::Rtu(line), ParamId::ReduRatio) => {
             line.baud = SerialSpeed::of_code(byte.into())?.baud();
         }
-        (
-            Endpoint::Can { id: at, .. }
-            | Endpoint::Slcan { id: at, .. }
-            | Endpoint::UsbCan { id: at, .. },
-            ParamId::HandId,
-        ) => {
-            *at = u16::from(byte);
-        }
+        (hand, ParamId::HandId) => *hand = hand.with_bus_id(byte)?,
         _ => return None,
     }
     Some(place)
@@ -117,19 +107,11 @@ pub fn factory_place(hand: &Endpoint) -> Endpoint {
         Some(Value::Number(id)) => u8::try_from(id).unwrap_or(1),
         _ => 1,
     };
-    match &mut place {
-        Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
-            line.id = id;
-            line.baud = SerialSpeed::Baud115200.baud();
-        }
-        // The serial speed behind a device server is configured there.
-        Endpoint::RtuTcp(line) => line.id = id,
-        Endpoint::Can { id: at, .. }
-        | Endpoint::Slcan { id: at, .. }
-        | Endpoint::UsbCan { id: at, .. } => *at = u16::from(id),
-        Endpoint::Tcp { .. } | Endpoint::Sim { .. } => {}
+    // The serial speed behind a device server or an adapter is configured there.
+    if let Endpoint::Rs485(line) | Endpoint::Rtu(line) = &mut place {
+        line.baud = SerialSpeed::Baud115200.baud();
     }
-    place
+    place.with_bus_id(id).unwrap_or(place)
 }
 
 #[cfg(test)]

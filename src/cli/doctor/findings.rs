@@ -108,7 +108,7 @@ fn answers(checkup: &Examination, measured: &LinkMeasurements, found: &mut Vec<D
             "check plug, cable and the hand's power",
         ));
     }
-    let id = id_of(&checkup.endpoint);
+    let id = checkup.endpoint.id_or_unit();
     counters(measured, id, found);
     if measured.status.other_controller && measured.stats.foreign_requests == 0 {
         found.push(wrong("another controller talks to this hand", OTHER_MASTER));
@@ -299,11 +299,6 @@ fn port(
         )),
         None => {}
     }
-}
-
-/// ID or unit of the requests.
-fn id_of(endpoint: &Endpoint) -> u16 {
-    endpoint.place_and_id().1
 }
 
 /// Command that sets the latency timer.

@@ -69,22 +69,15 @@ async fn check(hand: &Endpoint, length: Duration) -> anyhow::Result<Examination>
 }
 
 async fn connection(endpoint: &Endpoint) -> ConnectionFacts {
-    match endpoint {
-        Endpoint::Sim { .. } => ConnectionFacts::BuiltIn,
-        Endpoint::Rs485(line) | Endpoint::Rtu(line) => {
-            ConnectionFacts::Port(port_facts(&line.port, &Sysfs::default()))
-        }
-        Endpoint::Slcan { port, .. } | Endpoint::UsbCan { port, .. } => {
-            ConnectionFacts::Port(port_facts(port, &Sysfs::default()))
-        }
+    if let Some(port) = endpoint.port() {
+        ConnectionFacts::Port(port_facts(port, &Sysfs::default()))
+    } else if let Some((host, port)) = endpoint.host() {
         // A name that cannot be resolved is reported with its reason when it is dialled.
-        Endpoint::Tcp { .. } | Endpoint::RtuTcp(_) => {
-            let (host, port) = endpoint.host().unwrap_or_default();
-            ConnectionFacts::Net(route(host, port).await.ok())
-        }
-        Endpoint::Can { interface, .. } => {
-            ConnectionFacts::Can(can_facts(interface, Path::new("/sys")))
-        }
+        ConnectionFacts::Net(route(host, port).await.ok())
+    } else if let Some(interface) = endpoint.interface() {
+        ConnectionFacts::Can(can_facts(interface, Path::new("/sys")))
+    } else {
+        ConnectionFacts::BuiltIn
     }
 }
 

@@ -11,7 +11,7 @@ use crate::codec::can::{
 use crate::hand::{Span, register};
 use crate::link::bus::can_port::CanPort;
 use crate::link::bus::client::{Bus, Urgent};
-use crate::link::bus::error::{BusCounts, BusError, Bytes, READ_MAX, id_of};
+use crate::link::bus::error::{BusCounts, BusError, Bytes, READ_MAX};
 use crate::link::bus::late_replies::LateReplies;
 use crate::link::clock::Clock;
 use crate::link::poll::cost::{WireCost, packets_time};
@@ -71,12 +71,8 @@ impl Can {
     ) -> Self {
         let port = CanPort::new(wire, endpoint);
         Self {
-            hand: id_of(endpoint),
-            cost: match endpoint {
-                Endpoint::Slcan { bitrate, .. } => WireCost::can(*bitrate),
-                Endpoint::UsbCan { baud, .. } => WireCost::usb_can(*baud),
-                _ => WireCost::can(DEFAULT_BITRATE),
-            },
+            hand: endpoint.id_or_unit(),
+            cost: WireCost::of(endpoint).unwrap_or(WireCost::can(DEFAULT_BITRATE)),
             piece_time: match endpoint {
                 Endpoint::Slcan { .. } => ADAPTER_PIECE_TIME,
                 Endpoint::UsbCan { baud, .. } => ADAPTER_PIECE_TIME + packets_time(*baud),

@@ -2,7 +2,7 @@
 
 use crate::hand::Refusal;
 use crate::system::SystemError;
-use crate::transport::{Endpoint, TransportError};
+use crate::transport::TransportError;
 use arrayvec::ArrayVec;
 use std::io;
 use std::time::Duration;
@@ -73,14 +73,4 @@ pub(crate) fn lost(place: &str, error: &io::Error) -> BusError {
             failure: SystemError::from(error).into(),
         }
     })
-}
-
-/// The id or unit of an endpoint's requests, for messages.
-pub(crate) fn id_of(endpoint: &Endpoint) -> u16 {
-    match endpoint {
-        Endpoint::Sim { .. } => 1,
-        Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => u16::from(line.id),
-        Endpoint::Tcp { unit, .. } => u16::from(*unit),
-        Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } | Endpoint::UsbCan { id, .. } => *id,
-    }
 }

@@ -8,7 +8,7 @@ use crate::hand::{HandId, RegisterWrite, Span};
 use crate::link::bus::late_replies::LateReplies;
 
 use crate::link::bus::client::Bus;
-use crate::link::bus::error::{BusCounts, BusError, Bytes, id_of, lost};
+use crate::link::bus::error::{BusCounts, BusError, Bytes, lost};
 use crate::link::bus::modbus;
 use crate::link::bus::packing::{ReadPiece, WordUse};
 use crate::link::bus::rtu_line::RtuLine;
@@ -57,7 +57,7 @@ impl ModbusRtu {
         late: LateReplies,
         clock: Clock,
     ) -> Self {
-        let id = HandId::nearest(id_of(endpoint)).get();
+        let id = HandId::nearest(endpoint.id_or_unit()).get();
         let line = RtuLine::new(wire, id);
         Self {
             context: rtu::attach_slave(line.clone(), Slave(id)),

@@ -9,7 +9,7 @@ use crate::link::bus::echo::Echo;
 use crate::link::bus::late_replies::LateReplies;
 
 use crate::link::bus::client::{Bus, ResultFrame};
-use crate::link::bus::error::{BusCounts, BusError, Bytes, id_of, lost};
+use crate::link::bus::error::{BusCounts, BusError, Bytes, lost};
 use crate::link::clock::Clock;
 use crate::link::poll::cost::WireCost;
 use crate::link::series::PermittedWrite;
@@ -90,7 +90,7 @@ impl Rs485 {
         Self {
             wire,
             place: endpoint.place(),
-            id: HandId::nearest(id_of(endpoint)),
+            id: HandId::nearest(endpoint.id_or_unit()),
             baud,
             decoder: ReplyDecoder::default(),
             late,

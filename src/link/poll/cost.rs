@@ -2,6 +2,7 @@
 //! given round trips, sends and times nothing.
 
 use crate::codec::usbcan::PACKET_MIN;
+use crate::transport::Endpoint;
 use crate::transport::endpoint::DEFAULT_BITRATE;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -63,6 +64,21 @@ pub(crate) struct WireCost {
 }
 
 impl WireCost {
+    /// Cost on an endpoint's line; `None` where the speed of the line is unknown.
+    pub(crate) fn of(endpoint: &Endpoint) -> Option<Self> {
+        Some(match endpoint {
+            Endpoint::Sim { .. } | Endpoint::Tcp { .. } => return None,
+            Endpoint::Rs485(line) => Self::rs485(Some(line.baud)),
+            Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => {
+                Self::rtu(line.baud, rtu_gap(line.baud))
+            }
+            // Manual: 2.3 gives the default rate; that of an interface is set outside of this program.
+            Endpoint::Can { .. } => Self::can(DEFAULT_BITRATE),
+            Endpoint::Slcan { bitrate, .. } => Self::can(*bitrate),
+            Endpoint::UsbCan { baud, .. } => Self::usb_can(*baud),
+        })
+    }
+
     /// The private framing. Without a baud rate the line time is assumed to be zero.
     pub(crate) fn rs485(baud: Option<u32>) -> Self {
         Self {

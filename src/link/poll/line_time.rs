@@ -1,23 +1,12 @@
 //! Time of one read on the line alone, without hand and adapter. Needs no open wire.
 
-use crate::link::poll::cost::{WireCost, rtu_gap};
+use crate::link::poll::cost::WireCost;
 use crate::transport::Endpoint;
-use crate::transport::endpoint::DEFAULT_BITRATE;
 use std::time::Duration;
 
 /// Time for request and reply of a read of this many bytes; `None` if the speed of the line is unknown.
 pub fn line_time(endpoint: &Endpoint, bytes: u16) -> Option<Duration> {
-    let cost = match endpoint {
-        Endpoint::Sim { .. } | Endpoint::Tcp { .. } => return None,
-        Endpoint::Rs485(line) => WireCost::rs485(Some(line.baud)),
-        Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => {
-            WireCost::rtu(line.baud, rtu_gap(line.baud))
-        }
-        // Manual: 2.3 gives the default rate; that of an interface is set outside of this program.
-        Endpoint::Can { .. } => WireCost::can(DEFAULT_BITRATE),
-        Endpoint::Slcan { bitrate, .. } => WireCost::can(*bitrate),
-        Endpoint::UsbCan { baud, .. } => WireCost::usb_can(*baud),
-    };
+    let cost = WireCost::of(endpoint)?;
     Some(cost.read(bytes, Duration::ZERO))
 }
 

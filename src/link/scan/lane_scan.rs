@@ -333,23 +333,15 @@ fn is_expected_of(endpoint: &Endpoint, id: &[u8]) -> bool {
 /// True if one open wire serves both. A CAN interface filters for one id only, and over TCP a late reply of one unit
 /// could be mistaken for another's: there each has its own.
 fn same_wire(one: &Endpoint, other: &Endpoint) -> bool {
-    match (one, other) {
-        (Endpoint::Rs485(a) | Endpoint::Rtu(a), Endpoint::Rs485(b) | Endpoint::Rtu(b)) => {
-            a.baud == b.baud
-        }
-        (Endpoint::Slcan { .. }, Endpoint::Slcan { .. }) => true,
-        (Endpoint::UsbCan { baud: a, .. }, Endpoint::UsbCan { baud: b, .. }) => a == b,
-        _ => false,
-    }
+    let is_direct = !one.is_can() && !other.is_can();
+    let are_serial = one.port().is_some() && other.port().is_some();
+    are_serial && one.baud() == other.baud() && (is_direct || one.kind() == other.kind())
 }
 
 /// A hand on a bus returns the id by which it was addressed; at a network address any valid id is accepted.
 fn is_expected(endpoint: &Endpoint, hand_id: u8) -> bool {
-    match endpoint {
-        Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => line.id == hand_id,
-        Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } | Endpoint::UsbCan { id, .. } => {
-            *id == u16::from(hand_id)
-        }
-        Endpoint::Sim { .. } | Endpoint::Tcp { .. } => (1..=254).contains(&hand_id),
+    match endpoint.bus_id() {
+        Some(id) => id == u16::from(hand_id),
+        None => (1..=254).contains(&hand_id),
     }
 }

@@ -194,20 +194,8 @@ fn beside(costs: &[Duration], at_once: usize) -> Duration {
 
 /// True if both use the same line and protocol, so that a hand that answers one shows that the other has the right settings.
 pub(crate) fn same_line(one: &Endpoint, other: &Endpoint) -> bool {
-    let line = |endpoint: &Endpoint| {
-        let mut line = endpoint.clone();
-        match &mut line {
-            Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => {
-                line.id = DEFAULT_ID;
-            }
-            Endpoint::Can { id, .. } | Endpoint::Slcan { id, .. } | Endpoint::UsbCan { id, .. } => {
-                *id = u16::from(DEFAULT_ID)
-            }
-            Endpoint::Tcp { .. } | Endpoint::Sim { .. } => return None,
-        }
-        Some(line)
-    };
-    line(one).is_some_and(|one| line(other) == Some(one))
+    let line = one.with_bus_id(DEFAULT_ID);
+    line.is_some() && line == other.with_bus_id(DEFAULT_ID)
 }
 
 /// The id that is probed first on every line, and all others: most hands have the default id.

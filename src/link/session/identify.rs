@@ -4,7 +4,6 @@
 use crate::codec::modbus::{detect_packing, words_per_group};
 use crate::hand::register::{ANGLE_ACT, BytePacking, HAND_ID, REDU_RATIO, TEMP, TOUCH};
 use crate::hand::{Moment, Span};
-use crate::link::bus::error::id_of;
 use crate::link::bus::late_replies::REPLY_LIMIT_MIN;
 use crate::link::bus::{Bus, BusError, Bytes};
 use crate::link::quirks::{GapRead, Quirks, TouchDoubt, TouchVariant};
@@ -215,7 +214,7 @@ impl Session {
             return Err(WireEnd::Lost(self.gateway_alone(exception)));
         }
         Err(WireEnd::Lost(LinkTrouble::NoAnswer {
-            id: id_of(&self.config.endpoint),
+            id: self.config.endpoint.id_or_unit(),
         }))
     }
 

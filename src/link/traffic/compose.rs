@@ -32,7 +32,7 @@ impl SnippetFormat {
 
     /// The text of one frame of this endpoint. On CAN only hexadecimal: the bytes there contain more than the frame.
     pub fn text(self, bytes: &[u8], endpoint: Option<&Endpoint>) -> Option<String> {
-        if matches!(endpoint, Some(Endpoint::Can { .. })) && self != Self::Hex {
+        if endpoint.is_some_and(|endpoint| endpoint.interface().is_some()) && self != Self::Hex {
             return None;
         }
         let len = bytes.len();
@@ -57,10 +57,10 @@ fn python(hex: &str, endpoint: Option<&Endpoint>) -> String {
                  hand.sendall(bytes.fromhex(\"{hex}\"))\nprint(hand.recv(260).hex(\" \"))\n"
             );
         }
-        Some(Endpoint::Rs485(line) | Endpoint::Rtu(line)) => (line.port.as_str(), line.baud),
-        Some(Endpoint::UsbCan { port, baud, .. }) => (port.as_str(), *baud),
-        Some(Endpoint::Slcan { port, .. }) => (port.as_str(), 115_200),
-        _ => ("/dev/ttyUSB0", 115_200),
+        other => {
+            let port = other.and_then(Endpoint::port).unwrap_or("/dev/ttyUSB0");
+            (port, other.and_then(Endpoint::baud).unwrap_or(115_200))
+        }
     };
     format!(
         "import serial  # pyserial\nport = serial.Serial({port:?}, {baud}, timeout=0.2)\n\

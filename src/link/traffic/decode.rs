@@ -1,7 +1,6 @@
 //! Decodes the pieces of a tap into frames, for one link. Pure: no clock, no lock; the same pieces give the same frames.
 
 use crate::hand::Moment;
-use crate::link::bus::error::id_of;
 use crate::link::traffic::content::FrameContent;
 use crate::link::traffic::cut::{Cutter, FrameCut, StreamPiece};
 use crate::link::traffic::frame::{Frame, FrameFormat, Kind, Wrong};
@@ -47,7 +46,7 @@ impl Decoder {
     /// A decoder for a link to this hand.
     pub fn new(endpoint: &Endpoint) -> Self {
         let form = FrameFormat::of(endpoint);
-        let hand = id_of(endpoint);
+        let hand = endpoint.id_or_unit();
         Self {
             form,
             unit: u8::try_from(hand).unwrap_or_default(),

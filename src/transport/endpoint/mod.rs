@@ -130,17 +130,24 @@ impl Endpoint {
     /// Place and id for persistent files: the endpoint without the id, and the id or unit.
     pub fn place_and_id(&self) -> (String, u16) {
         let place = format!("{}:{}", self.kind(), self.place());
-        match self {
+        let place = match self {
             Self::Sim { seed, body, .. } => {
-                (format!("sim:?seed={seed}{}", body_key(body.as_deref())), 1)
+                format!("sim:?seed={seed}{}", body_key(body.as_deref()))
             }
-            Self::Rs485(line) | Self::Rtu(line) | Self::RtuTcp(line) => {
-                (format!("{place}?baud={}", line.baud), u16::from(line.id))
-            }
-            Self::Tcp { unit, .. } => (place, u16::from(*unit)),
-            Self::Can { id, .. } => (place, *id),
-            Self::Slcan { bitrate, id, .. } => (format!("{place}?bitrate={bitrate}"), *id),
-            Self::UsbCan { baud, id, .. } => (format!("{place}?baud={baud}"), *id),
+            Self::Slcan { bitrate, .. } => format!("{place}?bitrate={bitrate}"),
+            _ => match self.baud() {
+                Some(baud) => format!("{place}?baud={baud}"),
+                None => place,
+            },
+        };
+        (place, self.id_or_unit())
+    }
+
+    /// The id or unit of requests to the hand.
+    pub fn id_or_unit(&self) -> u16 {
+        match self {
+            Self::Tcp { unit, .. } => u16::from(*unit),
+            _ => self.bus_id().unwrap_or(1),
         }
     }
 
@@ -193,6 +200,45 @@ impl Endpoint {
             Self::Sim { .. } | Self::Tcp { .. } | Self::RtuTcp(_) | Self::Can { .. } => {}
         }
         moved
+    }
+
+    /// The network interface of a CAN bus; `None` for other endpoints.
+    pub fn interface(&self) -> Option<&str> {
+        match self {
+            Self::Can { interface, .. } => Some(interface),
+            _ => None,
+        }
+    }
+
+    /// Bits per second of the serial line to the hand or to the maker's adapter; `None` for other endpoints.
+    pub const fn baud(&self) -> Option<u32> {
+        match self {
+            Self::Rs485(line) | Self::Rtu(line) | Self::RtuTcp(line) => Some(line.baud),
+            Self::UsbCan { baud, .. } => Some(*baud),
+            Self::Sim { .. } | Self::Tcp { .. } | Self::Can { .. } | Self::Slcan { .. } => None,
+        }
+    }
+
+    /// The id by which a hand on a bus is addressed; `None` for the built-in hand and over Modbus TCP.
+    pub fn bus_id(&self) -> Option<u16> {
+        match self {
+            Self::Rs485(line) | Self::Rtu(line) | Self::RtuTcp(line) => Some(u16::from(line.id)),
+            Self::Can { id, .. } | Self::Slcan { id, .. } | Self::UsbCan { id, .. } => Some(*id),
+            Self::Sim { .. } | Self::Tcp { .. } => None,
+        }
+    }
+
+    /// A hand with another id on the same bus; `None` where hands are not addressed by an id.
+    pub fn with_bus_id(&self, id: u8) -> Option<Self> {
+        let mut other = self.clone();
+        match &mut other {
+            Self::Rs485(line) | Self::Rtu(line) | Self::RtuTcp(line) => line.id = id,
+            Self::Can { id: at, .. } | Self::Slcan { id: at, .. } | Self::UsbCan { id: at, .. } => {
+                *at = u16::from(id);
+            }
+            Self::Sim { .. } | Self::Tcp { .. } => return None,
+        }
+        Some(other)
     }
 
     /// Host and TCP port; `None` if it is not on a network.

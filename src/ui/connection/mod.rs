@@ -213,12 +213,10 @@ impl ConnectionForm {
         let ids = self.scan.ids;
         match endpoint {
             Some(Endpoint::Sim { .. }) => None,
-            Some(Endpoint::Can { interface, .. }) => {
-                Some(ScanTarget::Interface(interface.clone(), ids))
-            }
-            Some(endpoint) => match endpoint.port() {
-                Some(port) => Some(ScanTarget::Port(port.to_owned(), ids)),
-                None => endpoint.place().parse().ok().map(ScanTarget::Hosts),
+            Some(endpoint) => match (endpoint.port(), endpoint.interface()) {
+                (Some(port), _) => Some(ScanTarget::Port(port.to_owned(), ids)),
+                (_, Some(interface)) => Some(ScanTarget::Interface(interface.to_owned(), ids)),
+                (None, None) => endpoint.place().parse().ok().map(ScanTarget::Hosts),
             },
             None => self.range()?.ok().map(ScanTarget::Hosts),
         }

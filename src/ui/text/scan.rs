@@ -170,13 +170,15 @@ pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
                 Err(_) => format!("{kind}{body}"),
             }
         }
-        Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => {
-            look.fill(WITH_BAUD, &[&kind, &line.baud, &line.id])
-        }
         Endpoint::Tcp { port, unit, .. } => look.fill(WITH_UNIT, &[&kind, port, unit]),
-        Endpoint::Can { id, .. } => look.fill(WITH_ID, &[&kind, id]),
         Endpoint::Slcan { bitrate, id, .. } => look.fill(WITH_BITRATE, &[&kind, bitrate, id]),
-        Endpoint::UsbCan { baud, id, .. } => look.fill(WITH_BAUD, &[&kind, baud, id]),
+        other => {
+            let id = other.id_or_unit();
+            match other.baud() {
+                Some(baud) => look.fill(WITH_BAUD, &[&kind, &baud, &id]),
+                None => look.fill(WITH_ID, &[&kind, &id]),
+            }
+        }
     }
 }
 
@@ -185,10 +187,8 @@ pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String 
     let kind = look.tr(panels::kind(endpoint.kind()));
     let speed = match endpoint {
         Endpoint::Sim { scenario, .. } => return format!("{kind}, {scenario}"),
-        Endpoint::Rs485(line) | Endpoint::Rtu(line) | Endpoint::RtuTcp(line) => Some(line.baud),
         Endpoint::Slcan { bitrate, .. } => Some(*bitrate),
-        Endpoint::UsbCan { baud, .. } => Some(*baud),
-        Endpoint::Can { .. } | Endpoint::Tcp { .. } => None,
+        other => other.baud(),
     };
     let speed = speed.map(|speed| format!(", {speed}")).unwrap_or_default();
     let id = id.map(|id| format!("ID {id}, ")).unwrap_or_default();
