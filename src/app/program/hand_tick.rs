@@ -1,7 +1,6 @@
 //! The work at each hand in each frame: applying news and continuing operations.
 
-use crate::app::checkup::CheckupRun;
-use crate::app::checkup::work::files;
+use crate::app::checkup::{CheckupRun, files};
 use crate::app::ctx::Ctx;
 use crate::app::hand::SequenceRun;
 use crate::app::hands::Hand;

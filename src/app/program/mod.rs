@@ -15,7 +15,7 @@ mod saved;
 mod taring;
 
 use crate::app::action::Action;
-use crate::app::checkup::work::files;
+use crate::app::checkup::files;
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::exhibit::Exhibition;

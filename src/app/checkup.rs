@@ -1,6 +1,6 @@
-//! The check-up that runs on the hand, and reading stored ones.
+//! Check-ups in the window: the running one, its files, and the last result. Measurements and judgements are defined in
+//! [`crate::checkup`]. Draws nothing.
 
-use crate::app::checkup::state::{CheckupRun, HandCheckup, ReadLastCheckup, ShownCheckup};
 use crate::app::ctx::Ctx;
 use crate::app::env::running::Running;
 use crate::app::env::{Env, day_folder};
@@ -8,40 +8,76 @@ use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::trials::work::{SeriesHand, ends};
 use crate::checkup::free_file;
+use crate::checkup::report::{CheckupReport, PAGE_FILE};
+use crate::checkup::run::CheckupView;
 use crate::checkup::subject::Grade;
 use crate::checkup::{Checkup, CheckupPlan};
-use crate::hand::Setpoints;
+use crate::hand::{ArmEpoch, Moment, Setpoints};
 use crate::motion::checkup::{CheckupFiles, ConcludedCheckup, EndedCheckup};
 use crate::motion::drive::{Armed, drive};
+use crate::record::Abort;
 use crate::store::calendar::{day, since_1970, stamp};
-use crate::store::{create_folder, on_thread};
+use crate::store::{JobKind, Jobs, create_folder, on_thread};
 use crate::transport::Endpoint;
 use std::io;
 use std::path::PathBuf;
+use std::time::Duration;
 use tokio::sync::oneshot;
 
-/// Paths of a hand's check-up files in the window.
-pub(crate) fn files(hand: &Endpoint, settings: &Settings, env: &Env) -> CheckupFiles {
-    let checks = env.settings_path.as_ref();
-    let checks = checks.map(|path| path.with_file_name("checks"));
-    let documents = env.documents.as_deref();
-    CheckupFiles {
-        hand: hand.clone(),
-        free_force: env
-            .settings_path
-            .as_ref()
-            .and_then(|settings| free_file::file_of(settings, hand)),
-        kept: checks.and_then(|folder| CheckupFiles::kept_in(&folder, hand)),
-        report: documents.map(|documents| {
-            let now = since_1970();
-            let time = stamp(now);
-            let time = time.chars().skip_while(|letter| *letter != 'T');
-            let time: String = time.filter(char::is_ascii_digit).collect();
-            let folder = day_folder::of_day(documents, &day(now));
-            day_folder::free_path(&folder, &format!("handscope-check-{}-{time}", day(now)))
-        }),
-        recordings: settings.recordings_folder(documents),
+/// User requests concerning check-ups. By sending one, the user confirms that the hand is empty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
+pub enum CheckupAction {
+    /// Start a check-up in the current arming. Needs arming.
+    Start(CheckupPlan),
+    /// Arm the hand, and start a check-up once it is armed.
+    ArmAndStart(CheckupPlan),
+}
+
+#[derive(Debug, Default)]
+pub struct HandCheckup {
+    /// The last check-up: of this run of the program, else the last stored one.
+    pub last: Option<ShownCheckup>,
+    /// Reason why the stored check-ups cannot be read.
+    pub unread: Option<String>,
+    jobs: Jobs<ReadLastCheckup>,
+    /// True once stored check-ups have been requested.
+    is_read: bool,
+}
+
+/// Background job of check-ups: reading the last stored one.
+#[derive(Debug, PartialEq, Eq)]
+struct ReadLastCheckup;
+
+impl JobKind for ReadLastCheckup {
+    type State = HandCheckup;
+    type Ctx<'a> = ();
+}
+
+/// A finished check-up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShownCheckup {
+    pub report: CheckupReport,
+    /// HTML report; `None` if it was not written.
+    pub page: Option<PathBuf>,
+}
+
+impl ShownCheckup {
+    fn of((report, folder): (CheckupReport, Option<PathBuf>)) -> Self {
+        let page = folder.map(|folder| folder.join(PAGE_FILE));
+        Self { report, page }
     }
+}
+
+/// A running check-up, as the window sees it.
+#[derive(Debug)]
+pub struct CheckupRun {
+    /// Current progress.
+    pub view: CheckupView,
+    pub epoch: ArmEpoch,
+    /// Start of the current step.
+    pub since: Moment,
+    end: Option<oneshot::Sender<Abort>>,
+    task: Running<CheckupView, io::Result<ConcludedCheckup>>,
 }
 
 impl CheckupRun {
@@ -94,16 +130,7 @@ impl CheckupRun {
             task,
         }
     }
-}
 
-/// Prepares the destination folders. The hand does not move if the check-up could not be stored or its report not
-/// written.
-fn prepare(files: &CheckupFiles) -> io::Result<()> {
-    files.prepare()?;
-    files.report.as_deref().map_or(Ok(()), create_folder)
-}
-
-impl CheckupRun {
     /// Applies the progress of the task, and returns its result once it has ended.
     pub(crate) fn news(&mut self) -> Option<io::Result<ConcludedCheckup>> {
         let (steps, end) = self.task.news();
@@ -112,9 +139,27 @@ impl CheckupRun {
         }
         end
     }
+
+    /// Approximate remaining time if nothing ends the check-up early.
+    pub fn left(&self, now: Moment) -> Duration {
+        self.view.left.saturating_sub(now.since(self.since))
+    }
+
+    /// Ends the check-up early. The caller stops the hand, and the task makes sure of it.
+    pub(crate) fn end(&mut self, why: Abort) {
+        if let Some(end) = self.end.take() {
+            // A finished task no longer listens.
+            let _heard = end.send(why);
+        }
+    }
 }
 
 impl HandCheckup {
+    /// True while the stored check-ups are being read.
+    pub const fn is_reading(&self) -> bool {
+        !self.jobs.is_empty()
+    }
+
     /// Stores the result of a check-up for display, and returns the notices for the user.
     pub(crate) fn over(&mut self, end: io::Result<ConcludedCheckup>) -> Vec<NoticeKind> {
         match end {
@@ -166,4 +211,35 @@ impl HandCheckup {
             effect(self, &mut ());
         }
     }
+}
+
+/// Paths of a hand's check-up files in the window.
+pub(crate) fn files(hand: &Endpoint, settings: &Settings, env: &Env) -> CheckupFiles {
+    let checks = env.settings_path.as_ref();
+    let checks = checks.map(|path| path.with_file_name("checks"));
+    let documents = env.documents.as_deref();
+    CheckupFiles {
+        hand: hand.clone(),
+        free_force: env
+            .settings_path
+            .as_ref()
+            .and_then(|settings| free_file::file_of(settings, hand)),
+        kept: checks.and_then(|folder| CheckupFiles::kept_in(&folder, hand)),
+        report: documents.map(|documents| {
+            let now = since_1970();
+            let time = stamp(now);
+            let time = time.chars().skip_while(|letter| *letter != 'T');
+            let time: String = time.filter(char::is_ascii_digit).collect();
+            let folder = day_folder::of_day(documents, &day(now));
+            day_folder::free_path(&folder, &format!("handscope-check-{}-{time}", day(now)))
+        }),
+        recordings: settings.recordings_folder(documents),
+    }
+}
+
+/// Prepares the destination folders. The hand does not move if the check-up could not be stored or its report not
+/// written.
+fn prepare(files: &CheckupFiles) -> io::Result<()> {
+    files.prepare()?;
+    files.report.as_deref().map_or(Ok(()), create_folder)
 }
