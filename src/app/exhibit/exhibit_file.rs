@@ -2,8 +2,7 @@
 
 use crate::app::env::Env;
 use crate::app::exhibit::{Exhibition, Logo};
-use crate::app::files::open;
-use crate::app::files::pose_file;
+use crate::app::files::{self, pose_file};
 use crate::app::notices::NoticeKind;
 use crate::exhibit::file::{self, ExhibitFile, NamedFile};
 use crate::poses::library::PoseLibrary;
@@ -34,7 +33,7 @@ pub fn built_in() -> Option<Exhibition> {
 pub(crate) fn open(
     env: &Env,
 ) -> impl Future<Output = Result<Exhibition, NoticeKind>> + Send + use<> {
-    open::open(None, FILE_NAME, env, read)
+    files::open(None, FILE_NAME, env, read)
 }
 
 /// Reads an exhibition file and the files that it names.

@@ -2,7 +2,7 @@
 //! restart.
 
 use crate::app::env::day_folder;
-use crate::app::files::open::put_aside;
+use crate::app::files::put_aside;
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::exhibit::report::{DayReport, file, page};

@@ -1,6 +1,6 @@
 //! Pose files on disk: read at start and for import, size-limited, off the window's thread. Knows no setpoint.
 
-use crate::app::files::open::put_aside;
+use crate::app::files::put_aside;
 use crate::app::notices::NoticeKind;
 use crate::poses::file;
 use crate::poses::library::PoseLibrary;

@@ -1,6 +1,6 @@
 //! Settings on disk: read at start, written completely, off the window's thread. Knows no setpoint.
 
-use crate::app::files::open::put_aside;
+use crate::app::files::put_aside;
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::store::toml_file::{self, FileText};

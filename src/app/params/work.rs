@@ -4,7 +4,7 @@
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::env::running::{Running, Steps};
-use crate::app::files::open::open;
+use crate::app::files::open;
 use crate::app::hand::Connection;
 use crate::app::params::state::{
     Doing, FileComparison, FilesRead, ParamAction, ParamsEffect, ParamsJob, ParamsState,

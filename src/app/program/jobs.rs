@@ -2,8 +2,7 @@
 
 use crate::app::env::Env;
 use crate::app::files::export::{self, Export};
-use crate::app::files::open::open;
-use crate::app::files::pose_file;
+use crate::app::files::{open, pose_file};
 use crate::app::hands::running::AskedSeries;
 use crate::app::notices::NoticeKind;
 use crate::app::params::{ParamAction, ParamsHand};

@@ -3,7 +3,6 @@
 pub mod about;
 pub mod budget;
 pub mod export;
-pub(crate) mod folder;
 pub mod holding;
 pub mod item;
 pub mod list;

@@ -1,12 +1,12 @@
 //! Handles recording requests and continues started operations. Files are read, written and deleted off the window's thread.
 
 use crate::app::env::Env;
+use crate::app::files;
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::recordings::about::RecordingAbout;
 use crate::app::recordings::budget::{self, PlannedDeletion, RecordingRoom};
 use crate::app::recordings::export::{RecordingExport, RunningExport};
-use crate::app::recordings::folder;
 use crate::app::recordings::item::RecordingItem;
 use crate::app::recordings::list::{self, FolderListing, OWN_MAX, OwnRecording, RecordingAction};
 use crate::app::replay::player::{self, RecordingPlayer};
@@ -184,7 +184,7 @@ impl ReplayWork {
         self.jobs.start(
             ReplayJob::ChooseFolder,
             env.background(),
-            folder::choose(typed, env),
+            files::choose_folder(typed, env),
             |work, state, chosen| match chosen {
                 Ok(folder) => work.record_into(Some(folder), state),
                 Err(why) => {
@@ -199,7 +199,7 @@ impl ReplayWork {
         self.jobs.start(
             ReplayJob::Reveal,
             env.background(),
-            folder::reveal(path, env),
+            files::reveal(path, env),
             |_, state, revealed| {
                 if let Err(why) = revealed {
                     state.notices.push(state.now, why);

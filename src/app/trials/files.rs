@@ -2,7 +2,7 @@
 
 use crate::app::env::Env;
 use crate::app::env::day_folder;
-use crate::app::files::open::open as open_file;
+use crate::app::files::open as open_file;
 use crate::app::notices::NoticeKind;
 use crate::app::trials::state::{
     SessionId, SessionOrigin, SessionTrial, TrialSession, TrialsState,
