@@ -2,9 +2,9 @@
 
 use crate::app::env::Env;
 use crate::app::env::running::Running;
-use crate::app::exhibit::state::{ExhibitAction, ExhibitState, Exhibition, StaffPanel};
-use crate::app::exhibit::stored_report::StoredReport;
-use crate::app::exhibit::wrong_pins_file;
+use crate::app::exhibit::{
+    ExhibitAction, ExhibitState, Exhibition, StaffPanel, StoredReport, wrong_pins_file,
+};
 use crate::app::hands::Hand;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};

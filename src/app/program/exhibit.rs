@@ -2,9 +2,7 @@
 
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
-use crate::app::exhibit::exhibit_file;
-use crate::app::exhibit::state::{ExhibitAction, ExhibitState, Exhibition};
-use crate::app::exhibit::stored_report::StoredReport;
+use crate::app::exhibit::{ExhibitAction, ExhibitState, Exhibition, StoredReport, exhibit_file};
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::program::hands;
