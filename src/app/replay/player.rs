@@ -5,7 +5,7 @@ use crate::app::env::Env;
 use crate::app::notices::NoticeKind;
 use crate::app::recordings::about::{RecordingAbout, RecordingNote};
 use crate::app::recordings::item::RecordingItem;
-use crate::app::recordings::list::{RecordingAction, Timeline};
+use crate::app::recordings::{RecordingAction, Timeline};
 use crate::app::replay::beside;
 use crate::app::replay::recorded::{Recorded, ReplayTarget};
 use crate::app::state::State;

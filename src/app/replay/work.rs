@@ -8,7 +8,7 @@ use crate::app::recordings::about::RecordingAbout;
 use crate::app::recordings::budget::{self, PlannedDeletion, RecordingRoom};
 use crate::app::recordings::export::{RecordingExport, RunningExport};
 use crate::app::recordings::item::RecordingItem;
-use crate::app::recordings::list::{self, FolderListing, OWN_MAX, OwnRecording, RecordingAction};
+use crate::app::recordings::{self, FolderListing, OWN_MAX, OwnRecording, RecordingAction};
 use crate::app::replay::player::{self, RecordingPlayer};
 use crate::app::state::State;
 use crate::hand::Moment;
@@ -366,7 +366,7 @@ impl ReplayWork {
             self.jobs.start(
                 ReplayJob::Scan,
                 env.background(),
-                list::scan(folder, Arc::clone(&state.recordings.items)),
+                recordings::scan(folder, Arc::clone(&state.recordings.items)),
                 |work, state, listing| work.apply_listing(listing, state),
             );
         }
