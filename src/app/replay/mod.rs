@@ -1,6 +1,5 @@
 //! Replay of a recording in place of the live hands, and operations on recordings.
 
-pub(crate) mod beside;
 pub(crate) mod player;
 pub(crate) mod recorded;
 pub(crate) mod work;

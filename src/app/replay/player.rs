@@ -6,8 +6,7 @@ use crate::app::notices::NoticeKind;
 use crate::app::recordings::about::{RecordingAbout, RecordingNote};
 use crate::app::recordings::item::RecordingItem;
 use crate::app::recordings::{RecordingAction, Timeline};
-use crate::app::replay::beside;
-use crate::app::replay::recorded::{Recorded, ReplayTarget};
+use crate::app::replay::recorded::{Recorded, ReplayTarget, read_beside};
 use crate::app::state::State;
 use crate::hand::{Group, Moment};
 use crate::history::NOTE_MAX;
@@ -407,7 +406,7 @@ impl RecordingPlayer {
                 self.jobs.start(
                     PlayerJob::ReadBeside,
                     env.background(),
-                    beside::read(path.clone(), first),
+                    read_beside(path.clone(), first),
                     |player, (), beside| match beside {
                         Ok(beside) => player.state.beside = Some(beside),
                         Err(refused) => player.notify(refused),

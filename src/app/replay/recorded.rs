@@ -1,19 +1,23 @@
-//! State of the window at a moment of a recording, restored by applying its entries as when they were received.
+//! State of the window at a moment of a recording, restored by applying its entries as when they were received. Reads a second
+//! recording, to be overlaid on the replayed one, in the same way.
 
 use crate::app::hand::RecordedMover;
 use crate::app::hands::Hand;
-use crate::app::notices::Notices;
+use crate::app::notices::{NoticeKind, Notices};
+use crate::app::recordings::{BesideRecording, RecordingAbout, RecordingItem};
 use crate::hand::Moment;
 use crate::history::MarkKind;
 use crate::link::Traffic;
 use crate::link::tap::WireTap;
 use crate::params;
-use crate::record::file::RecordingFile;
 use crate::record::file::reader::TimeRange;
+use crate::record::file::{OpenError, RecordingFile};
 use crate::record::{Entry, Event, EventKind, LinkReport};
+use crate::store::on_thread;
 use crate::transport::Endpoint;
 use std::io;
 use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Time before the moment that is applied entry by entry: the longest span inspected in detail. Older data comes from the
@@ -171,6 +175,28 @@ impl ReplayTarget<'_> {
             _ => {}
         }
     }
+}
+
+/// Reads a recording and aligns its start with this moment.
+pub(crate) async fn read_beside(path: PathBuf, own: Moment) -> Result<BesideRecording, NoticeKind> {
+    let place = path.clone();
+    let read = on_thread(move || Ok(open_beside(&place, own))).await;
+    let read = read.unwrap_or_else(|error| Err(error.into()));
+    read.map_err(|why| NoticeKind::RecordingRefused { path, why })
+}
+
+fn open_beside(path: &Path, own: Moment) -> Result<BesideRecording, OpenError> {
+    let file = RecordingFile::open(path)?;
+    let recorded = Recorded::whole(&file)?;
+    let item = RecordingItem::of(&file, RecordingAbout::load(path).unwrap_or_default());
+    Ok(BesideRecording {
+        title: item.title(),
+        first: file.first(),
+        marks: item.marks,
+        history: recorded.hand.measured.history,
+        own,
+        other: file.first(),
+    })
 }
 
 /// Plot mark for an event.
