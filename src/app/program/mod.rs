@@ -36,7 +36,7 @@ use crate::app::program::quirk_notes::QuirkNotes;
 use crate::app::program::saved::SavedFiles;
 use crate::app::recordings::RecordingAction;
 use crate::app::recordings::recording::HandRecording;
-use crate::app::replay::work::ReplayWork;
+use crate::app::replay::ReplayWork;
 use crate::app::settings::Settings;
 use crate::app::state::State;
 use crate::exhibit::stage::ExhibitWish;
