@@ -1,8 +1,9 @@
 //! Comparison of trials across sessions: rows, lines, scores of the settings, and whether sessions may be pooled.
 //! Computed on change, not every frame. Draws nothing.
 
-use crate::app::trials::lines::{JointLines, TrialQuantity};
-use crate::app::trials::state::{SessionId, SessionTrial, TrialSession, TrialsState};
+use crate::app::trials::state::{
+    JointLines, SessionId, SessionTrial, TrialQuantity, TrialSession, TrialsState,
+};
 use crate::hand::Dof;
 use crate::history::decimated;
 use crate::trials::best::{Score, best, scores};

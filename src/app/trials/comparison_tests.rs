@@ -3,8 +3,9 @@
 use crate::app::trials::comparison::{
     Comparison, LINES_MAX, LineGroup, POINTS_MAX, SHOWN_MAX, SessionDifference,
 };
-use crate::app::trials::lines::TrialQuantity;
-use crate::app::trials::state::{ROWS_MAX, SESSIONS_MAX, SessionId, SessionOrigin, TrialsState};
+use crate::app::trials::state::{
+    ROWS_MAX, SESSIONS_MAX, SessionId, SessionOrigin, TrialQuantity, TrialsState,
+};
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, PerFinger, Speed};
 use crate::trials::measure::curve::JointCurves;
 use crate::trials::measure::metrics::{DwellSpan, measure_joint};

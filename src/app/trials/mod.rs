@@ -6,7 +6,6 @@ pub mod comparison;
 pub(crate) mod comparison_tests;
 pub(crate) mod files;
 pub mod form;
-pub mod lines;
 pub mod overshoot;
 pub mod state;
 pub mod work;
@@ -14,10 +13,9 @@ pub mod work;
 pub use crate::app::trials::comparison::{
     ComparedLine, ComparedLines, ComparedRow, Comparison, LineGroup, RowKey, SessionDifference,
 };
-pub use crate::app::trials::lines::{JointLines, TrialQuantity};
 pub use crate::app::trials::overshoot::HandOvershoot;
 pub use crate::app::trials::state::{
-    Search, SeriesKind, SeriesPlan, SessionId, SessionOrigin, SessionTrial, TrialAction,
-    TrialSession, TrialsState,
+    JointLines, Search, SeriesKind, SeriesPlan, SessionId, SessionOrigin, SessionTrial,
+    TrialAction, TrialQuantity, TrialSession, TrialsState,
 };
 pub use crate::app::trials::work::{SeriesRun, StartRefusal};
