@@ -5,10 +5,9 @@ use crate::app::env::Env;
 use crate::app::hands::running::AskedSeries;
 use crate::app::program::hand_tick::{record_event, start_checkup};
 use crate::app::program::hands;
-use crate::app::program::taring;
 use crate::app::state::State;
 use crate::hand::kinematics::Side;
-use crate::hand::{Dof, Finger, Moment};
+use crate::hand::{Dof, Moment};
 use crate::history::{Mark, MarkKind};
 use crate::record::EventKind;
 use crate::store::calendar::{day, since_1970};
@@ -47,20 +46,6 @@ pub(super) fn checkup(state: &mut State, action: CheckupAction, env: &Env) {
 pub(super) fn set_hold_to_run(state: &mut State, on: bool) {
     state.settings.hold_to_run = on;
     state.hands.iter_mut().for_each(|hand| hand.need_key(on));
-}
-
-pub(super) fn tare(state: &mut State, finger: Option<Finger>, env: &Env) {
-    hands::with_shown(state, env, |hand, settings, ctx| {
-        taring::tare(hand, finger, ctx);
-        taring::keep(hand, settings, ctx.now);
-    });
-}
-
-pub(super) fn undo_tare(state: &mut State, env: &Env) {
-    hands::with_shown(state, env, |hand, settings, ctx| {
-        hand.readings.tare.undo();
-        taring::keep(hand, settings, ctx.now);
-    });
 }
 
 /// Adds a note to the history; empty text adds none.

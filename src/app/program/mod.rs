@@ -319,11 +319,9 @@ impl App {
             Action::GrowPlot(kind) => state.settings.tall_plots.grow(kind),
             Action::Note(at, words) => hand_actions::note(state, at, &words),
             Action::RemoveMark(mark) => hand_actions::remove_mark(state, &mark),
-            Action::Tare(finger) => hand_actions::tare(state, finger, env),
-            Action::UndoTare => hand_actions::undo_tare(state, env),
-            Action::TakeKeptTare => {
-                hands::with_shown(state, env, |hand, _, ctx| taring::restore(hand, ctx));
-            }
+            Action::Tare(finger) => taring::tare(state, finger, env),
+            Action::UndoTare => taring::undo(state, env),
+            Action::TakeKeptTare => taring::restore(state, env),
             Action::Stage(id, value) => state.hand_mut().params.stage(id, value),
             Action::Param(action) => self.jobs.param_action(action, state, env),
         }
