@@ -22,6 +22,16 @@ pub struct LeaveQuestion {
     pub edits: usize,
 }
 
+impl LeaveQuestion {
+    /// Question about the work of these hands; `None` if closing would lose nothing.
+    pub(crate) fn of(hands: &HandList) -> Option<Self> {
+        let series = hands.iter().any(Hand::runs_series);
+        let staged = |hand: &Hand| hand.params.all_staged().iter().count();
+        let edits = hands.iter().map(staged).sum();
+        (series || edits > 0).then_some(Self { series, edits })
+    }
+}
+
 /// Everything the window shows.
 #[derive(Debug, Default)]
 pub struct State {

@@ -1,15 +1,45 @@
-//! Carries out user actions on the list of hands. An action on one hand affects no other.
+//! Carries out user actions on the list of hands, and stops the hands when the window closes. An action on one hand affects no
+//! other.
 
 use crate::app::ctx::Ctx;
 use crate::app::env::Env;
 use crate::app::hand::HoldKey;
 use crate::app::hands::Hand;
-use crate::app::hands::list::HandsAction;
+use crate::app::hands::list::{HandList, HandsAction};
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::slot::SlotId;
 use crate::app::state::State;
+use crate::hand::Moment;
 use crate::transport::Endpoint;
+
+/// Closing of the window: hands that may move are stopped first.
+#[derive(Clone, Copy)]
+pub(super) struct Closing {
+    pub(super) since: Moment,
+    /// A hand was stopped, and its rest is awaited.
+    held: bool,
+}
+
+impl Closing {
+    /// Stops each hand that is armed, or that this program set in motion.
+    pub(super) fn begin(state: &mut State, env: &Env, now: Moment) -> Self {
+        state.now = now;
+        let mut held = false;
+        each_hand(state, env, |hand, ctx| {
+            if hand.connection.may_move() {
+                hand.stop(ctx);
+                held = true;
+            }
+        });
+        Self { since: now, held }
+    }
+
+    /// True once each stopped hand rests or has disconnected.
+    pub(super) fn is_at_rest(&self, hands: &HandList) -> bool {
+        !self.held || hands.iter().all(|hand| hand.connection.is_held(self.since))
+    }
+}
 
 /// Carries out a user action.
 pub(super) fn act(state: &mut State, action: HandsAction, env: &Env) {
@@ -150,11 +180,7 @@ pub(super) fn with_hand(
 }
 
 /// Applies a function to each hand.
-pub(super) fn each_hand(
-    state: &mut State,
-    env: &Env,
-    mut act: impl FnMut(&mut Hand, &mut Ctx<'_>),
-) {
+fn each_hand(state: &mut State, env: &Env, mut act: impl FnMut(&mut Hand, &mut Ctx<'_>)) {
     let State {
         hands,
         notices,

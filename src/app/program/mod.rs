@@ -1,6 +1,5 @@
 //! The program: carries out actions, and advances hands and files. The rules of motion are with the hand.
 
-mod closing;
 pub(crate) mod exhibit;
 mod hand_actions;
 mod hand_tick;
@@ -26,10 +25,10 @@ use crate::app::hands::Hand;
 use crate::app::hands::hand::REST_TIMEOUT;
 use crate::app::notices::{NoticeKind, RequestKind};
 use crate::app::params::ParamsHand;
-use crate::app::program::closing::Closing;
 use crate::app::program::exhibit::ExhibitWork;
 use crate::app::program::hand_actions::each;
 use crate::app::program::hand_tick::{Shared, record_event};
+use crate::app::program::hands::Closing;
 use crate::app::program::jobs::ProgramJobs;
 use crate::app::program::pose_actions::accepts_poses;
 use crate::app::program::quirk_notes::QuirkNotes;
@@ -38,7 +37,7 @@ use crate::app::recordings::RecordingAction;
 use crate::app::recordings::recording::HandRecording;
 use crate::app::replay::ReplayWork;
 use crate::app::settings::Settings;
-use crate::app::state::State;
+use crate::app::state::{LeaveQuestion, State};
 use crate::exhibit::stage::ExhibitWish;
 use crate::hand::{HandCommand, Moment};
 use crate::poses::Play;
@@ -418,7 +417,7 @@ impl App {
         if self.leaves {
             return false;
         }
-        self.state.leave = closing::question(&self.state.hands);
+        self.state.leave = LeaveQuestion::of(&self.state.hands);
         let asks = self.state.leave.is_some();
         if asks {
             self.recorded.player = None;
