@@ -3,7 +3,6 @@
 pub mod action;
 pub mod checkup;
 pub mod connect;
-pub(crate) mod ctx;
 pub mod effect;
 pub mod env;
 pub mod exhibit;

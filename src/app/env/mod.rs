@@ -1,8 +1,11 @@
-//! The program's environment: runtime, clock, opening of wires, file dialogs, and background tasks.
+//! The program's environment: runtime, clock, opening of wires, file dialogs, and background tasks; and the context of an
+//! action on one hand.
 
 pub mod day_folder;
 pub(crate) mod running;
 
+use crate::app::notices::{HandNotices, NoticeKind};
+use crate::hand::Moment;
 use crate::inputs::pad::device::OpenPads;
 use crate::link::{Clock, Wake};
 use crate::store::Background;
@@ -44,6 +47,20 @@ impl Env {
             runtime: &self.runtime,
             wake: &self.wake,
         }
+    }
+}
+
+/// Context of an action on one hand: time, environment, and the sink for notices.
+pub(crate) struct Ctx<'a> {
+    pub(crate) now: Moment,
+    pub(crate) env: &'a Env,
+    pub(crate) notices: HandNotices<'a>,
+}
+
+impl Ctx<'_> {
+    /// Publishes a notice about this hand.
+    pub(crate) fn notify(&mut self, what: NoticeKind) {
+        self.notices.push(self.now, what);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Forces that the joints of a slot's hand read while they touch nothing: read when the hand is opened, and stored when a close
 //! improved them, off the window's thread.
 
-use crate::app::ctx::Ctx;
+use crate::app::env::Ctx;
 use crate::app::notices::NoticeKind;
 use crate::checkup::free_file;
 use crate::hand::grip::{FreeForce, GripEstimator};

@@ -1,7 +1,7 @@
 //! One hand as a composition: the parts own their state and are independent of each other; operations on several parts are here.
 
 use crate::app::checkup::HandCheckup;
-use crate::app::ctx::Ctx;
+use crate::app::env::Ctx;
 use crate::app::env::Env;
 use crate::app::env::running::Running;
 use crate::app::hand::connection::Leaving;

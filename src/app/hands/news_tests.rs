@@ -1,6 +1,6 @@
 //! What is heard of a link changes what is shown and told, and nothing else. No link is open here.
 
-use crate::app::ctx::Ctx;
+use crate::app::env::Ctx;
 use crate::app::env::{Env, LostSteps, NoChoice, no_reveal};
 use crate::app::hand::controls::JointChange;
 use crate::app::hands::Hand;

@@ -1,6 +1,6 @@
 //! Known state of a hand's persistent parameters: read, staged, saved, and the outcomes of the last writes. Sends nothing.
 
-use crate::app::ctx::Ctx;
+use crate::app::env::Ctx;
 use crate::app::env::running::Running;
 use crate::app::notices::NoticeKind;
 use crate::app::readings::Freshness;

@@ -1,7 +1,7 @@
 //! Handling of parameter requests, and the tasks that carry them out. Reads before it writes; asks before dangerous
 //! changes.
 
-use crate::app::ctx::Ctx;
+use crate::app::env::Ctx;
 use crate::app::env::Env;
 use crate::app::env::running::{Running, Steps};
 use crate::app::files::open;

@@ -1,6 +1,6 @@
 //! Operation of cards: opening, decisions, and the steps of the task.
 
-use crate::app::ctx::Ctx;
+use crate::app::env::Ctx;
 use crate::app::env::running::Running;
 use crate::app::hand::Connection;
 use crate::app::params::{ParamsState, rest_refusal};

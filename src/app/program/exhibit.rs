@@ -1,7 +1,6 @@
 //! Starting an exhibition in place of the window, and ending it.
 
-use crate::app::ctx::Ctx;
-use crate::app::env::Env;
+use crate::app::env::{Ctx, Env};
 use crate::app::exhibit::{ExhibitAction, ExhibitState, Exhibition, StoredReport, exhibit_file};
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;

@@ -1,7 +1,7 @@
 //! The work at each hand in each frame: applying news and continuing operations.
 
 use crate::app::checkup::{CheckupRun, files};
-use crate::app::ctx::Ctx;
+use crate::app::env::Ctx;
 use crate::app::hand::SequenceRun;
 use crate::app::hands::Hand;
 use crate::app::hands::running::{AskedSeries, MotionRun};

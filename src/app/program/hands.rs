@@ -1,8 +1,7 @@
 //! Carries out user actions on the list of hands, and stops the hands when the window closes. An action on one hand affects no
 //! other.
 
-use crate::app::ctx::Ctx;
-use crate::app::env::Env;
+use crate::app::env::{Ctx, Env};
 use crate::app::hand::HoldKey;
 use crate::app::hands::Hand;
 use crate::app::hands::list::{HandList, HandsAction};

@@ -1,6 +1,6 @@
 //! Inputs from outside the window that may move a hand: opening them, granting and ending control, and their results.
 
-use crate::app::ctx::Ctx;
+use crate::app::env::Ctx;
 use crate::app::env::Env;
 use crate::app::hands::Hand;
 use crate::app::hands::running::MotionRun;

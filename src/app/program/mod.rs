@@ -15,8 +15,7 @@ mod taring;
 
 use crate::app::action::Action;
 use crate::app::checkup::files;
-use crate::app::ctx::Ctx;
-use crate::app::env::Env;
+use crate::app::env::{Ctx, Env};
 use crate::app::exhibit::Exhibition;
 use crate::app::files::export::{self, Export};
 use crate::app::hand::Activity;

@@ -1,8 +1,7 @@
 //! Maintains the quirk sheet of the connected hand, off the window's thread, and reports differences from the previous one. Decides
 //! nothing about the hand.
 
-use crate::app::ctx::Ctx;
-use crate::app::env::Env;
+use crate::app::env::{Ctx, Env};
 use crate::app::hands::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::procedures::Procedure;

@@ -1,7 +1,7 @@
 //! Overshoot of the hand in a slot, measured by trials: loaded when the hand is opened, extended after each trial, in the
 //! background.
 
-use crate::app::ctx::Ctx;
+use crate::app::env::Ctx;
 use crate::app::notices::NoticeKind;
 use crate::hand::overshoot::OvershootMap;
 use crate::store::calendar::{day, since_1970};

@@ -1,6 +1,6 @@
 //! Handling of trial requests, and the series that runs on the hand.
 
-use crate::app::ctx::Ctx;
+use crate::app::env::Ctx;
 use crate::app::env::running::Running;
 use crate::app::hand::Connection;
 use crate::app::notices::NoticeKind;
