@@ -1,10 +1,10 @@
 //! All user actions, as one closed list, independent of how they are carried out.
 
 use crate::app::checkup::CheckupAction;
+use crate::app::controls::HoldKey;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::files::export::Export;
-use crate::app::hand::HoldKey;
-use crate::app::hands::list::HandsAction;
+use crate::app::hand::list::HandsAction;
 use crate::app::inputs::InputAction;
 use crate::app::layout::Layout;
 use crate::app::params::state::ParamAction;

@@ -2,8 +2,8 @@
 
 use crate::app::action::Action;
 use crate::app::checkup::CheckupAction;
-use crate::app::hand::HoldKey;
-use crate::app::hands::list::HandsAction;
+use crate::app::controls::HoldKey;
+use crate::app::hand::list::HandsAction;
 use crate::app::inputs::InputAction;
 use crate::app::params::state::ParamAction;
 use crate::app::procedures::procedure::ProcedureAction;

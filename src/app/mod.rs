@@ -1,15 +1,17 @@
 //! The program without drawing: state, actions, and their handling.
 
 pub mod action;
+pub mod activity;
 pub mod checkup;
 pub mod connect;
+pub mod connection;
+pub mod controls;
 pub mod effect;
 pub mod env;
 pub mod exhibit;
 pub mod files;
 pub mod fleet;
 pub mod hand;
-pub mod hands;
 pub mod inputs;
 pub mod layout;
 pub mod notices;

@@ -2,8 +2,8 @@
 
 use crate::app::exhibit::ExhibitState;
 use crate::app::fleet::FleetState;
-use crate::app::hands::Hand;
-use crate::app::hands::list::HandList;
+use crate::app::hand::Hand;
+use crate::app::hand::list::HandList;
 use crate::app::notices::Notices;
 use crate::app::poses::PoseState;
 use crate::app::recordings::{BesideRecording, RecordingsState, Timeline};

@@ -5,7 +5,7 @@ use crate::app::env::running::Running;
 use crate::app::exhibit::{
     ExhibitAction, ExhibitState, Exhibition, StaffPanel, StoredReport, wrong_pins_file,
 };
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
 use crate::exhibit::stage::{ExhibitStage, ExhibitView, ExhibitWish};

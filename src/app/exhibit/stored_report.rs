@@ -3,7 +3,7 @@
 
 use crate::app::env::day_folder;
 use crate::app::files::put_aside;
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::app::notices::NoticeKind;
 use crate::exhibit::report::{DayReport, file, page};
 use crate::exhibit::stage::ExhibitEvent;

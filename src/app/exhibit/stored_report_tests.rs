@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may")]
 use crate::app::env::day_folder::of_day;
 use crate::app::exhibit::StoredReport;
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::app::notices::NoticeKind;
 use crate::exhibit::report::{DayReport, file};
 use crate::exhibit::stage::ExhibitEvent;

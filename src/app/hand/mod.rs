@@ -1,15 +1,14 @@
-//! The parts of one hand. Each owns its state and is independent of the others; `hands` composes them.
+//! The hands of the program: each a composition of its parts, and the list of them.
 
-pub mod activity;
-pub mod connection;
-pub mod controls;
-mod held_key;
-pub mod sequence;
-pub(crate) mod status_news;
+mod free_force;
+pub mod grip;
+pub mod hand;
+pub mod list;
+pub mod mover;
+pub mod running;
 
-pub use crate::app::hand::activity::Activity;
-pub(crate) use crate::app::hand::activity::RecordedMover;
-pub use crate::app::hand::connection::Connection;
-pub use crate::app::hand::controls::{Controls, JointControl};
-pub use crate::app::hand::held_key::HoldKey;
-pub use crate::app::hand::sequence::SequenceRun;
+#[cfg(test)]
+mod news_tests;
+
+pub use crate::app::hand::hand::Hand;
+pub use crate::app::hand::mover::{Mover, rests};

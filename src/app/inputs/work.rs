@@ -1,7 +1,7 @@
 //! Opens inputs and outlets of a connection.
 
+use crate::app::connection::Connection;
 use crate::app::env::Env;
-use crate::app::hand::Connection;
 use crate::app::inputs::{HandInputs, HandMirror, InputKind, OpenRefusal};
 use crate::app::settings::Settings;
 use crate::app::slot::SlotId;

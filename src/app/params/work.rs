@@ -1,11 +1,11 @@
 //! Handling of parameter requests, and the tasks that carry them out. Reads before it writes; asks before dangerous
 //! changes.
 
+use crate::app::connection::Connection;
 use crate::app::env::Ctx;
 use crate::app::env::Env;
 use crate::app::env::running::{Running, Steps};
 use crate::app::files::open;
-use crate::app::hand::Connection;
 use crate::app::params::state::{
     Doing, FileComparison, FilesRead, ParamAction, ParamsEffect, ParamsJob, ParamsState,
 };

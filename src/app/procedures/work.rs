@@ -1,8 +1,8 @@
 //! Operation of cards: opening, decisions, and the steps of the task.
 
+use crate::app::connection::Connection;
 use crate::app::env::Ctx;
 use crate::app::env::running::Running;
-use crate::app::hand::Connection;
 use crate::app::params::{ParamsState, rest_refusal};
 use crate::app::procedures::procedure::{
     CalibrateProcedure, LinkRequest, LinkRequester, PlaceProcedure, Procedure, ProcedureAction,

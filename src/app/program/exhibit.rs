@@ -2,7 +2,7 @@
 
 use crate::app::env::{Ctx, Env};
 use crate::app::exhibit::{ExhibitAction, ExhibitState, Exhibition, StoredReport, exhibit_file};
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::program::hands;
 use crate::app::state::State;

@@ -2,7 +2,7 @@
 
 use crate::app::checkup::CheckupAction;
 use crate::app::env::Env;
-use crate::app::hands::running::AskedSeries;
+use crate::app::hand::running::AskedSeries;
 use crate::app::program::hand_tick::{record_event, start_checkup};
 use crate::app::program::hands;
 use crate::app::state::State;

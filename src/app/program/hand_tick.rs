@@ -2,9 +2,9 @@
 
 use crate::app::checkup::{CheckupRun, files};
 use crate::app::env::Ctx;
-use crate::app::hand::SequenceRun;
-use crate::app::hands::Hand;
-use crate::app::hands::running::{AskedSeries, MotionRun};
+use crate::app::hand::Hand;
+use crate::app::hand::running::SequenceRun;
+use crate::app::hand::running::{AskedSeries, MotionRun};
 use crate::app::notices::NoticeKind;
 use crate::app::params::ParamsHand;
 use crate::app::poses::PoseState;

@@ -1,10 +1,10 @@
 //! Carries out user actions on the list of hands, and stops the hands when the window closes. An action on one hand affects no
 //! other.
 
+use crate::app::controls::HoldKey;
 use crate::app::env::{Ctx, Env};
-use crate::app::hand::HoldKey;
-use crate::app::hands::Hand;
-use crate::app::hands::list::{HandList, HandsAction};
+use crate::app::hand::Hand;
+use crate::app::hand::list::{HandList, HandsAction};
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::slot::SlotId;

@@ -2,8 +2,8 @@
 
 use crate::app::env::Ctx;
 use crate::app::env::Env;
-use crate::app::hands::Hand;
-use crate::app::hands::running::MotionRun;
+use crate::app::hand::Hand;
+use crate::app::hand::running::MotionRun;
 use crate::app::inputs::{FollowRun, InputAction};
 use crate::app::notices::NoticeKind;
 use crate::app::poses::PoseState;

@@ -3,7 +3,7 @@
 use crate::app::env::Env;
 use crate::app::files::export::{self, Export};
 use crate::app::files::{open, pose_file};
-use crate::app::hands::running::AskedSeries;
+use crate::app::hand::running::AskedSeries;
 use crate::app::notices::NoticeKind;
 use crate::app::params::{ParamAction, ParamsHand};
 use crate::app::program::hand_tick::start_series;

@@ -14,14 +14,14 @@ mod saved;
 mod taring;
 
 use crate::app::action::Action;
+use crate::app::activity::Activity;
 use crate::app::checkup::files;
+use crate::app::controls::JointChange;
 use crate::app::env::{Ctx, Env};
 use crate::app::exhibit::Exhibition;
 use crate::app::files::export::{self, Export};
-use crate::app::hand::Activity;
-use crate::app::hand::controls::JointChange;
-use crate::app::hands::Hand;
-use crate::app::hands::hand::REST_TIMEOUT;
+use crate::app::hand::Hand;
+use crate::app::hand::hand::REST_TIMEOUT;
 use crate::app::notices::{NoticeKind, RequestKind};
 use crate::app::params::ParamsHand;
 use crate::app::program::exhibit::ExhibitWork;

@@ -1,7 +1,7 @@
 //! Grips by size with the shown hand, and the blocks that calibrate its sizes.
 
 use crate::app::env::Env;
-use crate::app::hands::grip;
+use crate::app::hand::grip;
 use crate::app::notices::NoticeKind;
 use crate::app::state::State;
 use crate::hand::gap::{Block, Gap, SizeBlocks};

@@ -1,8 +1,8 @@
 //! User actions on poses and sequences.
 
 use crate::app::env::Env;
-use crate::app::hand::SequenceRun;
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
+use crate::app::hand::running::SequenceRun;
 use crate::app::notices::NoticeKind;
 use crate::app::state::State;
 use crate::hand::{Angle, PerDof, Target};

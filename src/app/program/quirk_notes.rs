@@ -2,7 +2,7 @@
 //! nothing about the hand.
 
 use crate::app::env::{Ctx, Env};
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::procedures::Procedure;
 use crate::app::slot::SlotId;

@@ -1,7 +1,7 @@
 //! Taring of the fingertips by the user, stored for the next connection with the same hand, and offered then.
 
 use crate::app::env::{Ctx, Env};
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::program::hands;
 use crate::app::readings::Freshness;

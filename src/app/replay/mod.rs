@@ -6,7 +6,7 @@ mod recorded;
 
 use crate::app::env::Env;
 use crate::app::files;
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::app::notices::NoticeKind;
 use crate::app::recordings::about::RecordingAbout;
 use crate::app::recordings::budget::{self, PlannedDeletion, RecordingRoom};

@@ -1,8 +1,8 @@
 //! State of the window at a moment of a recording, restored by applying its entries as when they were received. Reads a second
 //! recording, to be overlaid on the replayed one, in the same way.
 
-use crate::app::hand::RecordedMover;
-use crate::app::hands::Hand;
+use crate::app::activity::RecordedMover;
+use crate::app::hand::Hand;
 use crate::app::notices::{NoticeKind, Notices};
 use crate::app::recordings::{BesideRecording, RecordingAbout, RecordingItem};
 use crate::hand::Moment;

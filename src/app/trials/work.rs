@@ -1,8 +1,8 @@
 //! Handling of trial requests, and the series that runs on the hand.
 
+use crate::app::connection::Connection;
 use crate::app::env::Ctx;
 use crate::app::env::running::Running;
-use crate::app::hand::Connection;
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::trials::form::tags;

@@ -3,7 +3,7 @@
 use crate::cli::doctor::checkup::{ConnectionFacts, Examination, LinkMeasurements};
 use crate::link::{LinkStats, priority};
 use crate::transport::can_facts::{CanFacts, QUEUE_LEN_USUAL};
-use crate::transport::{Endpoint, PortFacts, Route};
+use crate::transport::{PortFacts, Route};
 use serde::Serialize;
 use std::time::Duration;
 

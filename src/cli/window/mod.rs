@@ -3,7 +3,7 @@
 pub(crate) mod exhibit;
 pub(crate) mod snapshot;
 
-use crate::app::hands::list::HANDS_MAX;
+use crate::app::hand::list::HANDS_MAX;
 use crate::cli::out::WrongUsage;
 use crate::transport::Endpoint;
 use clap::Args;

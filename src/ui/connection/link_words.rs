@@ -1,6 +1,6 @@
 //! State of the link as a word and a colour.
 
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::link::Dialling;
 use crate::record::LinkState;
 use crate::ui::kit::{Look, Pane};

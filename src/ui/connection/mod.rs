@@ -7,7 +7,7 @@ pub(crate) mod scan;
 mod shared;
 
 use crate::app::action::Action;
-use crate::app::hands::list::HandsAction;
+use crate::app::hand::list::HandsAction;
 use crate::app::scan::ScanTarget;
 use crate::link::scan::{Hosts, HostsError};
 use crate::poses::library::NAME_CHARS_MAX;

@@ -1,6 +1,6 @@
 //! Labels beside the drawn hand: each finger's name, force and fault in a fixed position, with a line to the finger.
 
-use crate::app::hands::grip;
+use crate::app::hand::grip;
 use crate::app::readings::Freshness;
 use crate::hand::gap::HeldSize;
 use crate::hand::grip::{Grip, GripState};

@@ -1,8 +1,8 @@
 //! The drawn hand in the window: turns state into a picture, and returns the finger that was clicked.
 
 use crate::app::action::Action;
-use crate::app::hand::Activity;
-use crate::app::hands::Hand;
+use crate::app::activity::Activity;
+use crate::app::hand::Hand;
 use crate::app::readings::Freshness;
 use crate::draw::figure::shape::Held;
 use crate::hand::heat::{HOT, WARM};

@@ -1,6 +1,6 @@
 //! All hands side by side, each with its drawn hand, state, and current measurements.
 
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::app::settings::PlotKind;
 use crate::app::slot::SlotId;
 use crate::hand::{PerDof, PerFinger};

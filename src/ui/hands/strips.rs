@@ -1,9 +1,9 @@
 //! A strip for each hand below the header, with its state and a STOP of its own. Shown only with several hands.
 
 use crate::app::action::Action;
-use crate::app::hands::Hand;
-use crate::app::hands::Mover;
-use crate::app::hands::list::HandsAction;
+use crate::app::hand::Hand;
+use crate::app::hand::Mover;
+use crate::app::hand::list::HandsAction;
 use crate::app::slot::SlotId;
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;

@@ -2,7 +2,7 @@
 
 use crate::app::action::Action;
 use crate::app::effect::ActionEffect;
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::app::layout::{Breakpoint, Layout, RoomLayouts};
 use crate::app::readings::Freshness;
 use crate::app::state::State;

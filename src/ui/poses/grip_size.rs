@@ -1,7 +1,7 @@
 //! Grips by size: a popup with kind, gap, size of the held object, and the reference blocks that calibrate it.
 
 use crate::app::action::Action;
-use crate::app::hands::grip;
+use crate::app::hand::grip;
 use crate::hand::Angle;
 use crate::hand::gap::{Block, Gap, GripKind, gap_on_path};
 use crate::poses::edit::LibraryEdit;

@@ -1,8 +1,8 @@
 //! Poses as tiles with a drawn hand, in the library and in the overview's strip. Starts nothing by itself.
 
 use crate::app::action::Action;
-use crate::app::hands::grip;
-use crate::app::hands::list::HandsAction;
+use crate::app::hand::grip;
+use crate::app::hand::list::HandsAction;
 use crate::app::poses::PoseState;
 use crate::app::state::State;
 use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};

@@ -1,7 +1,7 @@
 //! The bar at the top of the window: hand, link, the five tabs, faults, arming, and STOP. Always visible.
 
 use crate::app::action::Action;
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::app::recordings::RecordingAction;
 use crate::record::ArmRefusal;
 use crate::record::file::RecorderStatus;

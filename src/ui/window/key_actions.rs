@@ -1,9 +1,9 @@
 //! Actions of the keys that work everywhere.
 
 use crate::app::action::Action;
-use crate::app::hand::HoldKey;
-use crate::app::hands::Hand;
-use crate::app::hands::list::HandsAction;
+use crate::app::controls::HoldKey;
+use crate::app::hand::Hand;
+use crate::app::hand::list::HandsAction;
 use crate::app::settings::Zoom;
 use crate::app::state::State;
 use crate::poses::Preset;

@@ -1,7 +1,7 @@
 //! All keys that work everywhere: one table of key, effect and name, which the key list also shows. Keys of a single control,
 //! such as the arrows of a track, belong to that control. Executes nothing.
 
-use crate::app::hand::HoldKey;
+use crate::app::controls::HoldKey;
 use crate::hand::Dof;
 use crate::poses::library::EntryKey;
 use crate::ui::kit::ViewRequest;

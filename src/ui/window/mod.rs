@@ -27,7 +27,7 @@ mod stop_first;
 pub(crate) mod timeline;
 
 use crate::app::action::Action;
-use crate::app::hands::{Hand, rests};
+use crate::app::hand::{Hand, rests};
 use crate::app::recordings::RecordingAction;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;

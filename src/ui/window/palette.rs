@@ -3,7 +3,7 @@
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
-use crate::app::hands::list::HandsAction;
+use crate::app::hand::list::HandsAction;
 use crate::app::layout::RoomLayouts;
 use crate::app::settings::PlotWindow;
 use crate::poses::library::EntryId;

@@ -20,7 +20,7 @@ use crate::setup::link::to_hand;
 use crate::setup::program::{env, start};
 use handscope::app::action::Action;
 use handscope::app::env::Env;
-use handscope::app::hands::Hand;
+use handscope::app::hand::Hand;
 use handscope::app::notices::NoticeKind;
 use handscope::app::program::App;
 use handscope::app::settings::Settings;

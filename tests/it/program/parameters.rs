@@ -53,7 +53,7 @@ fn staged(bench: &Bench, id: ParamId) -> Option<Value> {
 
 async fn done(bench: &mut Bench) {
     bench.run(10).await;
-    let idle = |hand: &handscope::app::hands::Hand| {
+    let idle = |hand: &handscope::app::hand::Hand| {
         !hand.params.is_busy() || hand.params.question().is_some()
     };
     bench
@@ -294,7 +294,7 @@ async fn after_a_factory_reset_no_row_is_shown_as_it_was() {
     assert_eq!(fresh(&bench, INDEX), Freshness::Live);
     bench.act(Action::FactoryReset);
     bench.act(Action::Procedure(ProcedureAction::Begin));
-    let is_over = |hand: &handscope::app::hands::Hand| match &hand.procedures.card {
+    let is_over = |hand: &handscope::app::hand::Hand| match &hand.procedures.card {
         Some(Procedure::Reset(card)) => card.stage.end().is_some(),
         _ => false,
     };
@@ -334,7 +334,7 @@ async fn after_a_change_of_address_no_row_is_shown_as_it_was() {
     assert_ne!(before, wanted);
     bench.act(Action::ChangePlace(ip, wanted));
     bench.act(Action::Procedure(ProcedureAction::Begin));
-    let is_there = |hand: &handscope::app::hands::Hand| match &hand.procedures.card {
+    let is_there = |hand: &handscope::app::hand::Hand| match &hand.procedures.card {
         Some(Procedure::Place(card)) => card.stage.end().is_some() || card.question().is_some(),
         _ => false,
     };

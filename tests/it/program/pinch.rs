@@ -3,7 +3,7 @@
 use crate::program::starter::{along, least_room, room};
 use crate::program::{ANGLE_SET, Bench, shorts};
 use handscope::app::action::Action;
-use handscope::app::hands::grip::is_open_for_pinch;
+use handscope::app::hand::grip::is_open_for_pinch;
 use handscope::hand::gap::Gap;
 use handscope::hand::{Angle, Dof, PerDof};
 use handscope::poses::starter::starter;

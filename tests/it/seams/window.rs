@@ -12,7 +12,7 @@ use handscope::app::action::Action;
 use handscope::app::checkup::CheckupAction;
 use handscope::app::env::Env;
 use handscope::app::exhibit::{ExhibitAction, Exhibition};
-use handscope::app::hands::list::HandsAction;
+use handscope::app::hand::list::HandsAction;
 use handscope::app::inputs::InputAction;
 use handscope::app::procedures::procedure::ProcedureAction;
 use handscope::app::settings::Settings;

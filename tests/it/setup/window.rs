@@ -12,7 +12,7 @@ use futures::future::BoxFuture;
 use handscope::app::action::Action;
 use handscope::app::env::Env;
 use handscope::app::exhibit::Exhibition;
-use handscope::app::hands::list::HandsAction;
+use handscope::app::hand::list::HandsAction;
 use handscope::app::settings::Settings;
 use handscope::app::state::State;
 use handscope::exhibit::plan::ExhibitPlan;

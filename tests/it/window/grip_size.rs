@@ -3,7 +3,7 @@
 use crate::setup::window::{ANGLE_SET, Bench, LARGE};
 use egui::{Key, Role};
 use handscope::app::action::Action;
-use handscope::app::hands::grip::is_open_for_pinch;
+use handscope::app::hand::grip::is_open_for_pinch;
 use handscope::hand::gap::Gap;
 use handscope::hand::grip::GripThresholds;
 use handscope::hand::{Angle, Dof, Force, PerDof, Speed};

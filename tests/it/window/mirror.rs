@@ -3,8 +3,8 @@
 
 use crate::setup::window::{ANGLE_SET, Bench, Role};
 use handscope::app::action::Action;
-use handscope::app::hands::Hand;
-use handscope::app::hands::list::HandsAction;
+use handscope::app::hand::Hand;
+use handscope::app::hand::list::HandsAction;
 use handscope::app::inputs::InputAction;
 use handscope::app::notices::NoticeKind;
 use handscope::app::slot::SlotId;

@@ -3,7 +3,7 @@
 use crate::setup::window::{ANGLE_SET, Bench, CLEAR_ERROR, LARGE, Role, SPEED_SET};
 use egui::{Key, Modifiers};
 use handscope::app::action::Action;
-use handscope::app::hands::list::HandsAction;
+use handscope::app::hand::list::HandsAction;
 use handscope::app::notices::NoticeKind;
 use handscope::hand::{Dof, Fault};
 use handscope::record::LinkState;

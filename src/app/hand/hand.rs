@@ -1,15 +1,18 @@
 //! One hand as a composition: the parts own their state and are independent of each other; operations on several parts are here.
 
+use crate::app::activity::{Activity, RecordedMover};
 use crate::app::checkup::HandCheckup;
+use crate::app::connection::Connection;
+use crate::app::connection::Leaving;
+use crate::app::connection::StatusReport;
+use crate::app::controls::{Controls, HoldKey};
+use crate::app::controls::{HeldOtherwise, JointChange};
 use crate::app::env::Ctx;
 use crate::app::env::Env;
 use crate::app::env::running::Running;
-use crate::app::hand::connection::Leaving;
-use crate::app::hand::controls::{HeldOtherwise, JointChange};
-use crate::app::hand::status_news::StatusReport;
-use crate::app::hand::{Activity, Connection, Controls, HoldKey, RecordedMover, SequenceRun};
-use crate::app::hands::free_force::HandFreeForce;
-use crate::app::hands::running::{AskedSeries, MotionRun, RunningMotion};
+use crate::app::hand::free_force::HandFreeForce;
+use crate::app::hand::running::SequenceRun;
+use crate::app::hand::running::{AskedSeries, MotionRun, RunningMotion};
 use crate::app::inputs::HandInputs;
 use crate::app::notices::{HandNotices, NoticeKind, RequestKind};
 use crate::app::params::{ParamsState, rest_refusal};

@@ -1,7 +1,7 @@
 //! The current mover of a hand, for display in every view.
 
-use crate::app::hand::RecordedMover;
-use crate::app::hands::Hand;
+use crate::app::activity::RecordedMover;
+use crate::app::hand::Hand;
 use crate::app::procedures::Procedure;
 use crate::app::readings::Freshness;
 use crate::hand::{Gesture, Moment};

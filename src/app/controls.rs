@@ -1,12 +1,13 @@
-//! The user's settings of the joints: changes in, setpoints out. Knows no link and no clock.
+//! The user's settings of the joints, changes in and setpoints out, and the hold-to-run key: while it is required, motion passes only as
+//! long as the user holds it; it counts as released when the window loses focus or hangs. Knows no link and no clock.
 
-use crate::app::hand::held_key::HeldKey;
 use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Dof, Force, Gesture, Group, HandSample, PerDof, Setpoints,
-    Speed, Target,
+    Angle, AngleReading, ArmEpoch, Dof, Force, Gesture, Group, HandSample, Moment, PerDof,
+    Setpoints, Speed, Target,
 };
-use crate::link::ArmRequest;
+use crate::link::{ArmRequest, HoldToRun};
 use crate::record::Record;
+use std::time::Duration;
 
 /// The user's settings of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -274,6 +275,71 @@ impl Controls {
                 joint.target = actual.and_then(|angles| angles[dof].hold());
             }
         }
+    }
+}
+
+/// A held key stays valid for this long: a window that draws slowly does not stop the hand, a window that hangs does.
+const HOLD_DURATION: Duration = Duration::from_millis(250);
+
+/// State of the key, as the window reports it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
+pub enum HoldKey {
+    /// It was just pressed: the user requests arming.
+    Pressed,
+    /// It is still held.
+    Held,
+    /// It is not held.
+    LetGo,
+}
+
+/// State of the hold-to-run key.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct HeldKey {
+    is_needed: bool,
+    until: Moment,
+    /// The key was pressed, and this press has not armed yet.
+    is_pressed: bool,
+}
+
+impl HeldKey {
+    /// True if the key is required and not held.
+    pub(crate) fn is_let_go(&self, now: Moment) -> bool {
+        self.is_needed && self.until <= now
+    }
+
+    /// True while the key counts as held.
+    pub(crate) fn is_held(&self, now: Moment) -> bool {
+        self.until > now
+    }
+
+    /// Sets whether the key is required.
+    pub(crate) const fn need(&mut self, is_needed: bool) {
+        self.is_needed = is_needed;
+    }
+
+    /// Applies the state of the key; true while a press waits for arming.
+    pub(crate) fn apply(&mut self, key: HoldKey, now: Moment) -> bool {
+        let until = now.plus(HOLD_DURATION);
+        (self.until, self.is_pressed) = match key {
+            HoldKey::Pressed => (until, true),
+            HoldKey::Held => (until, self.is_pressed),
+            HoldKey::LetGo => (Moment::ZERO, false),
+        };
+        self.is_needed && self.is_pressed
+    }
+
+    /// State of the key for the link.
+    pub(crate) const fn hold_to_run(&self) -> HoldToRun {
+        match (self.is_needed, self.until) {
+            (false, _) => HoldToRun::Off,
+            (true, Moment::ZERO) => HoldToRun::Released,
+            (true, until) => HoldToRun::Held(until),
+        }
+    }
+
+    /// Discards the press: only a new press arms.
+    pub(crate) const fn forget_press(&mut self) {
+        self.is_pressed = false;
     }
 }
 

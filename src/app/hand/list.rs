@@ -1,7 +1,7 @@
 //! The hands of the program, and the shown one.
 
-use crate::app::hand::Connection;
-use crate::app::hands::Hand;
+use crate::app::connection::Connection;
+use crate::app::hand::Hand;
 use crate::app::slot::SlotId;
 use crate::hand::Moment;
 

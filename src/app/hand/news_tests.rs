@@ -1,9 +1,9 @@
 //! What is heard of a link changes what is shown and told, and nothing else. No link is open here.
 
+use crate::app::controls::JointChange;
 use crate::app::env::Ctx;
 use crate::app::env::{Env, LostSteps, NoChoice, no_reveal};
-use crate::app::hand::controls::JointChange;
-use crate::app::hands::Hand;
+use crate::app::hand::Hand;
 use crate::app::notices::{Level, NoticeKind, Notices};
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Faults, Group, Groups, HandSample, Moment, PerDof, Timed,
