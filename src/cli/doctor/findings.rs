@@ -375,6 +375,7 @@ mod tests {
     use crate::cli::doctor::checkup::BlockTiming;
     use crate::hand::Span;
     use crate::link::LinkStatus;
+    use crate::transport::Endpoint;
     use crate::transport::UsbFound;
 
     fn healthy(endpoint: &Endpoint) -> LinkMeasurements {

@@ -1,4 +1,4 @@
-//! The command line of `trial` as clap sees it, and the plan that it defines.
+//! The command line of `trial` as clap sees it, the plan that it defines, and the options that `tune` shares with it.
 
 use crate::cli::out::WrongUsage;
 use crate::cli::parse::{angle, dof, force, number, seconds, speed, whole};
@@ -13,8 +13,9 @@ use std::time::Duration;
 /// Degrees below the limit at which trials start.
 const COOLER_C: u8 = 10;
 
+/// The options of every command that closes joints on an object: the hand, the joints, their poses, and where the results go.
 #[derive(Debug, Args)]
-pub(crate) struct TrialArgs {
+pub(crate) struct SeriesArgs {
     #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand)]
     pub(crate) hand: Endpoint,
     /// Move the hand: nothing but the object is in its way, and the 24 V switch is in reach
@@ -22,44 +23,19 @@ pub(crate) struct TrialArgs {
     pub(crate) arm: bool,
     /// Joints that close, separated by commas: little, ring, middle, index, thumb_bend, thumb_rotate
     #[arg(long, value_name = "NAMES", required = true, value_delimiter = ',', value_parser = dof)]
-    pub(crate) joint: Vec<Dof>,
+    joint: Vec<Dof>,
     /// Angle where the joints start, 1000 is open
     #[arg(long, value_name = "ANGLE", default_value = "1000", value_parser = angle)]
-    pub(crate) start: Angle,
-    /// Angle that the joints close to, 0 is bent; the force threshold stops them earlier
+    start: Angle,
+    /// Angle that the joints close to at most, 0 is bent; the force threshold stops them earlier
     #[arg(long, value_name = "ANGLE", default_value = "0", value_parser = angle)]
-    pub(crate) close: Angle,
+    close: Angle,
     /// Angle of a joint that stays still, for example thumb_rotate=300; may be repeated
     #[arg(long, value_name = "NAME=ANGLE", value_parser = place)]
-    pub(crate) pose: Vec<(Dof, Angle)>,
-    /// Speeds at the contact, 1 to 1000, separated by commas
-    #[arg(long, value_name = "SPEEDS", default_value = "25", value_delimiter = ',', value_parser = speed)]
-    pub(crate) speed: Vec<Speed>,
-    /// Force thresholds in g, 0 to 3000, separated by commas
-    #[arg(long, value_name = "GRAMS", default_value = "500", value_delimiter = ',', value_parser = force)]
-    pub(crate) force: Vec<Force>,
-    /// Approach at this speed, then continue at --speed
-    #[arg(long, value_name = "SPEED", value_parser = speed)]
-    pub(crate) approach: Option<Speed>,
-    /// End of the approach: angle:520, proximity:8000 (counts above the start), touch:20 (g), or measured:40 (this far
-    /// before the contact found by a first, slow trial)
-    #[arg(long, value_name = "WHAT", default_value = "measured", requires = "approach", value_parser = until)]
-    pub(crate) until: Until,
-    /// Seconds to hold after the stop
-    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds)]
-    pub(crate) dwell: Duration,
-    /// Seconds between two trials
-    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds)]
-    pub(crate) rest: Duration,
-    /// Trials of each speed with each threshold
-    #[arg(long, value_name = "N", default_value = "1")]
-    pub(crate) repeat: usize,
-    /// Force in g above the reading at rest at which the hand is stopped and the series ends
-    #[arg(long, value_name = "GRAMS", default_value = "2000", value_parser = clap::value_parser!(i16).range(1..=4000))]
-    pub(crate) ceiling: i16,
-    /// Temperature at which the hand is stopped and the series ends; each trial starts at least 10 below it
+    pose: Vec<(Dof, Angle)>,
+    /// Temperature at which the hand is stopped and the command ends; each trial starts at least 10 below it
     #[arg(long, value_name = "CELSIUS", default_value = "60", value_parser = clap::value_parser!(u8).range(30..=75))]
-    pub(crate) max_temp: u8,
+    max_temp: u8,
     /// Write samples, metrics and a report to this folder, which must be new or empty
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -69,18 +45,103 @@ pub(crate) struct TrialArgs {
     /// A tag to find them by; may be repeated
     #[arg(long = "tag", value_name = "WORD")]
     pub(crate) tags: Vec<String>,
-    /// Name the best setting by this criterion
-    #[arg(long, value_name = "CRITERION")]
-    pub(crate) best: Option<BestArg>,
-    /// Steady force in g that the best must hold
-    #[arg(long, value_name = "GRAMS", default_value = "0", requires = "best", value_parser = grams)]
-    pub(crate) hold: f64,
-    /// Overshoot in g that the fastest may have
-    #[arg(long, value_name = "GRAMS", default_value = "100", requires = "best", value_parser = grams)]
-    pub(crate) overshoot: f64,
-    /// Print one JSON object per trial, and a last one for the session
+    /// Print one JSON object per trial, and a last one for the result
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+impl SeriesArgs {
+    /// Joints that close.
+    pub(crate) fn joints(&self) -> &[Dof] {
+        &self.joint
+    }
+
+    /// Targets of the joints that close.
+    pub(crate) fn closed(&self) -> PerDof<Option<Angle>> {
+        PerDof::from_fn(|dof| self.joint.contains(&dof).then_some(self.close))
+    }
+
+    /// Targets before each trial, also of joints that stay still.
+    pub(crate) fn start_pose(&self) -> PerDof<Option<Angle>> {
+        let mut start = self.closed().map(|target| target.map(|_| self.start));
+        for (dof, at) in &self.pose {
+            start[*dof] = Some(*at);
+        }
+        start
+    }
+
+    /// These limits with the given temperature.
+    pub(crate) fn limits(&self, limits: Limits) -> Limits {
+        Limits {
+            stop_c: self.max_temp,
+            start_c: self.max_temp.saturating_sub(COOLER_C),
+            ..limits
+        }
+    }
+
+    /// Checks that each joint is named once: it either closes or stays still.
+    pub(crate) fn check_joints(&self) -> anyhow::Result<()> {
+        for dof in &self.joint {
+            if self.joint.iter().filter(|one| *one == dof).count() > 1 {
+                return Err(WrongUsage::error(format!(
+                    "--joint names {} twice",
+                    dof.name()
+                )));
+            }
+        }
+        for (dof, at) in &self.pose {
+            let (name, at) = (dof.name(), at.get());
+            if self.joint.contains(dof) {
+                return Err(WrongUsage::error(format!(
+                    "{name} closes and so cannot stay still: leave out --pose {name}={at}, or take {name} out of --joint"
+                )));
+            }
+            if self.pose.iter().filter(|(one, _)| one == dof).count() > 1 {
+                return Err(WrongUsage::error(format!("--pose names {name} twice")));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TrialArgs {
+    #[command(flatten)]
+    pub(crate) series: SeriesArgs,
+    /// Speeds at the contact, 1 to 1000, separated by commas
+    #[arg(long, value_name = "SPEEDS", default_value = "25", value_delimiter = ',', value_parser = speed)]
+    speed: Vec<Speed>,
+    /// Force thresholds in g, 0 to 3000, separated by commas
+    #[arg(long, value_name = "GRAMS", default_value = "500", value_delimiter = ',', value_parser = force)]
+    force: Vec<Force>,
+    /// Approach at this speed, then continue at --speed
+    #[arg(long, value_name = "SPEED", value_parser = speed)]
+    approach: Option<Speed>,
+    /// End of the approach: angle:520, proximity:8000 (counts above the start), touch:20 (g), or measured:40 (this far
+    /// before the contact found by a first, slow trial)
+    #[arg(long, value_name = "WHAT", default_value = "measured", requires = "approach", value_parser = until)]
+    until: Until,
+    /// Seconds to hold after the stop
+    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds)]
+    dwell: Duration,
+    /// Seconds between two trials
+    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds)]
+    rest: Duration,
+    /// Trials of each speed with each threshold
+    #[arg(long, value_name = "N", default_value = "1")]
+    repeat: usize,
+    /// Force in g above the reading at rest at which the hand is stopped and the series ends
+    #[arg(long, value_name = "GRAMS", default_value = "2000", value_parser = clap::value_parser!(i16).range(1..=4000))]
+    ceiling: i16,
+    /// Name the best setting by this criterion
+    #[arg(long, value_name = "CRITERION")]
+    best: Option<BestArg>,
+    /// Steady force in g that the best must hold
+    #[arg(long, value_name = "GRAMS", default_value = "0", requires = "best", value_parser = grams)]
+    hold: f64,
+    /// Overshoot in g that the fastest may have
+    #[arg(long, value_name = "GRAMS", default_value = "100", requires = "best", value_parser = grams)]
+    overshoot: f64,
 }
 
 /// A criterion for the best setting.
@@ -95,14 +156,10 @@ pub(crate) enum BestArg {
 impl TrialArgs {
     /// The plan, unchecked.
     pub(crate) fn plan(&self) -> TrialPlan {
-        let close = PerDof::from_fn(|dof| self.joint.contains(&dof).then_some(self.close));
-        let mut start = close.map(|target| target.map(|_| self.start));
-        for (dof, at) in &self.pose {
-            start[*dof] = Some(*at);
-        }
+        let series = &self.series;
         TrialPlan {
-            start,
-            close,
+            start: series.start_pose(),
+            close: series.closed(),
             approach: match self.approach {
                 None => Approach::OneStage,
                 Some(fast) => Approach::TwoStage {
@@ -117,13 +174,12 @@ impl TrialArgs {
                 repeats: self.repeat,
                 rest: self.rest,
             },
-            limits: Limits {
+            limits: series.limits(Limits {
                 ceiling_g: self.ceiling,
-                stop_c: self.max_temp,
-                start_c: self.max_temp.saturating_sub(COOLER_C),
-            },
-            note: self.note.clone(),
-            tags: self.tags.clone(),
+                ..Limits::default()
+            }),
+            note: series.note.clone(),
+            tags: series.tags.clone(),
             ..TrialPlan::default()
         }
     }
@@ -145,31 +201,7 @@ fn grams(text: &str) -> Result<f64, String> {
     number(text, 0.0..=4000.0, "a force between 0 and 4000 g")
 }
 
-/// Checks that each joint is named once: it either closes or stays still.
-pub(crate) fn check_joints(closes: &[Dof], stays: &[(Dof, Angle)]) -> anyhow::Result<()> {
-    for dof in closes {
-        if closes.iter().filter(|one| *one == dof).count() > 1 {
-            return Err(WrongUsage::error(format!(
-                "--joint names {} twice",
-                dof.name()
-            )));
-        }
-    }
-    for (dof, at) in stays {
-        let (name, at) = (dof.name(), at.get());
-        if closes.contains(dof) {
-            return Err(WrongUsage::error(format!(
-                "{name} closes and so cannot stay still: leave out --pose {name}={at}, or take {name} out of --joint"
-            )));
-        }
-        if stays.iter().filter(|(one, _)| one == dof).count() > 1 {
-            return Err(WrongUsage::error(format!("--pose names {name} twice")));
-        }
-    }
-    Ok(())
-}
-
-pub(crate) fn place(text: &str) -> Result<(Dof, Angle), String> {
+fn place(text: &str) -> Result<(Dof, Angle), String> {
     let (name, at) = text
         .split_once('=')
         .ok_or_else(|| format!("'{text}' is not NAME=ANGLE"))?;

@@ -33,12 +33,12 @@ pub(crate) async fn drive(
     plan: &TrialPlan,
 ) -> anyhow::Result<SeriesResult> {
     let wanted = ResultsRequest {
-        hand: &args.hand,
-        json: args.json,
-        folder: args.out.as_deref(),
+        hand: &args.series.hand,
+        json: args.series.json,
+        folder: args.series.out.as_deref(),
         criterion: args.criterion(),
     };
-    let mut hand = ArmedHand::ready(&args.hand, series::arm_limits(plan)).await?;
+    let mut hand = ArmedHand::ready(&args.series.hand, series::arm_limits(plan)).await?;
     let mut results = hand.results(out, wanted, plan).await?;
     let series = TrialSeries::start(plan.clone(), hand.armed.epoch, hand.armed.clock.now())?;
     let report = hand.run_trials(series, &mut results).await.report();

@@ -14,19 +14,19 @@ use anyhow::bail;
 
 /// Runs the series. Fails if it ended early, or if no setting meets the criterion.
 pub(crate) async fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
-    args::check_joints(&args.joint, &args.pose)?;
+    args.series.check_joints()?;
     let plan = args.plan();
     plan.check()
         .map_err(|error| WrongUsage::error(error.to_string()))?;
-    if !args.arm {
+    if !args.series.arm {
         bail!(
             "nothing was moved: these trials close {} on the hand at {}; when nothing but the object is in the way, add --arm",
             output::joints(&plan),
-            args.hand
+            args.series.hand
         );
     }
     let outcome = drive::drive(out, args, &plan).await?;
-    out.result(args.json, &outcome.json(args), outcome.lines())?;
+    out.result(args.series.json, &outcome.json(args), outcome.lines())?;
     out.flush()?;
     if let Some(why) = outcome.aborted_words() {
         bail!("{why}{}", stop_words(outcome.report.stop));

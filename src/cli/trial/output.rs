@@ -74,8 +74,8 @@ impl SeriesResult {
             })
         });
         json!({ "session": {
-            "hand": args.hand.to_string(),
-            "folder": args.out.as_ref().map(|folder| folder.display().to_string()),
+            "hand": args.series.hand.to_string(),
+            "folder": args.series.out.as_ref().map(|folder| folder.display().to_string()),
             "trials": self.trials.len(),
             "aborted": self.aborted_words(),
             "stop": self.report.stop,

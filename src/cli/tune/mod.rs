@@ -6,7 +6,6 @@ mod output;
 pub(crate) use args::TuneArgs;
 
 use crate::cli::out::{Out, WrongUsage};
-use crate::cli::trial::args::check_joints;
 use crate::cli::trial::drive::ArmedHand;
 use crate::cli::trial::output::joints;
 use crate::cli::trial::results::ResultsRequest;
@@ -18,19 +17,19 @@ use anyhow::bail;
 
 /// Runs the search. Fails if it ended early, or if there is no claim.
 pub(crate) async fn run(out: &mut Out, args: &TuneArgs) -> anyhow::Result<()> {
-    check_joints(&args.joint, &args.pose)?;
+    args.series.check_joints()?;
     let search =
         SettingsSearch::new(args.goal()).map_err(|error| WrongUsage::error(error.to_string()))?;
-    if !args.arm {
+    if !args.series.arm {
         bail!(
             "nothing was moved: this search closes {} on the hand at {} about 65 times; when nothing but the object is in the way, add --arm",
             joints(&search.plan()),
-            args.hand
+            args.series.hand
         );
     }
     let report = run_search(out, args, search).await?;
     out.result(
-        args.json,
+        args.series.json,
         &output::json(args, &report),
         output::lines(&report),
     )?;
@@ -48,12 +47,12 @@ async fn run_search(
 ) -> anyhow::Result<SearchReport> {
     let plan = search.plan();
     let wanted = ResultsRequest {
-        hand: &args.hand,
-        json: args.json,
-        folder: args.out.as_deref(),
+        hand: &args.series.hand,
+        json: args.series.json,
+        folder: args.series.out.as_deref(),
         criterion: None,
     };
-    let mut hand = ArmedHand::ready(&args.hand, series::arm_limits(&plan)).await?;
+    let mut hand = ArmedHand::ready(&args.series.hand, series::arm_limits(&plan)).await?;
     let mut results = hand.results(out, wanted, &plan).await?;
     let search = TrialSeries::search(search, hand.armed.epoch, hand.armed.clock.now());
     let driven = hand.run_trials(search, &mut results).await;

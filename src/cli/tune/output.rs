@@ -22,8 +22,8 @@ pub(crate) fn json(args: &TuneArgs, report: &SearchReport) -> Value {
     let claim = claim(report);
     let goal = args.goal();
     json!({ "tune": {
-        "hand": args.hand.to_string(),
-        "folder": args.out.as_ref().map(|folder| folder.display().to_string()),
+        "hand": args.series.hand.to_string(),
+        "folder": args.series.out.as_ref().map(|folder| folder.display().to_string()),
         "limit_g": goal.limit_g,
         "hold_g": goal.hold_g,
         "result": claim.map(ToString::to_string),
