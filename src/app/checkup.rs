@@ -11,9 +11,10 @@ use crate::checkup::report::{CheckupReport, PAGE_FILE};
 use crate::checkup::run::CheckupView;
 use crate::checkup::subject::Grade;
 use crate::checkup::{Checkup, CheckupPlan};
-use crate::hand::{ArmEpoch, Moment, Setpoints};
+use crate::hand::{ArmEpoch, Moment};
 use crate::motion::checkup::{CheckupFiles, ConcludedCheckup, EndedCheckup};
 use crate::motion::drive::{Armed, drive};
+use crate::motion::program::Progress;
 use crate::record::Abort;
 use crate::store::calendar::{day, since_1970, stamp};
 use crate::store::{JobKind, Jobs, create_folder, on_thread};
@@ -109,10 +110,8 @@ impl CheckupRun {
                     return Err(error);
                 }
             };
-            let mut last = None;
-            let report = |checkup: &mut Checkup, _: Option<&Setpoints>| {
-                let view = checkup.view();
-                if last.replace(view) != Some(view) {
+            let report = |progress| {
+                if let Progress::View(view) = progress {
                     steps.send(view);
                 }
                 true

@@ -3,7 +3,7 @@
 
 use crate::hand::{ArmEpoch, HandCommand, HandSample, Moment, Setpoints};
 use crate::link::{Clock, Lease, LeaseRefusal, LinkHandle, LinkStatus, PollRates, Records, Stop};
-use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
+use crate::motion::program::{AfterAbort, Ended, Order, Program, Progress, Seen};
 use crate::record::{Abort, ArmRefusal, Disarmed, LinkState, Record, SetpointConflict, WriteCause};
 use crate::trials::limits::{TaskStall, fault, heat_reason};
 use futures::future::BoxFuture;
@@ -97,14 +97,14 @@ pub struct EndReport {
     pub stop: Option<Stop>,
 }
 
-/// Runs a program to its end. `report` receives it after each step with the setpoints sent in that step, and returns false if it could
-/// not store or show the step; the program is then aborted. The end of `inputs` means that the caller moves the hand in another way.
+/// Runs a program to its end. `report` receives its progress after each step, and returns false if it could not store or show it; the
+/// program is then aborted. The end of `inputs` means that the caller moves the hand in another way.
 pub async fn drive<P: Program>(
     hand: &LinkHandle,
     start: impl Into<DriveStart>,
     mut program: P,
     inputs: impl Stream<Item = P::Input>,
-    mut report: impl FnMut(&mut P, Option<&Setpoints>) -> bool,
+    mut report: impl FnMut(Progress<P::View, P::Event>) -> bool,
 ) -> Driven<P> {
     let start = start.into();
     let clock = start.clock;
@@ -122,6 +122,19 @@ pub async fn drive<P: Program>(
         hand.read_at(rates);
     }
     let mut inputs = pin!(inputs);
+    let mut shown = None;
+    let mut report = |program: &mut P, sent: Option<Setpoints>| {
+        let mut is_kept = sent.is_none_or(|sent| report(Progress::Sent(sent)));
+        while let Some(event) = program.event() {
+            is_kept &= report(Progress::Event(event));
+        }
+        let view = program.view(clock.now());
+        if shown.as_ref() != Some(&view) {
+            shown = Some(view.clone());
+            is_kept &= report(Progress::View(view));
+        }
+        is_kept
+    };
     let mut stop = None;
     while program.ended().is_none() {
         let is_armed = hand.status().armed.is_some();
@@ -170,7 +183,7 @@ pub async fn drive<P: Program>(
             order = program.tick(&seen);
             sent = order.and_then(|order| at.execute(order, &status));
         }
-        if !report(&mut program, sent.as_ref()) {
+        if !report(&mut program, sent) {
             program.abort(Abort::NotKept, clock.now());
         }
         match (program.ended(), P::AFTER_ABORT) {

@@ -6,11 +6,11 @@ use crate::exhibit::stage::{
     DRAWN_TIMEOUT, ExhibitEvent, ExhibitStage, ExhibitView, ExhibitWish, HOLD_DURATION, HaltReason,
 };
 use crate::hand::grip::GripEstimator;
-use crate::hand::{ArmEpoch, Fault, Groups, HandSample, Moment, PerDof, Setpoints};
+use crate::hand::{ArmEpoch, Fault, Groups, HandSample, Moment, PerDof};
 use crate::link::{Clock, LinkHandle, LinkTrouble, Owner};
 use crate::motion::drive::{ArmedBy, DriveStart, drive};
 use crate::motion::play::{PlayCommand, PlayStart, Playing};
-use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
+use crate::motion::program::{AfterAbort, Ended, Order, Program, Progress, Seen};
 use crate::poses::player::{PlayMode, PlayPlan};
 use crate::record::{Abort, ArmRefusal, Disarmed, LinkState};
 use crate::trials::limits::TaskStall;
@@ -70,23 +70,15 @@ impl PageDrawn {
     }
 }
 
-/// Progress of an exhibition.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ExhibitStep {
-    /// The page changed.
-    View(ExhibitView),
-    /// These setpoints were sent.
-    Sent(Setpoints),
-    /// Event for the report of the day.
-    Event(ExhibitEvent),
-}
+/// Progress of an exhibition; its events are those of the report of the day.
+pub type ExhibitProgress = Progress<ExhibitView, ExhibitEvent>;
 
 /// Runs until the sender of `wishes` is dropped; then the hand is stopped. Writes nothing before the user arms for the exhibition.
 pub async fn exhibit(
     hand: &LinkHandle,
     start: ExhibitStart,
     mut wishes: mpsc::Receiver<ExhibitWish>,
-    mut report: impl FnMut(ExhibitStep),
+    mut report: impl FnMut(ExhibitProgress),
 ) {
     let clock = start.clock;
     let begin = DriveStart {
@@ -97,18 +89,8 @@ pub async fn exhibit(
     };
     let program = ExhibitRun::new(start, clock.now());
     let wishes = poll_fn(move |context| wishes.poll_recv(context));
-    let mut shown = None;
-    let driven = drive(hand, begin, program, wishes, |run, sent| {
-        if let Some(setpoints) = sent {
-            report(ExhibitStep::Sent(*setpoints));
-        }
-        for event in std::mem::take(&mut run.events) {
-            report(ExhibitStep::Event(event));
-        }
-        let view = run.view(clock.now());
-        if shown.replace(view) != Some(view) {
-            report(ExhibitStep::View(view));
-        }
+    let driven = drive(hand, begin, program, wishes, |progress| {
+        report(progress);
         true
     });
     // It ends with the wishes, and has stopped the hand.
@@ -183,7 +165,7 @@ pub(crate) struct ExhibitRun {
     next_piece: usize,
     /// Heat of the hand at the start of the current piece.
     played_at: HeatLevel,
-    events: Vec<ExhibitEvent>,
+    events: VecDeque<ExhibitEvent>,
     is_over: bool,
 }
 
@@ -218,31 +200,8 @@ impl ExhibitRun {
             is_faulty: false,
             next_piece: 0,
             played_at: HeatLevel::Cool,
-            events: Vec::new(),
+            events: VecDeque::new(),
             is_over: false,
-        }
-    }
-
-    /// State that the page shows.
-    fn view(&self, now: Moment) -> ExhibitView {
-        let (stage, tile) = match self.phase {
-            Phase::Halted(why) => (ExhibitStage::Halted(why), None),
-            Phase::Cooling { until } => (ExhibitStage::Cooling { until }, None),
-            Phase::Clearing { .. } => (ExhibitStage::Clearing, None),
-            Phase::Visit { until, tile } => (ExhibitStage::Visit { until }, tile),
-            _ if self.level == HeatLevel::Unknown => (ExhibitStage::HeatUnknown, None),
-            Phase::Attract { .. } => (ExhibitStage::Attract, None),
-            Phase::Idle if now < self.next_from => {
-                let at = self.next_from;
-                (ExhibitStage::NextVisitor { at }, None)
-            }
-            Phase::Idle => (ExhibitStage::Idle, None),
-        };
-        ExhibitView {
-            stage,
-            tile,
-            held: self.held,
-            is_slow: self.permitted && self.level == HeatLevel::Warm,
         }
     }
 
@@ -250,7 +209,7 @@ impl ExhibitRun {
     fn wish(&mut self, wish: ExhibitWish, now: Moment) {
         match wish {
             ExhibitWish::Stop => {
-                self.events.push(ExhibitEvent::Stop);
+                self.events.push_back(ExhibitEvent::Stop);
                 self.halt(HaltReason::Stopped);
             }
             ExhibitWish::Disarm => self.halt(HaltReason::NotArmed),
@@ -306,7 +265,7 @@ impl ExhibitRun {
     }
 
     fn begin_visit(&mut self, now: Moment) {
-        self.events.push(ExhibitEvent::Visit);
+        self.events.push_back(ExhibitEvent::Visit);
         self.phase = Phase::Visit {
             until: now.plus(self.plan.visit),
             tile: None,
@@ -325,7 +284,7 @@ impl ExhibitRun {
             return;
         };
         let name = piece.name.en.clone();
-        self.events.push(ExhibitEvent::Piece(name));
+        self.events.push_back(ExhibitEvent::Piece(name));
         let tile = Some(tile);
         self.phase = Phase::Visit { until, tile };
         self.play_tile(tile);
@@ -366,7 +325,7 @@ impl ExhibitRun {
     /// Handles a lost link, even a momentary one.
     fn link_lost(&mut self) {
         if std::mem::replace(&mut self.is_live, false) {
-            self.events.push(ExhibitEvent::LinkLost);
+            self.events.push_back(ExhibitEvent::LinkLost);
         }
         self.halt(HaltReason::NoHand);
         self.phase = Phase::Halted(HaltReason::NoHand);
@@ -481,7 +440,7 @@ impl ExhibitRun {
                 self.phase = Phase::Cooling { until };
             }
             _ if self.level == HeatLevel::Hot => {
-                self.events.push(ExhibitEvent::Rest);
+                self.events.push_back(ExhibitEvent::Rest);
                 let until = now.plus(COOLING_DURATION);
                 self.phase = Phase::Cooling { until };
                 self.rest(now);
@@ -609,6 +568,8 @@ impl ExhibitRun {
 impl Program for ExhibitRun {
     type Input = ExhibitWish;
     type Outcome = ();
+    type View = ExhibitView;
+    type Event = ExhibitEvent;
     const AFTER_ABORT: AfterAbort = AfterAbort::Nothing;
 
     fn input(&mut self, wish: ExhibitWish, seen: &Seen<'_>) -> Option<Order> {
@@ -701,6 +662,32 @@ impl Program for ExhibitRun {
         if self.permitted && !self.grants {
             self.halt(why);
         }
+    }
+
+    fn view(&self, now: Moment) -> ExhibitView {
+        let (stage, tile) = match self.phase {
+            Phase::Halted(why) => (ExhibitStage::Halted(why), None),
+            Phase::Cooling { until } => (ExhibitStage::Cooling { until }, None),
+            Phase::Clearing { .. } => (ExhibitStage::Clearing, None),
+            Phase::Visit { until, tile } => (ExhibitStage::Visit { until }, tile),
+            _ if self.level == HeatLevel::Unknown => (ExhibitStage::HeatUnknown, None),
+            Phase::Attract { .. } => (ExhibitStage::Attract, None),
+            Phase::Idle if now < self.next_from => {
+                let at = self.next_from;
+                (ExhibitStage::NextVisitor { at }, None)
+            }
+            Phase::Idle => (ExhibitStage::Idle, None),
+        };
+        ExhibitView {
+            stage,
+            tile,
+            held: self.held,
+            is_slow: self.permitted && self.level == HeatLevel::Warm,
+        }
+    }
+
+    fn event(&mut self) -> Option<ExhibitEvent> {
+        self.events.pop_front()
     }
 
     fn ended(&self) -> Option<Ended<()>> {

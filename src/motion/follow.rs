@@ -8,10 +8,11 @@ use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Clock, HoldToRun, Lease, LinkHandle};
 use crate::motion::drive::{ArmedBy, DriveStart, drive};
 use crate::motion::following::{Follow, FollowInput, FollowLimits, FollowPhase};
-use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
+use crate::motion::program::{AfterAbort, Ended, Order, Program, Progress, Seen};
 use crate::record::{Abort, ArmRefusal, Disarmed};
 use futures::stream::poll_fn;
 use std::collections::VecDeque;
+use std::convert::Infallible;
 use std::time::Duration;
 use tokio::sync::{mpsc, watch};
 
@@ -87,7 +88,7 @@ pub async fn follow(
     };
     let offers = poll_fn(move |context| offers.poll_recv(context));
     let mut told: Option<(FollowView, Moment)> = None;
-    let driven = drive(hand, begin, program, offers, |run, _| {
+    let driven = drive(hand, begin, program, offers, |progress| {
         let now = clock.now();
         let is_due = |view: &FollowView| match told {
             Some((before, when)) => {
@@ -96,7 +97,9 @@ pub async fn follow(
             }
             None => true,
         };
-        if let Some(view) = run.view.filter(is_due) {
+        if let Progress::View(Some(view)) = progress
+            && is_due(&view)
+        {
             told = Some((view, now));
             tell(view);
         }
@@ -120,6 +123,8 @@ struct FollowProgram {
 impl Program for FollowProgram {
     type Input = Offer;
     type Outcome = ();
+    type View = Option<FollowView>;
+    type Event = Infallible;
     const AFTER_ABORT: AfterAbort = AfterAbort::StopAfterLinkLoss;
 
     fn input(&mut self, mut offer: Offer, _seen: &Seen<'_>) -> Option<Order> {
@@ -179,12 +184,16 @@ impl Program for FollowProgram {
             }
             order => order,
         };
-        self.view = Some(self.view(&pose, seen.status.heat));
+        self.view = Some(self.seen(&pose, seen.status.heat));
         order
     }
 
     fn abort(&mut self, why: Abort, _now: Moment) {
         self.end.get_or_insert(Err(why));
+    }
+
+    fn view(&self, _now: Moment) -> Option<FollowView> {
+        self.view
     }
 
     fn ended(&self) -> Option<Ended<()>> {
@@ -209,7 +218,7 @@ impl FollowProgram {
         Some(Order::Set(setpoints))
     }
 
-    fn view(&self, pose: &PerDof<Option<Angle>>, heat: Option<DriveHeat>) -> FollowView {
+    fn seen(&self, pose: &PerDof<Option<Angle>>, heat: Option<DriveHeat>) -> FollowView {
         let lead = |dof: Dof| {
             let (to, at) = self.follow.sent()[dof].zip(pose[dof])?;
             Some(to.get().abs_diff(at.get()))

@@ -15,6 +15,7 @@ use crate::poses::way::{WayPart, pinch_way};
 use crate::record::{Abort, Rest};
 use futures::Stream;
 use std::collections::VecDeque;
+use std::convert::Infallible;
 use std::time::Duration;
 
 /// Minimum time before a leg is judged: the hand acts late.
@@ -84,7 +85,7 @@ pub async fn grip(
         end: None,
         start,
     };
-    let driven = drive(hand, armed, program, ends, |_, _| true).await;
+    let driven = drive(hand, armed, program, ends, |_| true).await;
     let angles = driven.program.angles;
     GripReport {
         end: driven.end,
@@ -110,6 +111,8 @@ struct GripRun {
 impl Program for GripRun {
     type Input = Abort;
     type Outcome = GripEnd;
+    type View = ();
+    type Event = Infallible;
 
     fn input(&mut self, why: Abort, seen: &Seen<'_>) -> Option<Order> {
         self.abort(why, seen.now);
@@ -163,6 +166,8 @@ impl Program for GripRun {
     fn abort(&mut self, why: Abort, _now: Moment) {
         self.end.get_or_insert(Err(why));
     }
+
+    fn view(&self, _now: Moment) {}
 
     fn ended(&self) -> Option<Ended<GripEnd>> {
         self.end

@@ -10,6 +10,7 @@ use crate::poses::way::{Targets, way};
 use crate::record::{Abort, Rest};
 use futures::stream::pending;
 use std::collections::VecDeque;
+use std::convert::Infallible;
 use std::time::Duration;
 
 /// Minimum time before a leg is judged at rest: the hand acts late.
@@ -59,7 +60,7 @@ pub async fn move_to(hand: &LinkHandle, armed: Armed, start: MoveStart) -> MoveR
         start,
         end: None,
     };
-    let driven = drive(hand, armed, program, pending(), |_, _| true).await;
+    let driven = drive(hand, armed, program, pending(), |_| true).await;
     let estimator = &driven.program.start.grip;
     MoveReport {
         end: driven.end,
@@ -80,6 +81,8 @@ struct Moving {
 impl Program for Moving {
     type Input = Abort;
     type Outcome = MoveEnd;
+    type View = ();
+    type Event = Infallible;
     const AFTER_ABORT: AfterAbort = AfterAbort::StopAfterLinkLoss;
 
     fn input(&mut self, why: Abort, seen: &Seen<'_>) -> Option<Order> {
@@ -127,6 +130,8 @@ impl Program for Moving {
     fn abort(&mut self, why: Abort, _now: Moment) {
         self.end.get_or_insert(Err(why));
     }
+
+    fn view(&self, _now: Moment) {}
 
     fn ended(&self) -> Option<Ended<MoveEnd>> {
         self.end

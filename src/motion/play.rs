@@ -8,12 +8,13 @@ use crate::hand::{
 };
 use crate::link::LinkHandle;
 use crate::motion::drive::{Armed, drive};
-use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
+use crate::motion::program::{AfterAbort, Ended, Order, Program, Progress, Seen};
 use crate::poses::player::{PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView, Player, ReactionCue};
 use crate::poses::reaction::TouchWatch;
 use crate::poses::way::Targets;
 use crate::record::Abort;
 use futures::stream::poll_fn;
+use std::convert::Infallible;
 use tokio::sync::mpsc;
 
 /// Settings with which a sequence starts.
@@ -43,13 +44,7 @@ pub enum PlayCommand {
 }
 
 /// Progress of a sequence.
-#[derive(Debug, Clone, PartialEq)]
-pub enum PlayStep {
-    /// The position in the sequence changed.
-    View(PlayView),
-    /// These setpoints were sent; joints with `None` are unchanged.
-    Sent(Setpoints),
-}
+pub type PlayProgress = Progress<PlayView, Infallible>;
 
 /// Plays a sequence to its end.
 pub async fn play(
@@ -57,19 +52,12 @@ pub async fn play(
     armed: Armed,
     start: PlayStart,
     mut commands: mpsc::Receiver<PlayCommand>,
-    mut tell: impl FnMut(PlayStep),
+    mut report: impl FnMut(PlayProgress),
 ) -> Ended<PlayEnd> {
     let program = Playing::new(armed.epoch, start, armed.clock.now());
     let commands = poll_fn(move |context| commands.poll_recv(context));
-    let mut shown = None;
-    let driven = drive(hand, armed, program, commands, |run, sent| {
-        if let Some(setpoints) = sent {
-            tell(PlayStep::Sent(*setpoints));
-        }
-        let view = run.player.view();
-        if shown.replace(view) != Some(view) {
-            tell(PlayStep::View(view));
-        }
+    let driven = drive(hand, armed, program, commands, |progress| {
+        report(progress);
         true
     });
     driven.await.end
@@ -119,6 +107,8 @@ impl Playing {
 impl Program for Playing {
     type Input = PlayCommand;
     type Outcome = PlayEnd;
+    type View = PlayView;
+    type Event = Infallible;
     const AFTER_ABORT: AfterAbort = AfterAbort::Nothing;
 
     fn input(&mut self, command: PlayCommand, seen: &Seen<'_>) -> Option<Order> {
@@ -172,6 +162,10 @@ impl Program for Playing {
 
     fn abort(&mut self, why: Abort, _now: Moment) {
         self.player.end(Err(why));
+    }
+
+    fn view(&self, _now: Moment) -> PlayView {
+        self.player.view()
     }
 
     fn ended(&self) -> Option<Ended<PlayEnd>> {

@@ -9,6 +9,17 @@ use crate::trials::limits::TaskStall;
 /// Result of a program: its own outcome, or the reason for an early end.
 pub type Ended<O> = Result<O, Abort>;
 
+/// Progress of a program.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Progress<V, E> {
+    /// Its state changed, as a window shows it.
+    View(V),
+    /// These setpoints were sent; joints with `None` are unchanged.
+    Sent(Setpoints),
+    /// Something that its results contain.
+    Event(E),
+}
+
 /// Action that a program requests from the loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
@@ -74,6 +85,10 @@ pub trait Program {
     type Input;
     /// Outcome of a program that was not ended early.
     type Outcome: Copy;
+    /// Its state for display.
+    type View: Clone + PartialEq;
+    /// Something that its results contain, such as a finished trial.
+    type Event;
     /// Requested poll rates; `None` leaves them unchanged.
     const RATES: Option<PollRates> = None;
     /// Reaction of the loop to an early end.
@@ -100,6 +115,12 @@ pub trait Program {
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order>;
     /// Ends the program early, or ends its control of the hand if it continues: then it moves nothing before [`Order::Grant`].
     fn abort(&mut self, why: Abort, now: Moment);
+    /// State for display.
+    fn view(&self, now: Moment) -> Self::View;
+    /// The next event that was not reported yet.
+    fn event(&mut self) -> Option<Self::Event> {
+        None
+    }
     /// Result of the program; `None` while it runs. After `Err` the loop stops the hand.
     fn ended(&self) -> Option<Ended<Self::Outcome>>;
 }

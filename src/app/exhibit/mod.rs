@@ -16,7 +16,7 @@ use crate::exhibit::pin::{Pin, PinAnswer, PinGate, WrongPins};
 use crate::exhibit::plan::ExhibitPlan;
 use crate::exhibit::stage::{ExhibitView, ExhibitWish};
 use crate::hand::Moment;
-use crate::motion::exhibit::{ExhibitStep, PageDrawn};
+use crate::motion::exhibit::{ExhibitProgress, PageDrawn};
 use crate::store::Saver;
 use std::sync::Arc;
 use tokio::sync::mpsc;
@@ -104,7 +104,7 @@ pub struct ExhibitState {
     /// Initial language for each visitor.
     pub(crate) language: Language,
     pub(crate) wishes: mpsc::Sender<ExhibitWish>,
-    pub(crate) task: Running<ExhibitStep, ()>,
+    pub(crate) task: Running<ExhibitProgress, ()>,
     /// Time of the last drawing.
     pub(crate) drawn: Arc<PageDrawn>,
 }

@@ -10,7 +10,8 @@ use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
 use crate::exhibit::stage::{ExhibitStage, ExhibitView, ExhibitWish};
 use crate::hand::Moment;
-use crate::motion::exhibit::{self, ExhibitStep};
+use crate::motion::exhibit;
+use crate::motion::program::Progress;
 use crate::store::{Saver, calendar};
 use std::sync::Arc;
 use std::time::Duration;
@@ -85,11 +86,11 @@ impl ExhibitState {
         let (steps, _end) = self.task.news();
         for (_, step) in steps {
             match step {
-                ExhibitStep::View(view) => self.view = view,
-                ExhibitStep::Sent(setpoints) => {
+                Progress::View(view) => self.view = view,
+                Progress::Sent(setpoints) => {
                     hand.sent(&setpoints);
                 }
-                ExhibitStep::Event(event) => self.report.count(&event),
+                Progress::Event(event) => self.report.count(&event),
             }
         }
         let until = match &self.staff {

@@ -8,8 +8,8 @@ use crate::checkup::CheckupPlan;
 use crate::hand::grip::GripThresholds;
 use crate::hand::{Moment, Setpoints};
 use crate::link::Owner;
-use crate::motion::play::{PlayCommand, PlayStep};
-use crate::motion::program::Ended;
+use crate::motion::play::{PlayCommand, PlayProgress};
+use crate::motion::program::{Ended, Progress};
 use crate::poses::library::EntryId;
 use crate::poses::player::{PlayEnd, PlayPhase, PlayView};
 use crate::record::Abort;
@@ -123,7 +123,7 @@ pub struct SequenceRun {
     pub view: PlayView,
     /// `None` once the user moves the hand in another way.
     pub(crate) commands: Option<mpsc::Sender<PlayCommand>>,
-    pub(crate) task: Option<Running<PlayStep, Ended<PlayEnd>>>,
+    pub(crate) task: Option<Running<PlayProgress, Ended<PlayEnd>>>,
     /// Thresholds of the grip estimate for each step; empty once the user moves the hand in another way.
     pub(crate) thresholds: Vec<Option<GripThresholds>>,
 }
@@ -175,8 +175,8 @@ impl SequenceRun {
         let mut sent = Vec::new();
         for (_, step) in steps.into_iter().filter(|_| moves) {
             match step {
-                PlayStep::View(view) => self.view = view,
-                PlayStep::Sent(setpoints) => sent.push(setpoints),
+                Progress::View(view) => self.view = view,
+                Progress::Sent(setpoints) => sent.push(setpoints),
             }
         }
         if let Some(end) = end {

@@ -13,7 +13,8 @@ use crate::hand::{ArmEpoch, Dof, HandSample, Moment};
 use crate::link::quirks::book;
 use crate::link::{Lease, LinkHandle};
 use crate::motion::drive::Armed;
-use crate::motion::series::{self, SeriesStep};
+use crate::motion::program::Progress;
+use crate::motion::series::{self, SeriesEvent, SeriesProgress};
 use crate::record::Abort;
 use crate::store::calendar::{day, since_1970};
 use crate::trials::overshoot_file::{MeasuredClose, closes_of};
@@ -165,7 +166,7 @@ impl SeriesRun {
                 true
             };
             let driven = series::trials(&link, armed, series, ends(ended), tell).await;
-            let search = driven.program.settings_search();
+            let search = driven.program.series.settings_search();
             SeriesEnd {
                 aborted: driven.end.err(),
                 finding: search.and_then(SettingsSearch::finding),
@@ -211,12 +212,12 @@ impl SeriesRun {
         let (steps, end) = task.news();
         for (at, step) in steps {
             match step {
-                SeriesStep::Search(progress) => {
+                Progress::Event(SeriesEvent::Search(progress)) => {
                     if let Some(search) = trials.search_of(self.session) {
                         search.progress = Some(*progress);
                     }
                 }
-                SeriesStep::View(view) => {
+                Progress::View(view) => {
                     if view.number != self.view.number {
                         (self.since, self.zero) = (at, at);
                         let closed = Dof::ALL
@@ -232,10 +233,11 @@ impl SeriesRun {
                     }
                     self.view = view;
                 }
-                SeriesStep::Trial(trial) => {
+                Progress::Event(SeriesEvent::Trial(trial)) => {
                     news.measured.extend(closes_of(&trial));
                     trials.add_trial(self.session, *trial);
                 }
+                Progress::Sent(_) => {}
             }
         }
         news.end = end.map(|end| {
@@ -282,7 +284,7 @@ pub struct SeriesRun {
     /// Approximate duration of a trial including the rest after it.
     pub(crate) each: Duration,
     pub(crate) end: Option<oneshot::Sender<Abort>>,
-    pub(crate) task: Option<Running<SeriesStep, SeriesEnd>>,
+    pub(crate) task: Option<Running<SeriesProgress, SeriesEnd>>,
 }
 
 impl SeriesRun {

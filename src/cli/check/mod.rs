@@ -14,6 +14,7 @@ use crate::cli::out::{Out, end};
 use crate::cli::trial::drive::ArmedHand;
 use crate::link::ArmRequest;
 use crate::motion::checkup::{CheckupFiles, EndedCheckup};
+use crate::motion::program::Progress;
 use crate::store::{self, on_thread};
 use anyhow::{Context as _, bail};
 use std::path::Path;
@@ -38,12 +39,12 @@ pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
             bail!("the check-up cannot be recorded: {error}");
         }
     };
-    let mut shown = None;
     let checkup = Checkup::start(hand.armed.epoch, plan);
     let driven = hand
-        .run(checkup, |checkup: &mut Checkup, _| {
-            let view = checkup.view();
-            if shown.replace(view) != Some(view) && !args.json {
+        .run(checkup, |progress| {
+            if let Progress::View(view) = progress
+                && !args.json
+            {
                 output::progress(view);
             }
             true

@@ -13,13 +13,13 @@ const REPORT_INTERVAL: Duration = Duration::from_millis(250);
 /// Reports the progress of a command in one line of standard error that is erased at the end; silent if that is not a
 /// terminal.
 #[derive(Debug)]
-pub(crate) struct Progress {
+pub(crate) struct ProgressLine {
     began: Instant,
     reported: Cell<Option<Instant>>,
     is_read: bool,
 }
 
-impl Progress {
+impl ProgressLine {
     pub(crate) fn new() -> Self {
         Self {
             began: Instant::now(),
@@ -45,7 +45,7 @@ impl Progress {
     }
 }
 
-impl Drop for Progress {
+impl Drop for ProgressLine {
     fn drop(&mut self) {
         if self.reported.get().is_some() {
             show("\r\x1b[K");

@@ -1,7 +1,7 @@
 //! `export`: writes recordings, or a time range of each, in another format; `recover`: repairs a damaged one.
 
 use crate::cli::out::ending::EndFlag;
-use crate::cli::out::progress::Progress;
+use crate::cli::out::progress::ProgressLine;
 use crate::cli::out::{Out, ReaderGone, WrongUsage, notify};
 use crate::cli::recordings::picture;
 use crate::cli::recordings::recording_file::{
@@ -172,7 +172,7 @@ fn write(
     } else {
         (Destination::Path(args.out.clone()), EndFlag::listen()?)
     };
-    let progress = Progress::new();
+    let progress = ProgressLine::new();
     let watch = |number: usize| {
         let (progress, wished) = (&progress, &wished);
         move |share: f64| {
@@ -339,7 +339,7 @@ pub(crate) fn recover(out: &mut Out, args: &RecoverArgs) -> anyhow::Result<()> {
     report_remarks(&file);
     let to = args.out.clone().unwrap_or_else(|| beside(path));
     let wished = EndFlag::listen()?;
-    let progress = Progress::new();
+    let progress = ProgressLine::new();
     let watch = |share: f64| {
         progress.report(share);
         wished.flow()

@@ -1,7 +1,7 @@
 //! `import`: creates a recording file from values that `export --csv` wrote.
 
 use crate::cli::out::ending::EndFlag;
-use crate::cli::out::progress::Progress;
+use crate::cli::out::progress::ProgressLine;
 use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::recordings::export::explained;
 use crate::cli::recordings::recording_file::{is_standard, stdin_as_file};
@@ -131,7 +131,7 @@ fn values(mut from: File, to: &Destination) -> Result<Imported, ImportError> {
         Destination::Path(_) => EndFlag::listen().map_err(unlistened)?,
     };
     let length = from.metadata().map_or(0, |data| data.len());
-    let (progress, read) = (Progress::new(), Cell::new(0));
+    let (progress, read) = (ProgressLine::new(), Cell::new(0));
     let from = CountedRead { from, read: &read };
     csv::import(BufReader::new(from), to, &|| {
         progress.report(share(read.get(), length));

@@ -5,12 +5,12 @@ use crate::cli::session;
 use crate::cli::trial::args::TrialArgs;
 use crate::cli::trial::output::SeriesResult;
 use crate::cli::trial::results::{ResultsRequest, TrialResults};
-use crate::hand::{HandSample, Setpoints};
+use crate::hand::HandSample;
 use crate::link::Stop;
 use crate::link::{ArmRequest, Clock, Lease, LinkHandle, Owner, Records};
 use crate::motion::drive::{self, Armed, Driven, stop_words};
-use crate::motion::program::Program;
-use crate::motion::series;
+use crate::motion::program::{Program, Progress};
+use crate::motion::series::{self, SeriesProgram};
 use crate::record::Abort;
 use crate::record::Record;
 use crate::shell::interrupt::Interrupt;
@@ -107,7 +107,7 @@ impl ArmedHand {
         &mut self,
         series: TrialSeries,
         results: &mut TrialResults<'_>,
-    ) -> Driven<TrialSeries> {
+    ) -> Driven<SeriesProgram> {
         let ends = by_user(&mut self.interrupt);
         let report = |step| results.apply(step);
         let driven = series::trials(&self.link, self.armed, series, ends, report).await;
@@ -120,7 +120,7 @@ impl ArmedHand {
     pub(crate) async fn run<P: Program<Input = Abort>>(
         &mut self,
         program: P,
-        report: impl FnMut(&mut P, Option<&Setpoints>) -> bool,
+        report: impl FnMut(Progress<P::View, P::Event>) -> bool,
     ) -> Driven<P> {
         let ends = by_user(&mut self.interrupt);
         let driven = drive::drive(&self.link, self.armed, program, ends, report).await;

@@ -7,7 +7,8 @@ use crate::cli::trial::output::{trial_json, trial_lines};
 use crate::hand::overshoot::OvershootMap;
 use crate::link::LinkHandle;
 use crate::link::quirks::book;
-use crate::motion::series::SeriesStep;
+use crate::motion::program::Progress;
+use crate::motion::series::{SeriesEvent, SeriesProgress};
 use crate::record::Abort;
 use crate::store::calendar::{day, since_1970};
 use crate::transport::Endpoint;
@@ -90,15 +91,15 @@ impl<'a> TrialResults<'a> {
     }
 
     /// Handles a step of the series; returns false if it cannot be printed or written, which ends the series.
-    pub(crate) fn apply(&mut self, step: SeriesStep) -> bool {
+    pub(crate) fn apply(&mut self, step: SeriesProgress) -> bool {
         if let Err(error) = self.out.flush() {
             self.error.get_or_insert(error);
             return false;
         }
         match step {
-            SeriesStep::View(view) => self.total = view.total,
-            SeriesStep::Search(_) => {}
-            SeriesStep::Trial(trial) => {
+            Progress::View(view) => self.total = view.total,
+            Progress::Event(SeriesEvent::Search(_)) | Progress::Sent(_) => {}
+            Progress::Event(SeriesEvent::Trial(trial)) => {
                 if let Err(error) = self.add(*trial) {
                     self.error.get_or_insert(error);
                     return false;

@@ -57,7 +57,7 @@ async fn run_search(
     let search = TrialSeries::search(search, hand.armed.epoch, hand.armed.clock.now());
     let driven = hand.run_trials(search, &mut results).await;
     let ended = driven.report();
-    let search = driven.program.settings_search();
+    let search = driven.program.series.settings_search();
     let report = SearchReport {
         series: ended,
         finding: search.and_then(SettingsSearch::finding),

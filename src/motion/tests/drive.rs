@@ -6,9 +6,10 @@ use crate::hand::{
 };
 use crate::link::{Owner, Stop};
 use crate::motion::drive::{Armed, EndReport, drive};
-use crate::motion::program::{Ended, Order, Program, Seen};
+use crate::motion::program::{Ended, Order, Program, Progress, Seen};
 use crate::record::{Abort, Disarmed, LinkState, SetpointConflict, SetpointRegister};
 use futures::stream::pending;
+use std::convert::Infallible;
 use std::time::Duration;
 use tokio::task::JoinHandle;
 use tokio::time::sleep;
@@ -31,6 +32,8 @@ struct Restless {
 impl Program for Restless {
     type Input = Abort;
     type Outcome = ();
+    type View = ();
+    type Event = Infallible;
 
     fn input(&mut self, why: Abort, seen: &Seen<'_>) -> Option<Order> {
         self.abort(why, seen.now);
@@ -51,6 +54,8 @@ impl Program for Restless {
     fn abort(&mut self, why: Abort, _now: Moment) {
         self.aborted.get_or_insert(why);
     }
+
+    fn view(&self, _now: Moment) {}
 
     fn ended(&self) -> Option<Ended<()>> {
         self.aborted.map(Err)
@@ -73,7 +78,7 @@ fn start(hand: &FakeHand, pauses: bool, reports: usize) -> JoinHandle<EndReport>
     let link = hand.clone();
     let mut left = reports;
     tokio::spawn(async move {
-        let report = |_: &mut Restless, _: Option<&Setpoints>| {
+        let report = |_: Progress<(), Infallible>| {
             left = left.saturating_sub(1);
             left > 0
         };

@@ -9,7 +9,8 @@ use crate::hand::{
     TemperatureReading, Timed,
 };
 use crate::link::{Clock, LinkStatus, Owner};
-use crate::motion::exhibit::{ExhibitRun, ExhibitStart, ExhibitStep, PageDrawn, exhibit};
+use crate::motion::exhibit::{ExhibitRun, ExhibitStart, PageDrawn, exhibit};
+use crate::motion::program::Progress;
 use crate::motion::program::{Order, Program as _, Seen};
 use crate::motion::tests::booth::BoothHand;
 use crate::record::{Disarmed, LinkState};
@@ -73,15 +74,15 @@ impl Booth {
         let (shown, counted, at) = (Arc::clone(&view), Arc::clone(&events), hand.clone());
         let task = tokio::spawn(async move {
             let tell = |step| match step {
-                ExhibitStep::View(view) => *shown.lock().unwrap() = view,
-                ExhibitStep::Event(event) => {
+                Progress::View(view) => *shown.lock().unwrap() = view,
+                Progress::Event(event) => {
                     let name = match event {
                         ExhibitEvent::Piece(_) => "piece".to_owned(),
                         event => format!("{event:?}"),
                     };
                     *counted.lock().unwrap().entry(name).or_default() += 1;
                 }
-                ExhibitStep::Sent(_) => {}
+                Progress::Sent(_) => {}
             };
             exhibit(&at, start, wanted, tell).await;
         });

@@ -6,8 +6,9 @@ use crate::hand::grip::GripEstimator;
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target};
 use crate::link::Owner;
 use crate::motion::drive::Armed;
-use crate::motion::play::{PlayCommand, PlayStart, PlayStep, play};
+use crate::motion::play::{PlayCommand, PlayProgress, PlayStart, play};
 use crate::motion::program::Ended;
+use crate::motion::program::Progress;
 use crate::poses::library::{EntryId, SequenceId};
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView};
 use crate::record::{Abort, Disarmed, LinkState};
@@ -34,7 +35,7 @@ fn cue(angle: i16) -> Cue {
 struct Bench {
     hand: FakeHand,
     commands: Option<mpsc::Sender<PlayCommand>>,
-    steps: Arc<Mutex<Vec<PlayStep>>>,
+    steps: Arc<Mutex<Vec<PlayProgress>>>,
     task: JoinHandle<Ended<PlayEnd>>,
 }
 
@@ -119,8 +120,8 @@ impl Bench {
     fn view(&self) -> PlayView {
         let steps = self.steps.lock().unwrap();
         let mut views = steps.iter().rev().filter_map(|step| match step {
-            PlayStep::View(view) => Some(*view),
-            PlayStep::Sent(_) => None,
+            Progress::View(view) => Some(*view),
+            Progress::Sent(_) | Progress::Event(_) => None,
         });
         views.next().unwrap()
     }

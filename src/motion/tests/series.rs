@@ -5,7 +5,8 @@ use crate::hand::{Angle, ArmEpoch, Dof, Fault, Faults, Force, HandSample, PerDof
 use crate::link::Stop;
 use crate::link::{Owner, PollRates};
 use crate::motion::drive::{Armed, Driven, EndReport};
-use crate::motion::series::{RATES, SeriesStep, trials};
+use crate::motion::program::Progress;
+use crate::motion::series::{RATES, SeriesEvent, SeriesProgram, SeriesProgress, trials};
 use crate::record::{Abort, Disarmed, LinkState};
 use crate::trials::plan::{Approach, Limits, TrialGrid, TrialPlan};
 use crate::trials::runner::Stage;
@@ -46,8 +47,8 @@ fn plan() -> TrialPlan {
 struct Bench {
     hand: FakeHand,
     person: Option<oneshot::Sender<Abort>>,
-    steps: Arc<Mutex<Vec<SeriesStep>>>,
-    task: JoinHandle<Driven<TrialSeries>>,
+    steps: Arc<Mutex<Vec<SeriesProgress>>>,
+    task: JoinHandle<Driven<SeriesProgram>>,
 }
 
 impl Bench {
@@ -97,7 +98,7 @@ impl Bench {
     fn stage(&self) -> Stage {
         let steps = self.steps.lock().unwrap();
         let mut views = steps.iter().rev().filter_map(|step| match step {
-            SeriesStep::View(view) => Some(view.stage),
+            Progress::View(view) => Some(view.stage),
             _ => None,
         });
         views.next().unwrap()
@@ -107,7 +108,7 @@ impl Bench {
         let steps = self.steps.lock().unwrap();
         let trials = steps
             .iter()
-            .filter(|step| matches!(step, SeriesStep::Trial(_)));
+            .filter(|step| matches!(step, Progress::Event(SeriesEvent::Trial(_))));
         trials.count()
     }
 

@@ -9,7 +9,8 @@ use futures::{StreamExt as _, stream};
 use handscope::hand::{Angle, Dof, Fault, HandSample, PerDof};
 use handscope::link::{LinkConfig, Owner, Stop};
 use handscope::motion::drive::{Armed, EndReport};
-use handscope::motion::series::{RATES, SeriesStep, arm_limits, trials};
+use handscope::motion::program::Progress;
+use handscope::motion::series::{RATES, SeriesEvent, SeriesProgress, arm_limits, trials};
 use handscope::record::Abort;
 use handscope::record::{LinkState, Record};
 use handscope::sim::body_params::random::random;
@@ -432,7 +433,7 @@ struct SearchEnd {
 }
 
 /// A search over a link; it ends when the person sends.
-async fn over_a_link(ends_after: Option<usize>) -> (SearchEnd, Vec<SeriesStep>, LinkState) {
+async fn over_a_link(ends_after: Option<usize>) -> (SearchEnd, Vec<SeriesProgress>, LinkState) {
     let hand = hand::shared(SimConfig {
         scenario: Scenario::Rigid,
         ..SimConfig::default()
@@ -471,7 +472,7 @@ async fn over_a_link(ends_after: Option<usize>) -> (SearchEnd, Vec<SeriesStep>, 
     let ends = ends.chain(stream::pending());
     let mut steps = Vec::new();
     let driven = trials(&link, armed, series, ends, |step| {
-        let trials = |step: &SeriesStep| matches!(step, SeriesStep::Trial(_));
+        let trials = |step: &SeriesProgress| matches!(step, Progress::Event(SeriesEvent::Trial(_)));
         steps.push(step);
         let count = steps.iter().filter(|own| trials(own)).count();
         if ends_after.is_some_and(|after| count >= after)
@@ -483,7 +484,7 @@ async fn over_a_link(ends_after: Option<usize>) -> (SearchEnd, Vec<SeriesStep>, 
     })
     .await;
     tokio::time::sleep(Duration::from_millis(200)).await;
-    let search = driven.program.settings_search().unwrap();
+    let search = driven.program.series.settings_search().unwrap();
     let end = SearchEnd {
         series: driven.report(),
         finding: search.finding(),
@@ -502,8 +503,8 @@ async fn over_a_link_it_claims_tells_its_progress_and_disarms() {
     let stages: Vec<SearchStage> = steps
         .iter()
         .filter_map(|step| match step {
-            SeriesStep::Search(progress) => Some(progress.stage),
-            SeriesStep::View(_) | SeriesStep::Trial(_) => None,
+            Progress::Event(SeriesEvent::Search(progress)) => Some(progress.stage),
+            Progress::View(_) | Progress::Sent(_) | Progress::Event(SeriesEvent::Trial(_)) => None,
         })
         .collect();
     assert_eq!(stages.first(), Some(&SearchStage::Probing));

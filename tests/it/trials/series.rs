@@ -7,8 +7,9 @@ use futures::stream::pending;
 use handscope::hand::register::GESTURE_FORCE_CLB;
 use handscope::hand::{Angle, Dof, Fault, Force, HandSample, PerDof, Speed};
 use handscope::link::{ArmRequest, Clock, LinkConfig};
-use handscope::motion::drive::{Armed, EndReport, drive};
-use handscope::motion::series::RATES;
+use handscope::motion::drive::{Armed, EndReport};
+use handscope::motion::program::Progress;
+use handscope::motion::series::{self, RATES, SeriesEvent, SeriesProgress};
 use handscope::record::Abort;
 use handscope::record::{Disarmed, Hold, LinkState, Record};
 use handscope::sim::{BodyParams, Personality, Scenario, SharedHand, SimConfig, SimHand};
@@ -17,6 +18,7 @@ use handscope::trials::{
     Approach, Criterion, EarlyEnd, Limits, Trial, TrialEvent, TrialGrid, TrialKind, TrialPlan,
     TrialSeries, Until,
 };
+use std::cell::Cell;
 use tokio::time::{Duration, Instant, timeout};
 
 /// As a real hand on RS485 answers: 6 to 15 ms (see the table's source).
@@ -103,12 +105,8 @@ impl Bench {
         }
     }
 
-    /// Arms and runs a series to its end. `meanwhile` may interfere.
-    async fn run(
-        &mut self,
-        plan: TrialPlan,
-        mut meanwhile: impl FnMut(&Self, &TrialSeries),
-    ) -> Run {
+    /// Arms and runs a series to its end. `meanwhile` may interfere, and is told the number of the trial.
+    async fn run(&mut self, plan: TrialPlan, mut meanwhile: impl FnMut(&Self, usize)) -> Run {
         self.arm().await;
         let epoch = self.link.status().armed.unwrap();
         let series = TrialSeries::start(plan, epoch, self.clock.now()).unwrap();
@@ -118,13 +116,26 @@ impl Bench {
             seen: self.sample,
             clock: self.clock,
         };
-        let mut trials = Vec::new();
-        let driven = drive(&self.link, armed, series, pending(), |series, _| {
-            trials.extend(std::iter::from_fn(|| series.finished()));
-            meanwhile(self, series);
+        let (mut trials, number) = (Vec::new(), Cell::new(0));
+        let report = |progress: SeriesProgress| {
+            match progress {
+                Progress::View(view) => number.set(view.number),
+                Progress::Event(SeriesEvent::Trial(trial)) => trials.push(*trial),
+                Progress::Event(SeriesEvent::Search(_)) | Progress::Sent(_) => {}
+            }
             true
-        });
-        let EndReport { aborted, stop } = driven.await.report();
+        };
+        let interferes = async {
+            loop {
+                meanwhile(self, number.get());
+                tokio::time::sleep(Duration::from_millis(2)).await;
+            }
+        };
+        let driven = tokio::select! {
+            driven = series::trials(&self.link, armed, series, pending(), report) => driven,
+            () = interferes => unreachable!("it has no end"),
+        };
+        let EndReport { aborted, stop } = driven.report();
         Run {
             trials,
             aborted,
@@ -270,7 +281,7 @@ async fn a_setting_is_found_that_holds_a_fragile_cup_with_little_overshoot() {
 async fn ended_by(
     plan: TrialPlan,
     scenario: Scenario,
-    meanwhile: impl FnMut(&Bench, &TrialSeries),
+    meanwhile: impl FnMut(&Bench, usize),
 ) -> Abort {
     let mut bench = Bench::new(scenario).await;
     let run = bench.run(plan, meanwhile).await;
@@ -290,23 +301,23 @@ async fn ended_by(
     run.aborted.unwrap()
 }
 
-fn closing(series: &TrialSeries, bench: &Bench) -> bool {
+fn closing(number: usize, bench: &Bench) -> bool {
     let angle = bench.hand.with(|hand, _| hand.true_angles()[Dof::Index]);
-    series.view().number == 1 && angle < 620.0
+    number == 1 && angle < 620.0
 }
 
 #[tokio::test(start_paused = true)]
 async fn a_stop_a_fault_heat_and_force_end_the_series_with_a_stop() {
     let slow = || plan(&[25], &[500, 750]);
-    let why = ended_by(slow(), Scenario::Rigid, |bench, series| {
-        if closing(series, bench) {
+    let why = ended_by(slow(), Scenario::Rigid, |bench, number| {
+        if closing(number, bench) {
             bench.link.stop();
         }
     });
     let why_disarmed = Some(Disarmed::Stop);
     assert_eq!(why.await, Abort::Disarmed { why: why_disarmed });
-    let why = ended_by(slow(), Scenario::Rigid, |bench, series| {
-        if closing(series, bench) {
+    let why = ended_by(slow(), Scenario::Rigid, |bench, number| {
+        if closing(number, bench) {
             bench
                 .hand
                 .with(|hand, _| hand.inject_fault(Dof::Ring, Fault::Motor));
@@ -322,8 +333,8 @@ async fn a_stop_a_fault_heat_and_force_end_the_series_with_a_stop() {
         ),
         "{why}"
     );
-    let why = ended_by(slow(), Scenario::Rigid, |bench, series| {
-        if closing(series, bench) {
+    let why = ended_by(slow(), Scenario::Rigid, |bench, number| {
+        if closing(number, bench) {
             bench.hand.with(|hand, _| hand.warm(Dof::ThumbBend, 61.0));
         }
     });

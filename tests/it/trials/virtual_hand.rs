@@ -9,6 +9,7 @@ use handscope::hand::{
 };
 use handscope::link::LinkStatus;
 use handscope::motion::program::{Order, Program, Seen};
+use handscope::motion::series::SeriesProgram;
 use handscope::record::Abort;
 use handscope::record::LinkState;
 use handscope::sim::body_params::JointBody;
@@ -122,12 +123,13 @@ impl<H: RegisterHand> VirtualHand<H> {
         mut meanwhile: impl FnMut(&mut H, &mut TrialSeries),
     ) -> Run {
         let mut trials = Vec::new();
-        let (series, stopped) = self.run(series, |hand, series| {
-            while let Some(trial) = series.finished() {
+        let (program, stopped) = self.run(SeriesProgram::new(series), |hand, program| {
+            while let Some(trial) = program.series.finished() {
                 trials.push(trial);
             }
-            meanwhile(hand, series);
+            meanwhile(hand, &mut program.series);
         });
+        let series = program.series;
         Run {
             finding: series.settings_search().and_then(SettingsSearch::finding),
             aborted: series.aborted(),
