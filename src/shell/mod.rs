@@ -7,7 +7,8 @@ pub(crate) mod interrupt;
 
 use crate::app::action::Action;
 use crate::app::files::export::Export;
-use crate::app::hand::{Hand, Mover};
+use crate::app::hand::Hand;
+use crate::app::hand::mover::Mover;
 use crate::app::program::App;
 use crate::app::state::State;
 use crate::hand::Moment;

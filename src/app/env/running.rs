@@ -3,6 +3,7 @@
 use crate::app::env::{Env, LostSteps};
 use crate::hand::Moment;
 use crate::tasks::{Question, User};
+use std::fmt;
 use tokio::sync::broadcast::error::TryRecvError;
 use tokio::sync::{broadcast, mpsc, oneshot};
 use tokio_util::task::AbortOnDrop;
@@ -11,7 +12,6 @@ use tokio_util::task::AbortOnDrop;
 const STEPS_MAX: usize = 1024;
 
 /// A running task. Dropping it aborts the task.
-#[derive(Debug)]
 pub(crate) struct Running<S, E> {
     steps: broadcast::Receiver<(Moment, S)>,
     lost: LostSteps,
@@ -28,6 +28,9 @@ struct OpenQuestion {
     since: Moment,
     answer: oneshot::Sender<bool>,
 }
+
+/// Applies the result of a task to the state that started it.
+pub(crate) type TaskEffect<T> = Box<dyn FnOnce(&mut T, Moment) + Send>;
 
 /// Sender of a task's steps and questions.
 pub(crate) struct Steps<S> {
@@ -105,6 +108,12 @@ impl<S: Clone + Send + 'static, E: Send + 'static> Running<S, E> {
             self.question = self.questions.try_recv().ok();
         }
         (waiting(&mut self.steps, &self.lost), end)
+    }
+}
+
+impl<S, E> fmt::Debug for Running<S, E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Running").finish_non_exhaustive()
     }
 }
 

@@ -1,6 +1,6 @@
 //! The grip of a hand as far as feedback is trusted, and motions of thumb and index to a gap.
 
-use crate::app::hand::hand::Hand;
+use crate::app::hand::Hand;
 use crate::hand::gap::{self, Gap, PinchGap};
 use crate::hand::grip::Grip;
 use crate::hand::{AngleReading, Dof, Moment, PerDof, Target};

@@ -1,7 +1,7 @@
 //! Known state of a hand's persistent parameters: read, staged, saved, and the outcomes of the last writes. Sends nothing.
 
 use crate::app::env::Ctx;
-use crate::app::env::running::Running;
+use crate::app::env::running::{Running, TaskEffect};
 use crate::app::notices::NoticeKind;
 use crate::app::readings::Freshness;
 use crate::hand::overshoot::OvershootMap;
@@ -19,7 +19,6 @@ use crate::tasks::save::SaveReport;
 use crate::tasks::{Question, TaskError, TaskStep};
 use crate::transport::Endpoint;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -84,7 +83,7 @@ pub struct ParamsState {
     /// Reason why the last file was not opened.
     pub file_refused: Option<NoticeKind>,
     /// Running task.
-    pub(crate) task: Option<Running<TaskStep, ParamsEffect>>,
+    pub(crate) task: Option<Running<TaskStep, TaskEffect<Self>>>,
     /// Hand whose files were listed last.
     pub(crate) listed: Option<Endpoint>,
     pub(crate) jobs: Jobs<ParamsJob>,
@@ -448,15 +447,6 @@ impl FileComparison {
     /// Selected rows.
     pub fn chosen(&self) -> Params {
         self.file.params.only(|id| self.is_ticked(id))
-    }
-}
-
-/// Applies the result of a task.
-pub(crate) struct ParamsEffect(pub(crate) Box<dyn FnOnce(&mut ParamsState, Moment) + Send>);
-
-impl fmt::Debug for ParamsEffect {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("ParamsEffect")
     }
 }
 

@@ -4,10 +4,10 @@
 use crate::app::connection::Connection;
 use crate::app::env::Ctx;
 use crate::app::env::Env;
-use crate::app::env::running::{Running, Steps};
+use crate::app::env::running::{Running, Steps, TaskEffect};
 use crate::app::files::open;
 use crate::app::params::state::{
-    Doing, FileComparison, FilesRead, ParamAction, ParamsEffect, ParamsJob, ParamsState,
+    Doing, FileComparison, FilesRead, ParamAction, ParamsJob, ParamsState,
 };
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Dof, HandSample, Moment};
@@ -132,7 +132,7 @@ impl ParamsState {
             self.begin(doing);
             self.task = Some(Running::start(hand.env, |steps| {
                 let work = task(link, steps);
-                async move { ParamsEffect(Box::new(work.await)) }
+                async move { Box::new(work.await) as TaskEffect<Self> }
             }));
         }
     }
@@ -324,7 +324,7 @@ impl ParamsState {
         if is_asking {
             self.doing = Doing::Asking;
         }
-        if let Some(ParamsEffect(effect)) = end {
+        if let Some(effect) = end {
             (self.task, self.doing) = (None, Doing::Nothing);
             effect(self, now);
         }

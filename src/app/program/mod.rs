@@ -21,7 +21,7 @@ use crate::app::env::{Ctx, Env};
 use crate::app::exhibit::Exhibition;
 use crate::app::files::export::{self, Export};
 use crate::app::hand::Hand;
-use crate::app::hand::hand::REST_TIMEOUT;
+use crate::app::hand::REST_TIMEOUT;
 use crate::app::notices::{NoticeKind, RequestKind};
 use crate::app::params::ParamsHand;
 use crate::app::program::exhibit::ExhibitWork;

@@ -2,8 +2,8 @@
 
 use crate::app::action::Action;
 use crate::app::hand::Hand;
-use crate::app::hand::Mover;
 use crate::app::hand::list::HandsAction;
+use crate::app::hand::mover::Mover;
 use crate::app::slot::SlotId;
 use crate::hand::Moment;
 use crate::hand::kinematics::Side;

@@ -27,7 +27,8 @@ mod stop_first;
 pub(crate) mod timeline;
 
 use crate::app::action::Action;
-use crate::app::hand::{Hand, rests};
+use crate::app::hand::Hand;
+use crate::app::hand::mover::rests;
 use crate::app::recordings::RecordingAction;
 use crate::app::settings::{Language, Theme};
 use crate::app::state::State;

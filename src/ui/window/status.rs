@@ -2,7 +2,7 @@
 //! and the note being written. The line is always visible, so nothing shifts when its content changes.
 
 use crate::app::action::Action;
-use crate::app::hand::{Mover, rests};
+use crate::app::hand::mover::{Mover, rests};
 use crate::app::inputs::InputAction;
 use crate::app::notices::{Level, Notice, NoticeKind};
 use crate::app::readings::Freshness;

@@ -7,7 +7,7 @@ use crate::setup::link::{missing, to_hand};
 use crate::setup::program::{env, start};
 use handscope::app::action::Action;
 use handscope::app::env::Env;
-use handscope::app::hand::Mover;
+use handscope::app::hand::mover::Mover;
 use handscope::app::notices::{NoticeKind, RequestKind};
 use handscope::app::settings::Settings;
 use handscope::hand::{Angle, Dof, Force, Gesture, GestureRoute, HandSample, Moment, Speed, Timed};
