@@ -8,7 +8,7 @@ use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, PerDof};
 use crate::inputs::fields::{self, FieldFault, Fields};
 use crate::inputs::scan;
-use crate::inputs::stop::{self, TextEnd};
+use crate::inputs::stop::{self, Completeness};
 use serde_json::Value;
 use std::fmt;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -188,7 +188,7 @@ impl StreamLine {
     /// # Errors
     /// [`LineRefusal`]; the line is refused as a whole.
     pub fn parse(line: &[u8], side: Side) -> Result<Self, LineRefusal> {
-        let stops = stop::is_stop(line, TextEnd::Whole);
+        let stops = stop::is_stop(line, Completeness::Whole);
         let read = Self::read(line, side);
         if !stops && !stop::lets_go(line) {
             return read;

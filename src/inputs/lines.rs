@@ -2,7 +2,7 @@
 
 use crate::inputs::line::begins_message;
 use crate::inputs::scan::{Token, pieces, unmarked};
-use crate::inputs::stop::{TextEnd, is_stop};
+use crate::inputs::stop::{Completeness, is_stop};
 
 /// Longest line that is buffered as a whole: a stop may be anywhere in it.
 pub const LONGEST: usize = 64 * 1024;
@@ -65,7 +65,7 @@ impl LineCutter {
             self.rest.extend_from_slice(piece);
             if self.skips {
                 // The scan may start in the middle of a string, where quotes mean nothing.
-                self.find_stop(TextEnd::Whole, &mut cuts);
+                self.find_stop(Completeness::Whole, &mut cuts);
                 let old = self.rest.len().saturating_sub(KEPT);
                 self.rest.drain(..old);
                 if is_whole {
@@ -84,7 +84,7 @@ impl LineCutter {
         let is_due = is_short || self.rest.len() >= self.scanned + KEPT;
         if !self.skips && is_due && begins_message(&self.rest) {
             self.scanned = self.rest.len();
-            self.find_stop(TextEnd::MayGoOn, &mut cuts);
+            self.find_stop(Completeness::MayGoOn, &mut cuts);
         }
         cuts
     }
@@ -96,10 +96,10 @@ impl LineCutter {
 
     /// Ends the stream: a stop counts without the end of its line.
     pub fn end(mut self) -> Option<LineEvent> {
-        is_stop(self.unfinished(), TextEnd::Whole).then(|| self.cut())
+        is_stop(self.unfinished(), Completeness::Whole).then(|| self.cut())
     }
 
-    fn find_stop(&mut self, end: TextEnd, cuts: &mut Vec<LineEvent>) {
+    fn find_stop(&mut self, end: Completeness, cuts: &mut Vec<LineEvent>) {
         if !self.has_stopped && is_stop(&self.rest, end) {
             self.has_stopped = true;
             cuts.push(LineEvent::Stop);
@@ -247,7 +247,7 @@ mod tests {
             told.extend(cutter.end());
             let is_told = |cut: &LineEvent| match cut {
                 LineEvent::Stop => true,
-                LineEvent::Line { text, .. } => is_stop(text, TextEnd::Whole),
+                LineEvent::Line { text, .. } => is_stop(text, Completeness::Whole),
             };
             let shown = String::from_utf8_lossy(&text).into_owned();
             assert!(told.iter().any(is_told), "{shown}: {told:?}");

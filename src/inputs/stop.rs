@@ -25,7 +25,7 @@ pub enum EndWord {
 
 /// Completeness of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TextEnd {
+pub enum Completeness {
     /// The text is complete.
     Whole,
     /// More text may follow, so a value at the end may be incomplete.
@@ -33,16 +33,17 @@ pub enum TextEnd {
 }
 
 /// True if a message requests a stop.
-pub(crate) fn is_stop(text: &[u8], end: TextEnd) -> bool {
+pub(crate) fn is_stop(text: &[u8], end: Completeness) -> bool {
     end_word(text, end) == Some(EndWord::Stop)
 }
 
 /// Returns the strongest request of a message that ends a motion.
-pub fn end_word(text: &[u8], end: TextEnd) -> Option<EndWord> {
+pub fn end_word(text: &[u8], end: Completeness) -> Option<EndWord> {
     let text = without_zeros(text);
     let found = word_in(&text, end);
     // A surplus quote makes a name part of a string. Complete JSON has none.
-    if end == TextEnd::MayGoOn || serde_json::from_slice::<IgnoredAny>(unmarked(&text)).is_ok() {
+    if end == Completeness::MayGoOn || serde_json::from_slice::<IgnoredAny>(unmarked(&text)).is_ok()
+    {
         return found;
     }
     found.max(word_in(&unquoted(&text), end))
@@ -55,14 +56,14 @@ fn unquoted(text: &[u8]) -> Vec<u8> {
         .into_bytes()
 }
 
-fn word_in(text: &[u8], end: TextEnd) -> Option<EndWord> {
+fn word_in(text: &[u8], end: Completeness) -> Option<EndWord> {
     let all = pieces(text);
     if let [Token::Text(only)] = all.as_slice() {
-        return (end == TextEnd::Whole && only.lower() == "stop").then_some(EndWord::Stop);
+        return (end == Completeness::Whole && only.lower() == "stop").then_some(EndWord::Stop);
     }
     let mut found = None;
     // Truncated after its name.
-    if end == TextEnd::Whole
+    if end == Completeness::Whole
         && let [.., Token::Mark(b'{' | b','), Token::Text(name)] = all.as_slice()
         && name.is_ended
         && name.lower() == "stop"
@@ -103,11 +104,13 @@ pub fn lets_go(text: &[u8]) -> bool {
 }
 
 /// True if the value of `stop` requests one. A missing value does.
-fn is_yes(value: Option<&Token<'_>>, end: TextEnd) -> bool {
+fn is_yes(value: Option<&Token<'_>>, end: Completeness) -> bool {
     match (value, end) {
-        (None, end) => end == TextEnd::Whole,
+        (None, end) => end == Completeness::Whole,
         (Some(Token::Mark(_)), _) => true,
-        (Some(Token::Text(text)), TextEnd::MayGoOn) if !text.is_ended => text.lower() == "true",
+        (Some(Token::Text(text)), Completeness::MayGoOn) if !text.is_ended => {
+            text.lower() == "true"
+        }
         (Some(Token::Text(text)), _) => {
             let word = text.lower();
             let is_begun = !text.is_ended && !word.is_empty();
@@ -122,11 +125,11 @@ fn is_no(word: &str) -> bool {
     is_zero || NO.contains(&word)
 }
 
-fn order(value: &Token<'_>, end: TextEnd) -> Option<EndWord> {
+fn order(value: &Token<'_>, end: Completeness) -> Option<EndWord> {
     let Token::Text(text) = value else {
         return None;
     };
-    if end == TextEnd::MayGoOn && !text.is_ended {
+    if end == Completeness::MayGoOn && !text.is_ended {
         return None;
     }
     match text.lower().as_str() {
@@ -148,7 +151,7 @@ pub(crate) mod tests {
     fn a_stop_is_recognised_whatever_is_odd_about_it() {
         for text in odd_stops() {
             let shown = String::from_utf8_lossy(&text).into_owned();
-            assert!(is_stop(&text, TextEnd::Whole), "{shown}");
+            assert!(is_stop(&text, Completeness::Whole), "{shown}");
         }
     }
 
@@ -178,7 +181,7 @@ pub(crate) mod tests {
             r#"{"do":"stopping"}"#,
             "POST / HTTP/1.1",
         ] {
-            assert!(!is_stop(text.as_bytes(), TextEnd::Whole), "{text}");
+            assert!(!is_stop(text.as_bytes(), Completeness::Whole), "{text}");
         }
     }
 
@@ -198,7 +201,11 @@ pub(crate) mod tests {
             (r#"{"do":"stop"}"#, true),
             ("stop", false),
         ] {
-            assert_eq!(is_stop(text.as_bytes(), TextEnd::MayGoOn), is, "{text}");
+            assert_eq!(
+                is_stop(text.as_bytes(), Completeness::MayGoOn),
+                is,
+                "{text}"
+            );
         }
     }
 
@@ -212,7 +219,11 @@ pub(crate) mod tests {
             (r#"{"do":"move","do":"stop"}"#, Some(EndWord::Stop)),
             (r#"{"do":"arm"}"#, None),
         ] {
-            assert_eq!(end_word(text.as_bytes(), TextEnd::Whole), word, "{text}");
+            assert_eq!(
+                end_word(text.as_bytes(), Completeness::Whole),
+                word,
+                "{text}"
+            );
         }
         for (text, lets) in [
             (r#"{"held":false}"#, true),
@@ -232,7 +243,7 @@ pub(crate) mod tests {
     proptest! {
         #[test]
         fn any_bytes_are_scanned(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-            for end in [TextEnd::Whole, TextEnd::MayGoOn] {
+            for end in [Completeness::Whole, Completeness::MayGoOn] {
                 let _any = (end_word(&bytes, end), lets_go(&bytes));
             }
         }
@@ -240,7 +251,7 @@ pub(crate) mod tests {
         #[test]
         fn whatever_stands_around_a_stop_it_is_one(before in "[^\"'\\\\]{0,40}", after in ".{0,80}") {
             let text = format!("{{{before}\"stop\":true,{after}");
-            prop_assert!(is_stop(text.as_bytes(), TextEnd::Whole), "{}", text);
+            prop_assert!(is_stop(text.as_bytes(), Completeness::Whole), "{}", text);
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::inputs::line::{LINE_MAX, LineRefusal, StreamLine, begins_message};
 use crate::inputs::lines::{LONGEST, LineCutter, LineEvent};
 use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet, SourceSite, is_fresh};
 use crate::inputs::scan;
-use crate::inputs::stop::{self, TextEnd};
+use crate::inputs::stop::{self, Completeness};
 use crate::link::Owner;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -157,7 +157,7 @@ struct LineDoor {
 
 impl LineDoor {
     fn read(&self, line: &[u8]) -> ReadLine {
-        if stop::is_stop(line, TextEnd::Whole) {
+        if stop::is_stop(line, Completeness::Whole) {
             (self.stop)();
         }
         StreamLine::parse(line, self.side)

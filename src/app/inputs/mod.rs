@@ -64,7 +64,7 @@ pub enum InputKind {
 
 /// Reason why an input or outlet was not opened.
 #[derive(Debug)]
-pub enum OpenRefusal {
+pub enum InputError {
     /// The system's error.
     System(SystemError),
     /// Gamepads cannot be read.
@@ -73,19 +73,19 @@ pub enum OpenRefusal {
     Dds(DdsError),
 }
 
-impl From<io::Error> for OpenRefusal {
+impl From<io::Error> for InputError {
     fn from(error: io::Error) -> Self {
         Self::System(error.into())
     }
 }
 
-impl From<PadTrouble> for OpenRefusal {
+impl From<PadTrouble> for InputError {
     fn from(trouble: PadTrouble) -> Self {
         Self::Pad(trouble)
     }
 }
 
-impl From<DdsError> for OpenRefusal {
+impl From<DdsError> for InputError {
     fn from(error: DdsError) -> Self {
         Self::Dds(error)
     }
@@ -114,7 +114,7 @@ pub struct HandInputs {
     /// State of DDS, while it is joined.
     pub dds_view: Option<DdsState>,
     /// The last failed opening, with its reason.
-    pub refused: Option<(InputKind, OpenRefusal)>,
+    pub refused: Option<(InputKind, InputError)>,
 }
 
 /// State of DDS.

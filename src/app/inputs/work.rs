@@ -2,7 +2,7 @@
 
 use crate::app::connection::Connection;
 use crate::app::env::Env;
-use crate::app::inputs::{HandInputs, HandMirror, InputKind, OpenRefusal};
+use crate::app::inputs::{HandInputs, HandMirror, InputError, InputKind};
 use crate::app::settings::Settings;
 use crate::app::slot::SlotId;
 use crate::hand::kinematics::Side;
@@ -27,7 +27,7 @@ impl HandInputs {
     fn open(
         &mut self,
         kind: SourceKind,
-        opened: impl FnOnce() -> Option<Result<Source, OpenRefusal>>,
+        opened: impl FnOnce() -> Option<Result<Source, InputError>>,
     ) {
         self.refused = None;
         self.sources.remove(&kind);
@@ -50,7 +50,7 @@ impl HandInputs {
             let (place, link) = place.zip(connection.link())?;
             let site = SourceSite::of(link, side, Arc::clone(&env.wake));
             let source = StreamSource::open(place, site, &env.runtime);
-            Some(source.map(Source::Stream).map_err(OpenRefusal::from))
+            Some(source.map(Source::Stream).map_err(InputError::from))
         });
     }
 
@@ -76,7 +76,7 @@ impl HandInputs {
                     site: SourceSite::of(link, side, Arc::clone(&env.wake)),
                 })
             });
-            Some(source.map(Source::Pad).map_err(OpenRefusal::from))
+            Some(source.map(Source::Pad).map_err(InputError::from))
         });
     }
 
@@ -96,7 +96,7 @@ impl HandInputs {
                 let others = OtherFollowers::open(&node, card.side, env.clock);
                 JoinedDds::open((node, others), card, allowed, site, link)
             });
-            Some(joined.map(Source::Dds).map_err(OpenRefusal::from))
+            Some(joined.map(Source::Dds).map_err(InputError::from))
         });
     }
 

@@ -1,7 +1,7 @@
 //! Messages on standard error, and the wait for a reader at the end of the program.
 
 use crate::cli::out::ending::EndFlag;
-use crate::cli::out::writer::{LineClass, LineWriter, WriteEnd};
+use crate::cli::out::writer::{LineClass, LineWriter, OutputError};
 use crate::printable;
 use crate::shell::interrupt;
 use std::io::{self, Write as _};
@@ -59,7 +59,7 @@ pub(crate) fn finish_messages() {
 }
 
 /// Waits until everything is written; returns the number of bytes left. A slow reader is awaited until a signal arrives.
-pub(crate) fn drained(writer: &LineWriter, waits: bool) -> Result<usize, WriteEnd> {
+pub(crate) fn drained(writer: &LineWriter, waits: bool) -> Result<usize, OutputError> {
     let left = writer.drained(|stalled| stalled < READ_AT_ONCE)?;
     if left == 0 {
         return Ok(0);

@@ -10,7 +10,7 @@ mod writer;
 pub(crate) use crate::cli::out::messages::{finish_messages, notify};
 
 use crate::cli::out::messages::{READ_AT_ONCE, drained};
-use crate::cli::out::writer::{LineClass, LineWriter, WriteEnd};
+use crate::cli::out::writer::{LineClass, LineWriter, OutputError};
 use crate::printable;
 use anyhow::{Context as _, bail};
 use serde::Serialize;
@@ -181,7 +181,7 @@ impl Out {
         while !self.to.push(lines, LineClass::Result).map_err(failed)? {
             // A thread that runs links must not wait for a reader.
             if tokio::runtime::Handle::try_current().is_ok() {
-                return Err(failed(WriteEnd::Full));
+                return Err(failed(OutputError::Full));
             }
             self.to.wait_for_room();
         }
@@ -193,9 +193,9 @@ fn json_line(json: &str) -> String {
     format!("{}\n", printable::json(json))
 }
 
-fn failed(end: WriteEnd) -> anyhow::Error {
+fn failed(end: OutputError) -> anyhow::Error {
     match end {
-        WriteEnd::Io(io::ErrorKind::BrokenPipe) => ReaderGone.into(),
+        OutputError::Io(io::ErrorKind::BrokenPipe) => ReaderGone.into(),
         end => anyhow::Error::new(end).context("cannot write to standard output"),
     }
 }

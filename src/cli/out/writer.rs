@@ -27,7 +27,7 @@ pub(crate) enum LineClass {
 
 /// Reason why nothing is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub(crate) enum WriteEnd {
+pub(crate) enum OutputError {
     /// The output cannot be written, or its reader closed it.
     #[error("{0}")]
     Io(io::ErrorKind),
@@ -70,10 +70,10 @@ impl LineWriter {
     }
 
     /// Queues whole lines. Returns false if there is no room: a stream drops them, a result is retried or fails.
-    pub(crate) fn push(&self, lines: &[u8], class: LineClass) -> Result<bool, WriteEnd> {
+    pub(crate) fn push(&self, lines: &[u8], class: LineClass) -> Result<bool, OutputError> {
         let mut queue = self.0.lock();
         if let Some(end) = queue.end {
-            return Err(WriteEnd::Io(end));
+            return Err(OutputError::Io(end));
         }
         let limit = match class {
             LineClass::Stream => STREAM_MAX,
@@ -104,11 +104,11 @@ impl LineWriter {
     }
 
     /// Returns the error if the output has ended.
-    pub(crate) fn check(&self) -> Result<(), WriteEnd> {
+    pub(crate) fn check(&self) -> Result<(), OutputError> {
         self.0
             .lock()
             .end
-            .map_or(Ok(()), |end| Err(WriteEnd::Io(end)))
+            .map_or(Ok(()), |end| Err(OutputError::Io(end)))
     }
 
     /// Waits until all is written, or `waits_on`, given the time without progress, returns false. Returns the number of
@@ -116,7 +116,7 @@ impl LineWriter {
     pub(crate) fn drained(
         &self,
         mut waits_on: impl FnMut(Duration) -> bool,
-    ) -> Result<usize, WriteEnd> {
+    ) -> Result<usize, OutputError> {
         let mut queue = self.0.lock();
         let mut progress = (queue.written, Instant::now());
         while queue.waiting > 0 && queue.end.is_none() {
@@ -131,7 +131,7 @@ impl LineWriter {
             let waited = self.0.changed.wait_timeout(self.0.lock(), ASK_INTERVAL);
             queue = waited.unwrap_or_else(PoisonError::into_inner).0;
         }
-        queue.end.map_or(Ok(0), |end| Err(WriteEnd::Io(end)))
+        queue.end.map_or(Ok(0), |end| Err(OutputError::Io(end)))
     }
 }
 
@@ -276,7 +276,7 @@ mod tests {
         let (writer, read, _seen) = piped();
         drop(read);
         writer.push(b"one\n", LineClass::Result).unwrap();
-        let broken = Err(WriteEnd::Io(io::ErrorKind::BrokenPipe));
+        let broken = Err(OutputError::Io(io::ErrorKind::BrokenPipe));
         assert_eq!(writer.drained(|_| true).map(|_| ()), broken);
         assert_eq!(writer.check(), broken);
         assert_eq!(writer.push(b"two\n", LineClass::Stream).map(|_| ()), broken);

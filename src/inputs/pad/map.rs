@@ -37,7 +37,7 @@ pub struct PadMap {
 
 /// Reason why an action cannot be assigned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum MapRefusal {
+pub enum PadMapError {
     /// The control is of the wrong type, such as a button for an action by amount.
     #[error("this control cannot do that")]
     WrongKind,
@@ -132,10 +132,10 @@ impl PadMap {
     /// Returns the map with another action for one control. The dead-man and STOP swap places with its former action.
     ///
     /// # Errors
-    /// [`MapRefusal`] if the action does not fit the control, or would leave no dead-man or no STOP.
-    pub fn with(&self, control: PadControl, action: PadAction) -> Result<Self, MapRefusal> {
+    /// [`PadMapError`] if the action does not fit the control, or would leave no dead-man or no STOP.
+    pub fn with(&self, control: PadControl, action: PadAction) -> Result<Self, PadMapError> {
         if !action.fits(control.kind()) {
-            return Err(MapRefusal::WrongKind);
+            return Err(PadMapError::WrongKind);
         }
         let before = self.action(control).clone();
         if before == action {
@@ -145,10 +145,10 @@ impl PadMap {
         let other = action.is_single().then(|| self.doing(&action).next());
         match other.flatten() {
             Some(other) => actions.insert(other, before),
-            None if before.is_single() => return Err(MapRefusal::OneMust),
+            None if before.is_single() => return Err(PadMapError::OneMust),
             None => None,
         };
         actions.insert(control, action);
-        Self::of(actions).ok_or(MapRefusal::OneMust)
+        Self::of(actions).ok_or(PadMapError::OneMust)
     }
 }

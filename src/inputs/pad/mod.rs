@@ -17,6 +17,6 @@ pub mod state;
 pub use control::{ControlKind, PadControl};
 pub use facts::{AxisRange, FaceOrder, PadFacts};
 pub use input::{PadEvent, PadInput};
-pub use map::{MapRefusal, PadAction, PadMap};
+pub use map::{PadAction, PadMap, PadMapError};
 pub use report::{KernelEvent, PadClock, PadId, PadNews, PadReport, PadTrouble};
 pub use state::PadState;

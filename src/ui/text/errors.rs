@@ -1,7 +1,7 @@
 //! Every error shown to the user, as a sentence in the window's language. English uses the error's own text, except where that
 //! refers to the command line.
 
-use crate::app::inputs::OpenRefusal;
+use crate::app::inputs::InputError;
 use crate::app::settings::Language;
 use crate::hand::{ModbusException, OutOfRange, Refusal};
 use crate::inputs::pad::PadTrouble;
@@ -409,11 +409,11 @@ const fn system_kind_zh(kind: ErrorKind) -> Option<&'static str> {
 }
 
 /// Reason why an input was not opened at the given place.
-pub(crate) fn not_opened(look: Look, refusal: &OpenRefusal) -> String {
+pub(crate) fn not_opened(look: Look, refusal: &InputError) -> String {
     match refusal {
-        OpenRefusal::System(error) => look.fill(inputs::NOT_OPENED, &[&system_error(look, error)]),
-        OpenRefusal::Pad(trouble) => pad(look, trouble),
-        OpenRefusal::Dds(error) => dds(look, error),
+        InputError::System(error) => look.fill(inputs::NOT_OPENED, &[&system_error(look, error)]),
+        InputError::Pad(trouble) => pad(look, trouble),
+        InputError::Dds(error) => dds(look, error),
     }
 }
 
@@ -817,16 +817,16 @@ mod tests {
         });
         let name = || "eth9".to_owned();
         let all = [
-            OpenRefusal::System(system(98)),
-            OpenRefusal::Pad(PadTrouble::LinuxOnly),
-            OpenRefusal::Dds(DdsError::NoInterface { name: name() }),
-            OpenRefusal::Dds(DdsError::System {
+            InputError::System(system(98)),
+            InputError::Pad(PadTrouble::LinuxOnly),
+            InputError::Dds(DdsError::NoInterface { name: name() }),
+            InputError::Dds(DdsError::System {
                 name: name(),
                 error: std::io::Error::from_raw_os_error(1),
             }),
         ];
         let source = include_str!("../../app/inputs/mod.rs");
-        check(&all, (source, "OpenRefusal"), |refusal| {
+        check(&all, (source, "InputError"), |refusal| {
             not_opened(chinese(), refusal)
         });
     }

@@ -1,6 +1,6 @@
 //! What the controls may do, and that the dead-man and STOP are never lost.
 
-use handscope::inputs::pad::{ControlKind, MapRefusal, PadAction, PadControl, PadMap};
+use handscope::inputs::pad::{ControlKind, PadAction, PadControl, PadMap, PadMapError};
 use std::collections::BTreeMap;
 
 fn count(map: &PadMap, action: &PadAction) -> usize {
@@ -31,8 +31,8 @@ fn the_dead_man_and_stop_change_places_and_are_never_lost() {
                 assert_eq!(*next.action(control), action);
                 map = next;
             }
-            Err(MapRefusal::WrongKind) => assert_ne!(kind, ControlKind::Button),
-            Err(MapRefusal::OneMust) => assert!(map.action(control).is_single()),
+            Err(PadMapError::WrongKind) => assert_ne!(kind, ControlKind::Button),
+            Err(PadMapError::OneMust) => assert!(map.action(control).is_single()),
         }
         assert_eq!(count(&map, &PadAction::DeadMan), 1);
         assert_eq!(count(&map, &PadAction::Stop), 1);
@@ -57,7 +57,7 @@ fn a_control_does_only_what_its_kind_can() {
         (PadControl::South, PadAction::RotateThumb),
         (PadControl::RightTrigger, PadAction::ChooseFingers),
     ] {
-        assert_eq!(map.with(control, action), Err(MapRefusal::WrongKind));
+        assert_eq!(map.with(control, action), Err(PadMapError::WrongKind));
     }
     let both = PadControl::ALL.map(|control| (control, PadAction::Nothing));
     assert_eq!(PadMap::of(BTreeMap::from(both)), None);

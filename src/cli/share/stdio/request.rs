@@ -8,7 +8,7 @@ use crate::inputs::fields::{self, FieldFault, Fields};
 use crate::inputs::line::{LINE_VERSION, StreamLine};
 use crate::inputs::lines::LONGEST;
 use crate::inputs::scan::{unmarked, value_at};
-use crate::inputs::stop::{EndWord, TextEnd, end_word, lets_go};
+use crate::inputs::stop::{Completeness, EndWord, end_word, lets_go};
 use crate::link::{ArmRequest, PollRates};
 use crate::poses::way::Targets;
 use serde_json::Value;
@@ -99,7 +99,7 @@ impl StdioLine {
     /// Parses one line for the hand of this side. A line that ends a motion is obeyed, whatever else it contains.
     pub(crate) fn parse(line: &[u8], side: Side) -> Self {
         let (id, read) = read(line, side);
-        let request = match end_word(line, TextEnd::Whole) {
+        let request = match end_word(line, Completeness::Whole) {
             None => return Self::of(id, read, line, side),
             Some(EndWord::Stop) => StdioRequest::Stop,
             Some(EndWord::Release) => StdioRequest::Release,
