@@ -59,7 +59,10 @@ fn save(bench: &mut Bench) {
 
 fn settle(bench: &mut Bench) {
     bench.run(60);
-    bench.until(9000, |bench| !bench.state().hand().params.is_busy());
+    bench.until(9000, |bench| {
+        let params = &bench.state().hand().params;
+        !params.is_busy() || params.question().is_some()
+    });
     bench.run(60);
 }
 
