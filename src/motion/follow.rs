@@ -67,7 +67,7 @@ pub async fn follow(
     hand: &LinkHandle,
     start: FollowStart,
     mut offers: mpsc::Receiver<Offer>,
-    mut tell: impl FnMut(FollowView),
+    mut report: impl FnMut(FollowView),
 ) -> Ended<()> {
     let clock = start.clock;
     let begin = DriveStart {
@@ -79,7 +79,7 @@ pub async fn follow(
     let limits = start.terms.borrow().limits;
     let program = FollowProgram {
         follow: Follow::new(limits, clock.now()),
-        view: None,
+        shown: None,
         delays: Delays::default(),
         limits: OfferLimits::NONE,
         limited: None,
@@ -87,21 +87,9 @@ pub async fn follow(
         start,
     };
     let offers = poll_fn(move |context| offers.poll_recv(context));
-    let mut told: Option<(FollowView, Moment)> = None;
     let driven = drive(hand, begin, program, offers, |progress| {
-        let now = clock.now();
-        let is_due = |view: &FollowView| match told {
-            Some((before, when)) => {
-                (view.phase, view.sent) != (before.phase, before.sent)
-                    || now.since(when) >= REPORT_INTERVAL
-            }
-            None => true,
-        };
-        if let Progress::View(Some(view)) = progress
-            && is_due(&view)
-        {
-            told = Some((view, now));
-            tell(view);
+        if let Progress::View(Some(view)) = progress {
+            report(view);
         }
         true
     });
@@ -111,7 +99,8 @@ pub async fn follow(
 struct FollowProgram {
     start: FollowStart,
     follow: Follow,
-    view: Option<FollowView>,
+    /// State for display, and the time of its last change.
+    shown: Option<(FollowView, Moment)>,
     delays: Delays,
     /// Newest force and speed limits from the source.
     limits: OfferLimits,
@@ -184,7 +173,7 @@ impl Program for FollowProgram {
             }
             order => order,
         };
-        self.view = Some(self.seen(&pose, seen.status.heat));
+        self.show(self.seen(&pose, seen.status.heat), seen.now);
         order
     }
 
@@ -193,7 +182,7 @@ impl Program for FollowProgram {
     }
 
     fn view(&self, _now: Moment) -> Option<FollowView> {
-        self.view
+        self.shown.map(|(view, _)| view)
     }
 
     fn ended(&self) -> Option<Ended<()>> {
@@ -216,6 +205,17 @@ impl FollowProgram {
             self.delays.set();
         }
         Some(Order::Set(setpoints))
+    }
+
+    /// Shows a new state at once if the phase or the targets changed, otherwise at [`REPORT_INTERVAL`].
+    fn show(&mut self, view: FollowView, now: Moment) {
+        let is_shown = |(before, since): (FollowView, Moment)| {
+            (view.phase, view.sent) == (before.phase, before.sent)
+                && now.since(since) < REPORT_INTERVAL
+        };
+        if !self.shown.is_some_and(is_shown) {
+            self.shown = Some((view, now));
+        }
     }
 
     fn seen(&self, pose: &PerDof<Option<Angle>>, heat: Option<DriveHeat>) -> FollowView {

@@ -16,11 +16,12 @@ use crate::shell::interrupt::Interrupt;
 use crate::transport::Endpoint;
 use anyhow::{anyhow, bail};
 use serde_json::json;
+use std::cell::Cell;
 use std::convert::Infallible;
 use std::path::PathBuf;
 use std::pin::pin;
 use std::time::Duration;
-use tokio::sync::{mpsc, watch};
+use tokio::sync::watch;
 use tokio::time::{Instant, sleep, timeout};
 
 /// Interval of progress reports.
@@ -225,17 +226,17 @@ impl FollowCommand<'_> {
             clock: self.clock,
         };
         let (source, printer, clock) = (self.source, &mut self.printer, self.clock);
-        let (errors, mut failed) = mpsc::channel(1);
-        let report = |view| {
-            if let Err(error) = printer.print(source, Some(view), clock.now()) {
-                // One error is enough.
-                let _again = errors.try_send(error);
+        let seen = Cell::new(None);
+        let printing = async {
+            loop {
+                printer.print(source, seen.get(), clock.now())?;
+                sleep(POLL_INTERVAL).await;
             }
         };
         tokio::select! {
             biased;
-            Some(error) = failed.recv() => Err(error),
-            end = follow(&self.link, start, offers, report) => Ok(end),
+            Err::<Infallible, anyhow::Error>(error) = printing => Err(error),
+            end = follow(&self.link, start, offers, |view| seen.set(Some(view))) => Ok(end),
         }
     }
 

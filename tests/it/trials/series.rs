@@ -127,7 +127,9 @@ impl Bench {
         };
         let interferes = async {
             loop {
-                meanwhile(self, number.get());
+                if self.link.status().armed.is_some() {
+                    meanwhile(self, number.get());
+                }
                 tokio::time::sleep(Duration::from_millis(2)).await;
             }
         };
