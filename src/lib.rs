@@ -23,8 +23,8 @@
 //! | 4 | [`checkup`] | the check-up of an empty hand: its steps, measurements, limits, and comparison with earlier ones |
 //! | 4 | [`share`] | one hand for several programs: gateway, DDS, live viewers |
 //! | 4 | [`exhibit`] | a hand that visitors may touch: its file, PIN, heat, plan, and the day's report |
-//! | 5 | [`motion`] | everything that moves an armed hand over time: one loop, `drive`, runs every `Program` (move, grip, sequence, follow, exhibition, trials, search, check-up) |
-//! | 5 | [`tasks`] | the other operations of several steps, for window and command line: read, apply, save, change address, reset, calibrate |
+//! | 5 | [`motion`] | everything that moves an armed hand over time: one loop, `drive`, runs every `Program` (move, grip, sequence, follow, exhibition, trials, search, check-up), and the sources that a hand can follow |
+//! | 5 | [`tasks`] | the other operations of several steps, for window and command line, which ask the user through one question: read, apply, save, change address, reset, calibrate |
 //! | 6 | [`app`] | state and actions of the program, without drawing |
 //! | 7 | [`draw`] | pictures computed point by point: the hand as a figure, plot lines, the rasteriser |
 //! | 8 | [`ui`] | the window: reads state, returns actions |
@@ -60,7 +60,7 @@
 //!   line exclusively, one at a time, and no late frame counts for another write. Flash cannot be read, and the program says so.
 //! * A value is never invented: a value that was not read is `None`, and a reply that may be late or duplicated does not count as fresh.
 //! * Whatever ends the program stops the hands first ([`link::guard`]); if the program is killed, a separate process stops them
-//!   ([`link::holder`]).
+//!   (`link::holder`).
 //! * No request outlives a lost link except a stop, which stays pending for [`link::STOP_PENDING`].
 //! * A fault stays unseen until the user acknowledges it; the records around it are stored in memory, bounded, and in the session.
 //! * An exhibition plays only the pieces of its file, within its limits, and only after staff armed it with their PIN, or a visitor

@@ -430,7 +430,7 @@ impl App {
     }
 
     /// Prepares closing the window. A hand that is armed, or that this program set in motion, is stopped first. True once the window
-    /// may close: the hand rests, or 600 ms have passed, and all results are in files, or [`SAVE_TIMEOUT`] has passed. Called each
+    /// may close: the hand rests, or 600 ms have passed, and all results are in files, or ten seconds have passed. Called each
     /// frame until then.
     pub fn close(&mut self, now: Moment) -> bool {
         let state = &mut self.state;
