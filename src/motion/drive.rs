@@ -104,7 +104,7 @@ pub async fn drive<P: Program>(
     start: impl Into<DriveStart>,
     mut program: P,
     inputs: impl Stream<Item = P::Input>,
-    mut report: impl FnMut(Progress<P::View, P::Event>) -> bool,
+    report: impl FnMut(Progress<P::View, P::Event>) -> bool,
 ) -> Driven<P> {
     let start = start.into();
     let clock = start.clock;
@@ -122,18 +122,10 @@ pub async fn drive<P: Program>(
         hand.read_at(rates);
     }
     let mut inputs = pin!(inputs);
-    let mut shown = None;
-    let mut report = |program: &mut P, sent: Option<Setpoints>| {
-        let mut is_kept = sent.is_none_or(|sent| report(Progress::Sent(sent)));
-        while let Some(event) = program.event() {
-            is_kept &= report(Progress::Event(event));
-        }
-        let view = program.view(clock.now());
-        if shown.as_ref() != Some(&view) {
-            shown = Some(view.clone());
-            is_kept &= report(Progress::View(view));
-        }
-        is_kept
+    let mut reporter = Reporter {
+        report,
+        shown: None,
+        clock,
     };
     let mut stop = None;
     while program.ended().is_none() {
@@ -183,7 +175,7 @@ pub async fn drive<P: Program>(
             order = program.tick(&seen);
             sent = order.and_then(|order| at.execute(order, &status));
         }
-        if !report(&mut program, sent) {
+        if !reporter.report(&mut program, sent) {
             program.abort(Abort::NotKept, clock.now());
         }
         match (program.ended(), P::AFTER_ABORT) {
@@ -197,12 +189,36 @@ pub async fn drive<P: Program>(
             _ => {}
         }
     }
-    report(&mut program, None);
+    reporter.report(&mut program, None);
     if P::RATES.is_some() {
         hand.read_at(PollRates::default());
     }
     let end = program.ended().unwrap_or(Err(Abort::TakenOver));
     Driven { program, end, stop }
+}
+
+/// Reports the progress of a program to its caller.
+struct Reporter<P: Program, F> {
+    report: F,
+    /// The state that was reported last.
+    shown: Option<P::View>,
+    clock: Clock,
+}
+
+impl<P: Program, F: FnMut(Progress<P::View, P::Event>) -> bool> Reporter<P, F> {
+    /// Reports what is new, with the setpoints sent in this step; false if it could not be stored or shown.
+    fn report(&mut self, program: &mut P, sent: Option<Setpoints>) -> bool {
+        let mut is_kept = sent.is_none_or(|sent| (self.report)(Progress::Sent(sent)));
+        while let Some(event) = program.event() {
+            is_kept &= (self.report)(Progress::Event(event));
+        }
+        let view = program.view(self.clock.now());
+        if self.shown.as_ref() != Some(&view) {
+            self.shown = Some(view.clone());
+            is_kept &= (self.report)(Progress::View(view));
+        }
+        is_kept
+    }
 }
 
 struct Driving<'a> {
