@@ -35,12 +35,17 @@ impl Danger {
     }
 }
 
-/// The dangerous joints that would hit harder with `after` than with `before`, by the overshoot measured on this hand: these
-/// need a confirmation.
+/// The dangerous joints that would hit or press harder with `after` than with `before`, by the overshoot measured on this hand: these
+/// need a confirmation. A joint is never worse with a lower or equal speed and a lower or equal threshold, whatever was measured.
 pub fn worse(before: &Params, after: &Params, map: &OvershootMap) -> Vec<Danger> {
-    let peak = |params: &Params, dof| joint(params, dof, map).map(|joint| joint.peak_g());
-    let rises =
-        |danger: &Danger| peak(before, danger.dof).is_none_or(|before| danger.peak_g() > before);
+    let rises = |danger: &Danger| {
+        let Some(before) = joint(before, danger.dof, map) else {
+            return true;
+        };
+        let is_milder = danger.speed <= before.speed && danger.force_g <= before.force_g;
+        let presses_harder = danger.is_above_rated() && danger.force_g > before.force_g;
+        !is_milder && (danger.peak_g() > before.peak_g() || presses_harder)
+    };
     dangers(after, map).into_iter().filter(rises).collect()
 }
 
@@ -95,6 +100,28 @@ mod tests {
             let dangers = dangers(&params, &OvershootMap::default());
             assert_eq!(dangers.len(), usize::from(told), "{speed} {force}");
             assert!(dangers.iter().all(|danger| danger.dof == Dof::Index));
+        }
+    }
+
+    #[test]
+    fn a_joint_is_worse_if_it_hits_or_presses_harder_and_never_if_both_values_fall() {
+        let params = |(speed, force): (i32, i32)| {
+            let mut params = Params::default();
+            params.put(ParamId::DefaultSpeed(Dof::Ring), Value::Number(speed));
+            params.put(ParamId::DefaultForce(Dof::Ring), Value::Number(force));
+            params
+        };
+        for (before, after, is_worse) in [
+            ((1000, 1000), (1000, 900), false),
+            ((1000, 1000), (900, 1000), false),
+            ((1000, 1000), (1000, 1100), true),
+            // Slower, but the threshold alone is above the rated grip.
+            ((1000, 1000), (25, 3000), true),
+            ((1000, 3000), (25, 2500), false),
+            ((25, 500), (1000, 500), true),
+        ] {
+            let worse = worse(&params(before), &params(after), &OvershootMap::default());
+            assert_eq!(worse.len(), usize::from(is_worse), "{before:?} {after:?}");
         }
     }
 

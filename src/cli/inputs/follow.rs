@@ -338,6 +338,8 @@ impl ProgressPrinter<'_> {
         follow: Option<FollowView>,
         now: Moment,
     ) -> anyhow::Result<()> {
+        // A reader that has gone is noticed before the next line is due.
+        self.out.flush()?;
         if let Some(view) = follow {
             self.heat = view.heat;
         }

@@ -42,7 +42,7 @@ pub(crate) async fn drive(
     let mut results = hand.results(out, wanted, plan).await?;
     let series = TrialSeries::start(plan.clone(), hand.armed.epoch, hand.armed.clock.now())?;
     let report = hand.run_trials(series, &mut results).await.report();
-    let trials = results.close(report.aborted, None)?;
+    let trials = results.close(report, None)?;
     Ok(SeriesResult::of(trials, report, args.criterion()))
 }
 

@@ -2,14 +2,14 @@
 //! delay the hand's feedback.
 
 use crate::app::files::settings_file;
-use crate::cli::out::{Out, notify};
+use crate::cli::out::{AlreadyReported, Out, ReaderGone, notify};
 use crate::cli::trial::output::{trial_json, trial_lines};
 use crate::hand::overshoot::OvershootMap;
 use crate::link::LinkHandle;
 use crate::link::quirks::book;
+use crate::motion::drive::{EndReport, stop_words};
 use crate::motion::program::Progress;
 use crate::motion::series::{SeriesEvent, SeriesProgress};
-use crate::record::Abort;
 use crate::store::calendar::{day, since_1970};
 use crate::transport::Endpoint;
 use crate::trials::overshoot_file::{self, MeasuredClose, closes_of};
@@ -137,7 +137,7 @@ impl<'a> TrialResults<'a> {
     /// Waits until all is written, and returns the trials. `note` is the result for the session file.
     pub(crate) fn close(
         self,
-        aborted: Option<Abort>,
+        report: EndReport,
         note: Option<(&str, toml::Table)>,
     ) -> anyhow::Result<Vec<TrialSummary>> {
         for added in self.adding {
@@ -157,11 +157,16 @@ impl<'a> TrialResults<'a> {
                 if let Some((key, table)) = note {
                     writer.note(key, table);
                 }
-                writer.finish(aborted.map(EarlyEnd::Here))
+                writer.finish(report.aborted.map(EarlyEnd::Here))
             });
             finished.context("cannot write the trials")
         });
         match self.error {
+            Some(error) if error.is::<ReaderGone>() => {
+                let stop = stop_words(report.stop);
+                notify(&format!("the output is no longer read{stop}"));
+                Err(AlreadyReported.into())
+            }
             Some(error) => Err(error),
             None => written.map(|()| self.trials),
         }

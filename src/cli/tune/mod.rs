@@ -64,6 +64,6 @@ async fn run_search(
         tried: search.map(|own| own.tried().to_vec()).unwrap_or_default(),
     };
     let note = output::table(args, &report);
-    results.close(ended.aborted, Some(("tune", note)))?;
+    results.close(ended, Some(("tune", note)))?;
     Ok(report)
 }

@@ -88,6 +88,13 @@ impl EndpointText<'_> {
     }
 
     fn sim(&self) -> Result<Endpoint, EndpointError> {
+        if !self.place.is_empty() {
+            return Err(unknown_key(
+                self.place,
+                "sim",
+                "seed, scenario and body, after a '?'",
+            ));
+        }
         let (mut seed, mut scenario, mut body) = (1, DEFAULT_SCENARIO.to_owned(), None);
         for (key, value) in self.pairs() {
             match key {
