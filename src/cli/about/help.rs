@@ -60,11 +60,21 @@ fn unknown(word: &str, program: &Command) -> WrongUsage {
     ))
 }
 
+/// Columns of the narrowest common terminal.
+const COLUMNS: usize = 80;
+
 /// Formats a page of the manual as plain text: headings underlined, code indented, tables without bars.
 fn plain(markdown: &str) -> Vec<String> {
     let mut lines = Vec::new();
+    let mut table = Vec::new();
     let mut in_code = false;
     for line in markdown.lines() {
+        let row = line.strip_prefix('|').and_then(|row| row.strip_suffix('|'));
+        if let Some(row) = row.filter(|_| !in_code) {
+            table.push(row.split('|').map(|cell| inline(cell.trim())).collect());
+            continue;
+        }
+        lines.extend(aligned(&std::mem::take(&mut table)));
         if line.starts_with("```") {
             in_code = !in_code;
         } else if in_code {
@@ -73,16 +83,43 @@ fn plain(markdown: &str) -> Vec<String> {
             lines.extend([title.to_owned(), "=".repeat(title.chars().count())]);
         } else if let Some(title) = line.strip_prefix("## ") {
             lines.extend([title.to_owned(), "-".repeat(title.chars().count())]);
-        } else if let Some(row) = line.strip_prefix('|').and_then(|row| row.strip_suffix('|')) {
-            let row = row.replace("-|-", "  ").replace(" | ", "  ");
-            let row = row.strip_prefix(['-', ' ']).unwrap_or(&row);
-            let row = row.strip_suffix('-').unwrap_or(row);
-            lines.push(inline(row).trim_end().to_owned());
         } else {
             lines.push(inline(line));
         }
     }
+    lines.extend(aligned(&table));
     lines
+}
+
+/// The rows of a table with aligned columns, as far as they fit a terminal.
+fn aligned(table: &[Vec<String>]) -> Vec<String> {
+    let is_ruler = |row: &[String]| {
+        row.iter()
+            .all(|cell| cell.trim_matches(['-', ':']).is_empty())
+    };
+    let width = |column: usize| {
+        let cells = table.iter().filter(|row| !is_ruler(row));
+        let cells = cells.filter_map(|row| row.get(column));
+        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let written = |is_padded: bool| {
+        let rows = table.iter().map(move |row| {
+            let cells = row.iter().enumerate().map(|(column, cell)| {
+                let width = if is_padded { width(column) } else { 0 };
+                match is_ruler(row) {
+                    true => "-".repeat(width.max(1)),
+                    false => format!("{cell:width$}"),
+                }
+            });
+            cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+        });
+        rows.collect::<Vec<_>>()
+    };
+    let padded = written(true);
+    if padded.iter().all(|line| line.chars().count() <= COLUMNS) {
+        return padded;
+    }
+    written(false)
 }
 
 /// Removes the marks for bold and emphasis; code is quoted, as in the program's other messages.
@@ -102,8 +139,6 @@ mod tests {
     use clap::error::ErrorKind;
     use clap::{CommandFactory as _, Parser as _};
 
-    /// Columns of the narrowest common terminal.
-    const COLUMNS: usize = 80;
     const README: &str = include_str!("../../../README.md");
 
     fn pages() -> impl Iterator<Item = (&'static str, &'static str)> {

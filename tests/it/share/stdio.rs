@@ -338,6 +338,24 @@ fn a_stop_needs_no_line_feed_and_a_line_that_is_too_long_ends_nothing() {
 }
 
 #[test]
+fn a_stop_is_answered_by_feedback_whatever_is_asked_next() {
+    unless_busy(|| {
+        let (_sim, hand) = sim_on_tcp(&[]);
+        let mut script = Script::moving(&hand);
+        // In one write: the second request is there before the stop is confirmed.
+        let asks = script.asks.as_mut().unwrap();
+        asks.write_all(b"{\"id\":70,\"do\":\"stop\"}\n{\"id\":71,\"do\":\"arm\"}\n")
+            .unwrap();
+        let mut stopped = Value::Null;
+        while stopped["id"] != 70 {
+            stopped = script.until("reply");
+        }
+        assert_eq!(stopped["ok"], json!({}), "{stopped}");
+        assert_eq!(script.end(), Some(0));
+    });
+}
+
+#[test]
 fn a_script_that_does_not_read_may_not_move_the_hand() {
     unless_busy(|| {
         let (_sim, hand) = sim_on_tcp(&[]);

@@ -25,6 +25,7 @@ use crate::motion::program::Ended;
 use crate::record::{Disarmed, LinkState, Record, Rest};
 use crate::transport::Endpoint;
 use futures::future::{BoxFuture, FutureExt as _, OptionFuture};
+use futures::stream::{FuturesUnordered, StreamExt as _};
 use serde_json::{Value, json};
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -58,8 +59,6 @@ enum TaskResult {
     Armed(Result<Right, StdioRefusal>),
     Moved(Result<Box<MoveReport>, StdioRefusal>),
     Followed(Result<Ended<()>, StdioRefusal>),
-    /// The hand was stopped; fails unless feedback shows that it rests.
-    Stopped(anyhow::Result<()>),
     Cleared(Result<(), StdioRefusal>),
 }
 
@@ -108,6 +107,8 @@ struct StdioSession<'a> {
     missed: u64,
     right: Option<Right>,
     task: Option<Task>,
+    /// Stops that wait for their confirmation, each with the ID for its reply. No later request takes that away.
+    stops: FuturesUnordered<BoxFuture<'static, (Value, anyhow::Result<()>)>>,
     recording: Option<SideRecording>,
     /// The recording being closed, and the ID for its reply.
     ending: Option<(Value, BoxFuture<'static, anyhow::Result<()>>)>,
@@ -132,6 +133,7 @@ pub(crate) async fn serve<'a>(
         missed: 0,
         right: None,
         task: None,
+        stops: FuturesUnordered::new(),
         recording: None,
         ending: None,
         is_live: true,
@@ -169,6 +171,7 @@ impl StdioSession<'_> {
                     None => return Ok(()),
                 },
                 Some(done) = task => self.finish(done)?,
+                Some((id, stopped)) = self.stops.next() => self.stopped(&id, stopped)?,
                 Some(whole) = ending => self.ended(whole)?,
                 record = records.next() => match record {
                     Some(record) => self.apply(record, records)?,
@@ -406,9 +409,16 @@ impl StdioSession<'_> {
         self.hand.link.stop();
         self.right = None;
         let link = self.hand.link.clone();
-        let stopping = async move { TaskResult::Stopped(session::stopped(&link).await) };
-        self.end_task(LeaseRefusal::Ended(Disarmed::Stop).into())?;
-        self.begin(Task::of(id, stopping))
+        let stopping = async move { (id, session::stopped(&link).await) };
+        self.stops.push(stopping.boxed());
+        self.end_task(LeaseRefusal::Ended(Disarmed::Stop).into())
+    }
+
+    /// Answers a stop: an error unless feedback shows that the hand rests.
+    fn stopped(&mut self, id: &Value, stopped: anyhow::Result<()>) -> Result<(), NobodyReads> {
+        let done =
+            stopped.map_err(|not| StdioRefusal::new(RefusalKind::NotConfirmed, not.to_string()));
+        self.reply(id, done.map(|()| json!({})))
     }
 
     /// Acquires control of the hand, unless another controller has it. If the hand is armed already, only its limits change,
@@ -596,11 +606,6 @@ impl StdioSession<'_> {
                 lost.map_or(Ok(()), |why| self.lose(&why))
             }
             TaskResult::Followed(followed) => self.followed(followed),
-            TaskResult::Stopped(stopped) => {
-                let done = stopped
-                    .map_err(|not| StdioRefusal::new(RefusalKind::NotConfirmed, not.to_string()));
-                self.reply(&id, done.map(|()| json!({})))
-            }
             TaskResult::Cleared(cleared) => self.reply(&id, cleared.map(|()| json!({}))),
         }
     }
