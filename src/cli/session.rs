@@ -156,12 +156,15 @@ pub(crate) fn patience(status: &LinkStatus) -> Duration {
     }
 }
 
-/// Stops the hand, and waits until feedback shows that it rests. If it does not, the error contains advice.
-pub(crate) async fn stopped(link: &LinkHandle) -> anyhow::Result<()> {
-    match link.stop().await {
-        Stop::Confirmed { .. } => Ok(()),
-        Stop::NotConfirmed => bail!(NOT_CONFIRMED),
-        Stop::LinkLost => bail!(STOP_LOST),
+/// Stops the hand at once; awaiting it waits until feedback shows that it rests. If it does not, the error contains advice.
+pub(crate) fn stopped(link: &LinkHandle) -> impl Future<Output = anyhow::Result<()>> + use<> {
+    let stop = link.stop().into_future();
+    async move {
+        match stop.await {
+            Stop::Confirmed { .. } => Ok(()),
+            Stop::NotConfirmed => bail!(NOT_CONFIRMED),
+            Stop::LinkLost => bail!(STOP_LOST),
+        }
     }
 }
 

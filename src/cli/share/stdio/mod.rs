@@ -406,11 +406,9 @@ impl StdioSession<'_> {
 
     /// Stops the hand, whichever controller moves it, and waits for confirmation by feedback.
     fn stop(&mut self, id: Value) -> Result<(), NobodyReads> {
-        self.hand.link.stop();
+        let stopped = session::stopped(self.hand.link);
         self.right = None;
-        let link = self.hand.link.clone();
-        let stopping = async move { (id, session::stopped(&link).await) };
-        self.stops.push(stopping.boxed());
+        self.stops.push(async move { (id, stopped.await) }.boxed());
         self.end_task(LeaseRefusal::Ended(Disarmed::Stop).into())
     }
 
