@@ -184,6 +184,10 @@ mod tests {
                 "| file  | holds |\n|-------|-------|\n| `a.b` | words |",
                 "file   holds\n-----  -----\n'a.b'  words",
             ),
+            (
+                "| end | what it means |\n|---|---|\n| `held`| words |",
+                "end     what it means\n------  -------------\n'held'  words",
+            ),
         ] {
             assert_eq!(plain(markdown).join("\n"), text);
         }

@@ -373,6 +373,16 @@ mod tests {
     }
 
     #[test]
+    fn text_after_sim_that_is_not_a_setting_is_refused() {
+        for text in ["sim:foo", "sim:seed=7&scenario=grasp", "sim:scenario=bogus"] {
+            let Err(EndpointError::Key { key, kind, .. }) = text.parse::<Endpoint>() else {
+                panic!("{text}");
+            };
+            assert_eq!((format!("sim:{key}").as_str(), kind), (text, "sim"));
+        }
+    }
+
+    #[test]
     fn the_place_is_what_a_person_looks_at() {
         for (text, place) in [
             ("sim:", "the simulated hand"),
