@@ -10,6 +10,8 @@ pub mod following;
 #[cfg(test)]
 mod following_tests;
 pub mod grip;
+pub mod hold;
+mod hold_finger;
 pub mod move_to;
 mod pinch;
 pub mod play;

@@ -5,6 +5,18 @@ pub const BLOCK_LEN: usize = 58;
 /// Number of leading bytes that the check word covers.
 const CHECKED_LEN: usize = 54;
 
+/// Centres of the seven pads in mm, x to the right, y towards the tip (protocol 5.2: pad i is channel i - 1).
+// Manual: 2.6.21 gives no layout; this is the sensor maker's model.
+pub const PAD_CENTRES_MM: [(f64, f64); 7] = [
+    (-4.6, 1.2),
+    (0.0, 4.0),
+    (4.5, 0.8),
+    (0.0, -3.2),
+    (-3.5, -9.1),
+    (3.5, -9.1),
+    (0.1, 9.1),
+];
+
 /// One fingertip's block, decoded (manual 2.6.21, table).
 ///
 /// Manual: the last bytes and the signs are not explained. Raw values are unsigned counts; the
@@ -101,6 +113,22 @@ impl TactileBlock {
     /// Tangential force, N; `None` if it is not a finite number.
     pub fn tangential(&self) -> Option<f32> {
         self.tangential_n.is_finite().then_some(self.tangential_n)
+    }
+
+    /// Place of the contact in mm, relative to the channels of the free fingertip: the mean of the pad centres, each weighted by its
+    /// rise. `None` if no channel rose by `least` counts.
+    pub fn spot_mm(&self, free: &[u32; 8], least: f64) -> Option<(f64, f64)> {
+        let rises = self
+            .raw
+            .iter()
+            .zip(free)
+            .map(|(raw, free)| f64::from(*raw) - f64::from(*free));
+        let rises = rises.map(|rise| rise.max(0.0));
+        let (mut all, mut x, mut y) = (0.0, 0.0, 0.0);
+        for (rise, pad) in rises.zip(PAD_CENTRES_MM) {
+            (all, x, y) = (all + rise, x + rise * pad.0, y + rise * pad.1);
+        }
+        (all >= least).then(|| (x / all, y / all))
     }
 
     /// True if the check word equals the 16-bit sum of the first 54 bytes. Shown only; data is never dropped for it.

@@ -1,0 +1,787 @@
+//! A hold on a hand that the user armed: close until the fingers press with *at least*, then keep what is held with the least force that
+//! holds, and never with more than *at most*. The hand itself enforces *at most* by its force threshold, also if this program dies.
+
+use crate::hand::gap::Gap;
+use crate::hand::grip::{Grip, GripEstimator, GripState};
+use crate::hand::overshoot::{MeasuredOn, OvershootMap, Stages};
+use crate::hand::{
+    Angle, AngleReading, ArmEpoch, Dof, Finger, Force, ForceReading, Group, Groups, HandSample,
+    Moment, PerDof, PerFinger, Setpoints, Speed, Target,
+};
+use crate::link::PollRates;
+use crate::motion::hold_finger::{FingerHold, FingerReading, ForceRange, TipReading};
+use crate::motion::program::{Ended, Order, Program, Seen};
+use crate::poses::way::{Targets, pinch_way, way};
+use crate::record::Abort;
+use serde::Serialize;
+use std::collections::VecDeque;
+use std::time::Duration;
+
+pub use crate::motion::hold_finger::TightenCause;
+
+/// Poll rates while a hold lasts: slips show first on the fingertips.
+pub const RATES: PollRates = PollRates {
+    state_hz: 100.0,
+    tactile_hz: 60.0,
+    settings_hz: 2.0,
+};
+
+/// Time for which the zero of the force sensors is measured before anything moves, and the fewest readings for it.
+const ZERO_DURATION: Duration = Duration::from_millis(400);
+const ZERO_READINGS: usize = 5;
+/// Maximum time until they were read.
+const ZERO_TIMEOUT: Duration = Duration::from_secs(3);
+/// A joint rests when its angle has not changed for this time, and not before this time after a command.
+const STILL: Duration = Duration::from_millis(300);
+const START_DELAY: Duration = Duration::from_millis(500);
+/// Time that a part of the close may take beyond the time its speed implies.
+const SPARE: Duration = Duration::from_secs(4);
+/// Speed of joints that open, and of the thumb's rotation.
+const CLEAR_SPEED: i16 = 200;
+const ROTATE_SPEED: i16 = 100;
+/// A close stops at this multiple of *at least*: the grip relaxes a little afterwards.
+const CLOSE_FACTOR: f64 = 1.1;
+/// A finger presses with *at least* from this share of it on.
+const NEARLY: f64 = 0.9;
+/// Delay from the targets of the held position to the thresholds at *at most*: a drive that still had the target of the close would
+/// press on.
+const TAKE_DELAY: Duration = Duration::from_millis(150);
+/// A finger that presses with less than this share of *at least* for this time has lost the object.
+const GONE_SHARE: f64 = 0.2;
+const GONE_AFTER: Duration = Duration::from_millis(400);
+/// The fingers follow an object that gives way for so many units of angle, no farther.
+const FOLLOW_MAX: i16 = 120;
+/// Temperature from which the hold is reduced, °C.
+const WARM: u8 = crate::hand::heat::WARM;
+/// Normal force from which a fingertip touches something, N.
+const TOUCH_N: f32 = 0.15;
+/// Grams-force per newton.
+const G_PER_N: f64 = 101.97;
+/// Rise of all channels from which the place of a contact is known, counts.
+const SPOT_COUNTS: f64 = 20_000.0;
+
+/// Forces between which an object is held, g of this hand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct HoldForces {
+    at_least_g: Force,
+    at_most_g: Force,
+}
+
+/// Two forces between which no hold is possible.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "at least {at_least} g and at most {at_most} g leave no room for a hold: choose at least {} g or more, and at most {} to {} g, at least {} g above it",
+    HoldForces::LEAST, HoldForces::LEAST + HoldForces::ROOM, HoldForces::MOST, HoldForces::ROOM
+)]
+pub struct NoRoom {
+    pub at_least: i16,
+    pub at_most: i16,
+}
+
+impl HoldForces {
+    /// Smallest *at least*, g: less is not distinct from the noise of the sensors.
+    pub const LEAST: i16 = 40;
+    /// Largest *at most*, g: the rated grip.
+    pub const MOST: i16 = 2000;
+    /// Smallest difference, g: one step of the drive on a hard object is nearly as much.
+    pub const ROOM: i16 = 60;
+
+    /// Checks the two forces.
+    ///
+    /// # Errors
+    /// [`NoRoom`].
+    pub fn new(at_least: Force, at_most: Force) -> Result<Self, NoRoom> {
+        let (least, most) = (at_least.get(), at_most.get());
+        if least >= Self::LEAST && most <= Self::MOST && most - least >= Self::ROOM {
+            Ok(Self {
+                at_least_g: at_least,
+                at_most_g: at_most,
+            })
+        } else {
+            Err(NoRoom {
+                at_least: least,
+                at_most: most,
+            })
+        }
+    }
+
+    /// Force that each finger presses with at least.
+    pub const fn at_least(self) -> Force {
+        self.at_least_g
+    }
+
+    /// Force that no finger exceeds.
+    pub const fn at_most(self) -> Force {
+        self.at_most_g
+    }
+
+    fn range(self) -> ForceRange {
+        ForceRange {
+            least_g: self.at_least_g.get().into(),
+            most_g: self.at_most_g.get().into(),
+        }
+    }
+}
+
+/// How a hold begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HoldClose {
+    /// It takes over what the hand holds.
+    TakeOver,
+    /// It closes to these angles, until the object stops the fingers.
+    To(Targets),
+    /// It closes along the path on which the pads of thumb and index meet.
+    Pinch(Gap),
+}
+
+/// Settings with which a hold starts.
+#[derive(Debug, Clone)]
+pub struct HoldStart {
+    /// How it begins. An object that is held already is taken over in any case.
+    pub close: HoldClose,
+    /// Its forces.
+    pub forces: HoldForces,
+    /// Time for which the object is held; `None` until it is ended.
+    pub duration: Option<Duration>,
+    /// Joints that do not move.
+    pub locked: PerDof<bool>,
+    /// Overshoot measured on this hand, which sets the speed of the close.
+    pub overshoot: OvershootMap,
+    /// Grip estimate from the readings so far.
+    pub grip: GripEstimator,
+}
+
+/// Outcome of a hold that was not aborted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HoldEnd {
+    /// Its time is over; the hand keeps what it holds.
+    Held,
+    /// The fingers met nothing. The hand was stopped.
+    Nothing,
+    /// The object left the hand. The hand was stopped.
+    Lost,
+    /// The close did not end in time. The hand was stopped.
+    Late,
+}
+
+/// Phase of a hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HoldPhase {
+    /// It measures the zero of the force sensors.
+    Measuring,
+    /// The fingers close.
+    Closing,
+    /// It holds.
+    Holding,
+    /// *At most* does not suffice: the object slides, or is about to.
+    CannotHold,
+}
+
+/// A hold for display.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct HoldView {
+    pub phase: HoldPhase,
+    /// Forces between which it holds.
+    pub forces: HoldForces,
+    /// Force of each finger that holds, g above its zero.
+    pub force_g: PerFinger<Option<i16>>,
+    /// Smallest reserve of friction of all fingers, percent; `None` if no fingertip shows it.
+    pub margin_percent: Option<i16>,
+    /// Number of times that a finger pressed harder.
+    pub tightened: u32,
+    /// The last finger that did, and why.
+    pub last: Option<Tightened>,
+    /// A drive is warm.
+    pub is_warm: bool,
+}
+
+impl HoldView {
+    /// Mean force of the fingers that hold, g; `None` if none does.
+    pub fn mean_g(&self) -> Option<i16> {
+        let forces = self.force_g.as_array().iter().flatten();
+        let (sum, count) = forces.fold((0, 0), |(sum, count), own| {
+            (sum + i32::from(*own), count + 1)
+        });
+        (count > 0).then(|| i16::try_from(sum / count).unwrap_or(i16::MAX))
+    }
+}
+
+/// A finger that pressed harder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Tightened {
+    pub finger: Finger,
+    pub cause: TightenCause,
+}
+
+/// The zero of a joint's force sensor, as measured before the close.
+#[derive(Debug, Clone, Default)]
+struct Zero {
+    readings: Vec<f64>,
+}
+
+impl Zero {
+    fn mean(&self) -> Option<f64> {
+        crate::hand::statistics::mean(&self.readings)
+    }
+
+    /// Amplitude of the noise, g.
+    fn noise_g(&self) -> f64 {
+        let count = crate::hand::statistics::count(&self.readings).max(2.0);
+        let variance = crate::hand::statistics::spread(&self.readings) / (count - 1.0);
+        (2.0 * variance.sqrt()).clamp(2.0, 30.0)
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Step {
+    Measuring,
+    Closing,
+    /// Fingers whose drive counts the zero of its sensor stopped too early, and press on.
+    Pressing,
+    /// The held position is the target; the thresholds follow.
+    Taking,
+    Holding,
+}
+
+/// A part of the close.
+#[derive(Debug, Clone, Copy)]
+struct Leg {
+    targets: Targets,
+}
+
+/// The program of a hold.
+#[derive(Debug)]
+pub struct HoldRun {
+    start: HoldStart,
+    epoch: ArmEpoch,
+    step: Step,
+    begun: Moment,
+    /// Time at which the last targets were given.
+    sent: Moment,
+    zeros: PerDof<Zero>,
+    /// Channels of each fingertip while it touched nothing.
+    free_tips: PerFinger<Option<[u32; 8]>>,
+    legs: Option<VecDeque<Leg>>,
+    /// Last angle of each joint, and since when.
+    still: PerDof<Option<(i16, Moment)>>,
+    /// FORCE_SET as given.
+    threshold_g: PerDof<f64>,
+    /// Part of a threshold that the drive counts although the finger does not press, g.
+    shift_g: PerDof<f64>,
+    /// Angle and force at which a contact began.
+    touched: PerFinger<Option<(i16, f64)>>,
+    fingers: PerFinger<Option<FingerHold>>,
+    held_from: PerFinger<i16>,
+    gone_since: PerFinger<Option<Moment>>,
+    fresh: Groups,
+    held_since: Option<Moment>,
+    tightened: u32,
+    last: Option<Tightened>,
+    events: VecDeque<Tightened>,
+    force_g: PerFinger<Option<i16>>,
+    is_warm: bool,
+    end: Option<Ended<HoldEnd>>,
+}
+
+impl HoldRun {
+    /// A hold under this arming.
+    pub fn new(epoch: ArmEpoch, start: HoldStart, now: Moment) -> Self {
+        Self {
+            start,
+            epoch,
+            step: Step::Measuring,
+            begun: now,
+            sent: now,
+            zeros: PerDof::from_fn(|_| Zero::default()),
+            free_tips: PerFinger::splat(None),
+            legs: None,
+            still: PerDof::splat(None),
+            threshold_g: PerDof::splat(0.0),
+            shift_g: PerDof::splat(0.0),
+            touched: PerFinger::splat(None),
+            fingers: PerFinger::from_fn(|_| None),
+            held_from: PerFinger::splat(0),
+            gone_since: PerFinger::splat(None),
+            fresh: Groups::default(),
+            held_since: None,
+            tightened: 0,
+            last: None,
+            events: VecDeque::new(),
+            force_g: PerFinger::splat(None),
+            is_warm: false,
+            end: None,
+        }
+    }
+
+    /// Grip at the end of the readings.
+    pub fn grip(&self) -> Grip {
+        self.start.grip.grip()
+    }
+}
+
+impl Program for HoldRun {
+    type Input = Abort;
+    type Outcome = HoldEnd;
+    type View = HoldView;
+    type Event = Tightened;
+    const RATES: Option<PollRates> = Some(RATES);
+
+    fn input(&mut self, why: Abort, seen: &Seen<'_>) -> Option<Order> {
+        self.abort(why, seen.now);
+        None
+    }
+
+    fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
+        self.start.grip.apply(sample, fresh, now);
+        self.fresh = self.fresh.and(fresh);
+        self.watch_stillness(sample, now);
+        self.is_warm = Dof::ALL.into_iter().any(|dof| is_warm(sample, dof));
+        for finger in Finger::ALL {
+            if fresh.contains(Group::Tactile(finger)) {
+                self.feel(sample, finger);
+            }
+        }
+        if self.step == Step::Measuring && fresh.contains(Group::Force) {
+            self.measure_zero(sample);
+        }
+        self.force_g = PerFinger::from_fn(|finger| {
+            let holds = self.fingers[finger].is_some() && self.gone_since[finger].is_none();
+            let force = self.force_g(sample, finger.bend()).filter(|_| holds)?;
+            Some(whole(force))
+        });
+    }
+
+    fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
+        let fresh = std::mem::take(&mut self.fresh);
+        if self.end.is_some() {
+            return None;
+        }
+        let Some(angles) = seen.angles().map(|angles| angles.value) else {
+            let is_late = seen.now.since(self.sent) > SPARE + ZERO_TIMEOUT;
+            return (is_late && self.step != Step::Holding).then(|| self.finish(HoldEnd::Late));
+        };
+        match self.step {
+            Step::Measuring => self.begin(seen, &angles),
+            Step::Closing => self.close(seen, &angles),
+            Step::Pressing => self.press(seen, &angles),
+            Step::Taking => self.take(seen, &angles),
+            Step::Holding => self.regulate(seen, &angles, fresh),
+        }
+    }
+
+    fn abort(&mut self, why: Abort, _now: Moment) {
+        self.end.get_or_insert(Err(why));
+    }
+
+    fn view(&self, _now: Moment) -> HoldView {
+        let holding = || self.fingers.as_array().iter().flatten();
+        let margin = holding().filter_map(FingerHold::margin).reduce(f64::min);
+        HoldView {
+            phase: match self.step {
+                Step::Measuring => HoldPhase::Measuring,
+                Step::Closing | Step::Pressing => HoldPhase::Closing,
+                Step::Taking => HoldPhase::Holding,
+                Step::Holding if holding().any(FingerHold::is_short) => HoldPhase::CannotHold,
+                Step::Holding => HoldPhase::Holding,
+            },
+            forces: self.start.forces,
+            force_g: self.force_g,
+            margin_percent: margin.map(|margin| whole(100.0 * margin)),
+            tightened: self.tightened,
+            last: self.last,
+            is_warm: self.is_warm,
+        }
+    }
+
+    fn event(&mut self) -> Option<Tightened> {
+        self.events.pop_front()
+    }
+
+    fn ended(&self) -> Option<Ended<HoldEnd>> {
+        self.end
+    }
+}
+
+/// What the readings show.
+impl HoldRun {
+    fn watch_stillness(&mut self, sample: &HandSample, now: Moment) {
+        let Some(angles) = sample.angle else {
+            return;
+        };
+        for (dof, still) in self.still.iter_mut() {
+            let at = angles.value[dof].raw();
+            if still.is_none_or(|(before, _)| at.abs_diff(before) > 1) {
+                *still = Some((at, now));
+            }
+        }
+    }
+
+    fn measure_zero(&mut self, sample: &HandSample) {
+        let Some(forces) = sample.force else {
+            return;
+        };
+        for (dof, zero) in self.zeros.iter_mut() {
+            let tip_n = sample.tactile[dof.finger()].and_then(|tip| tip.value.normal());
+            // A finger that presses already shows its zero by what its fingertip feels.
+            let pressed_g = tip_n
+                .filter(|n| *n > TOUCH_N)
+                .map_or(0.0, |n| f64::from(n) * G_PER_N);
+            if let Some(force) = forces.value[dof].documented() {
+                zero.readings.push(f64::from(force) - pressed_g);
+            }
+        }
+    }
+
+    /// Force of a joint above its zero, g.
+    fn force_g(&self, sample: &HandSample, dof: Dof) -> Option<f64> {
+        let force = ForceReading::documented(sample.force?.value[dof])?;
+        let angle = sample.angle?.value[dof].documented()?;
+        let free = self
+            .start
+            .grip
+            .free_force()
+            .at(dof, angle)
+            .unwrap_or_default();
+        Some(f64::from(force) - self.zeros[dof].mean()? - f64::from(free))
+    }
+
+    /// Applies a new reading of a fingertip.
+    fn feel(&mut self, sample: &HandSample, finger: Finger) {
+        let Some(tip) = sample.tactile[finger] else {
+            return;
+        };
+        let (Some(normal_n), Some(tangential_n)) = (tip.value.normal(), tip.value.tangential())
+        else {
+            return;
+        };
+        if normal_n < TOUCH_N {
+            self.free_tips[finger] = Some(tip.value.raw);
+        }
+        let free = self.free_tips[finger];
+        if let Some(hold) = &mut self.fingers[finger] {
+            hold.feel(TipReading {
+                at: tip.received,
+                normal_g: f64::from(normal_n) * G_PER_N,
+                tangential_g: f64::from(tangential_n) * G_PER_N,
+                spot_mm: free.and_then(|free| tip.value.spot_mm(&free, SPOT_COUNTS)),
+            });
+        }
+    }
+
+    fn is_still(&self, dof: Dof, now: Moment) -> bool {
+        self.still[dof].is_some_and(|(_, since)| now.since(since) >= STILL)
+    }
+
+    /// True once the joints had time to move and rest.
+    fn is_at_rest(&self, seen: &Seen<'_>, moves: impl Fn(Dof) -> bool) -> bool {
+        let begins = START_DELAY + seen.status.slow_allowance();
+        let mut moving = Dof::ALL.into_iter().filter(|dof| moves(*dof));
+        seen.now.since(self.sent) >= begins && moving.all(|dof| self.is_still(dof, seen.now))
+    }
+
+    fn holds(&self, sample: &HandSample, finger: Finger) -> bool {
+        let state = self.start.grip.grip().fingers[finger].state;
+        let is_held = matches!(
+            state,
+            GripState::Holding | GripState::Slipping | GripState::TooHard
+        );
+        let force = self.force_g(sample, finger.bend());
+        let presses = |force: f64| force >= f64::from(self.start.forces.at_least().get()) / 2.0;
+        (is_held || force.is_some_and(presses)) && !self.start.locked[finger.bend()]
+    }
+}
+
+/// The close.
+impl HoldRun {
+    /// Begins once the zero of the force sensors is known.
+    fn begin(&mut self, seen: &Seen<'_>, angles: &PerDof<AngleReading>) -> Option<Order> {
+        let waited = seen.now.since(self.begun);
+        let is_known = self
+            .zeros
+            .as_array()
+            .iter()
+            .all(|zero| zero.readings.len() >= ZERO_READINGS);
+        if waited < ZERO_DURATION || !is_known {
+            return (waited > ZERO_TIMEOUT).then(|| self.finish(HoldEnd::Late));
+        }
+        for dof in Dof::ALL {
+            let zero = self.zeros[dof].mean().unwrap_or_default();
+            self.shift_g[dof] = zero.min(0.0);
+        }
+        let is_held = matches!(
+            self.start.grip.grip().grasp.state,
+            GripState::Holding | GripState::Slipping | GripState::TooHard
+        );
+        let targets = match self.start.close {
+            _ if is_held => return self.take_over(seen, angles),
+            HoldClose::TakeOver => return Some(self.finish(HoldEnd::Nothing)),
+            HoldClose::To(targets) => {
+                let from = angles.map(|at| at.hold().map(Angle::get));
+                way(&from, &targets)
+            }
+            HoldClose::Pinch(gap) => {
+                let from = angles.map(|at| at.hold().map(Angle::get));
+                let parts = pinch_way(&from, gap, Speed::MAX, &PerDof::splat(true));
+                parts.into_iter().map(|part| part.targets).collect()
+            }
+        };
+        let locked = self.start.locked;
+        let free = |targets: Targets| PerDof::from_fn(|dof| targets[dof].filter(|_| !locked[dof]));
+        self.legs = Some(
+            targets
+                .into_iter()
+                .map(|targets| Leg {
+                    targets: free(targets),
+                })
+                .collect(),
+        );
+        self.step = Step::Closing;
+        self.send_leg(seen.now, angles)
+    }
+
+    fn send_leg(&mut self, now: Moment, angles: &PerDof<AngleReading>) -> Option<Order> {
+        let leg = self.legs.as_ref()?.front().copied()?;
+        let close_g = f64::from(self.start.forces.at_least().get()) * CLOSE_FACTOR;
+        let most = self.start.forces.range().most_g;
+        let mut setpoints = Setpoints::none(self.epoch);
+        for (dof, to) in leg.targets.iter() {
+            let Some(to) = *to else {
+                continue;
+            };
+            self.threshold_g[dof] = close_g.min(most) + self.shift_g[dof];
+            setpoints.angle[dof] = Some(Target::Go(to));
+            setpoints.force[dof] = Some(Force::nearest(rounded(self.threshold_g[dof])));
+            setpoints.speed[dof] = Some(self.close_speed(dof, to, angles[dof]));
+        }
+        self.sent = now;
+        Some(Order::Set(setpoints))
+    }
+
+    /// Speed of a joint: the fastest whose overshoot, as measured on this hand, stays under *at most*; slow without a measurement.
+    fn close_speed(&self, dof: Dof, to: Angle, at: AngleReading) -> Speed {
+        if at.hold().is_some_and(|at| to >= at) {
+            return Speed::nearest(CLEAR_SPEED);
+        }
+        if dof == Dof::ThumbRotate {
+            return Speed::nearest(ROTATE_SPEED);
+        }
+        let range = self.start.forces.range();
+        let threshold_g = range.least_g * CLOSE_FACTOR;
+        let fits = |speed: i16| {
+            let expected =
+                self.start
+                    .overshoot
+                    .expected(dof, Stages::One, speed.into(), threshold_g);
+            let is_own = matches!(expected.on, MeasuredOn::ThisHand { .. });
+            is_own && threshold_g + expected.over_g <= range.most_g
+        };
+        let speeds = (25..=CLEAR_SPEED).rev().step_by(25);
+        Speed::nearest(speeds.into_iter().find(|speed| fits(*speed)).unwrap_or(25))
+    }
+
+    fn close(&mut self, seen: &Seen<'_>, angles: &PerDof<AngleReading>) -> Option<Order> {
+        let leg = self.legs.as_ref().and_then(|legs| legs.front()).copied()?;
+        self.watch_contacts(seen.sample, angles);
+        let moves = |dof: Dof| leg.targets[dof].is_some();
+        if self.is_at_rest(seen, moves) {
+            self.legs.as_mut().and_then(VecDeque::pop_front);
+            if self.legs.as_ref().is_some_and(|legs| !legs.is_empty()) {
+                return self.send_leg(seen.now, angles);
+            }
+            self.legs = Some(VecDeque::from([leg]));
+            self.step = Step::Pressing;
+            return self.press(seen, angles);
+        }
+        let slowest = Speed::nearest(25).stroke();
+        (seen.now.since(self.sent) > slowest + SPARE).then(|| self.finish(HoldEnd::Late))
+    }
+
+    /// Notes where contacts begin: the stiffness follows from there.
+    fn watch_contacts(&mut self, sample: &HandSample, angles: &PerDof<AngleReading>) {
+        for finger in Finger::ALL {
+            let dof = finger.bend();
+            let force = self.force_g(sample, dof);
+            let begins = force.filter(|force| *force > 3.0 * self.zeros[dof].noise_g() + 5.0);
+            if self.touched[finger].is_none() {
+                self.touched[finger] = begins.map(|force| (angles[dof].raw(), force));
+            }
+        }
+    }
+
+    /// A drive that counts the zero of its sensor stops too early by as much: its threshold rises until the finger presses.
+    fn press(&mut self, seen: &Seen<'_>, angles: &PerDof<AngleReading>) -> Option<Order> {
+        let leg = self.legs.as_ref().and_then(|legs| legs.front()).copied()?;
+        self.watch_contacts(seen.sample, angles);
+        if !self.is_at_rest(seen, |dof| leg.targets[dof].is_some()) {
+            return None;
+        }
+        let range = self.start.forces.range();
+        let mut setpoints = Setpoints::none(self.epoch);
+        for finger in Finger::ALL {
+            let dof = finger.bend();
+            let (Some(to), Some(force)) = (leg.targets[dof], self.force_g(seen.sample, dof)) else {
+                continue;
+            };
+            let is_short = i32::from(angles[dof].raw()) > i32::from(to.get()) + 5;
+            let highest = range.most_g + self.zeros[dof].mean().unwrap_or_default().max(0.0);
+            let raised = (self.threshold_g[dof] + (range.least_g - force).max(20.0)).min(highest);
+            let can_rise = raised > self.threshold_g[dof] + 1.0;
+            if !is_short || force >= NEARLY * range.least_g || !can_rise {
+                continue;
+            }
+            self.shift_g[dof] =
+                self.shift_g[dof].max(self.threshold_g[dof] - force.max(0.0) - 20.0);
+            self.threshold_g[dof] = raised;
+            setpoints.angle[dof] = Some(Target::Go(to));
+            setpoints.force[dof] = Some(Force::nearest(rounded(raised)));
+            setpoints.speed[dof] = Some(Speed::nearest(25));
+        }
+        if setpoints.is_empty() {
+            return self.take_over(seen, angles);
+        }
+        self.sent = seen.now;
+        Some(Order::Set(setpoints))
+    }
+}
+
+/// The hold.
+impl HoldRun {
+    /// Makes the held position the target of the fingers that hold.
+    fn take_over(&mut self, seen: &Seen<'_>, angles: &PerDof<AngleReading>) -> Option<Order> {
+        let range = self.start.forces.range();
+        let mut setpoints = Setpoints::none(self.epoch);
+        for finger in Finger::ALL {
+            if !self.holds(seen.sample, finger) {
+                continue;
+            }
+            let dof = finger.bend();
+            let Some(at) = angles[dof].hold() else {
+                continue;
+            };
+            let mut hold = FingerHold::new(range, self.zeros[dof].noise_g(), at.get(), seen.now);
+            let force = self.force_g(seen.sample, dof);
+            if let Some(((began, began_g), force)) = self.touched[finger].zip(force) {
+                let way = f64::from(began) - f64::from(at.get());
+                if way >= 2.0 && force > began_g {
+                    hold.know_stiffness((force - began_g) / way);
+                }
+            }
+            self.fingers[finger] = Some(hold);
+            self.held_from[finger] = at.get();
+            setpoints.angle[dof] = Some(Target::Go(at));
+            setpoints.speed[dof] = Some(Speed::nearest(25));
+        }
+        if setpoints.is_empty() {
+            return Some(self.finish(HoldEnd::Nothing));
+        }
+        (self.step, self.sent) = (Step::Taking, seen.now);
+        Some(Order::Set(setpoints))
+    }
+
+    /// Raises the thresholds to *at most* once the held position is the target.
+    fn take(&mut self, seen: &Seen<'_>, _angles: &PerDof<AngleReading>) -> Option<Order> {
+        if seen.now.since(self.sent) < TAKE_DELAY {
+            return None;
+        }
+        let most = self.start.forces.range().most_g;
+        let mut setpoints = Setpoints::none(self.epoch);
+        for (finger, _) in self.fingers.iter().filter(|(_, hold)| hold.is_some()) {
+            let dof = finger.bend();
+            self.threshold_g[dof] = most + self.shift_g[dof];
+            setpoints.force[dof] = Some(Force::nearest(rounded(self.threshold_g[dof])));
+        }
+        (self.step, self.held_since) = (Step::Holding, Some(seen.now));
+        Some(Order::Set(setpoints))
+    }
+
+    fn regulate(
+        &mut self,
+        seen: &Seen<'_>,
+        angles: &PerDof<AngleReading>,
+        fresh: Groups,
+    ) -> Option<Order> {
+        let held = self
+            .held_since
+            .map_or(Duration::ZERO, |since| seen.now.since(since));
+        if self.start.duration.is_some_and(|duration| held >= duration) {
+            self.end = Some(Ok(HoldEnd::Held));
+            return Some(Order::Disarm);
+        }
+        if !fresh.contains(Group::Force) && !fresh.has_tactile() {
+            return None;
+        }
+        let mut setpoints = Setpoints::none(self.epoch);
+        for finger in Finger::ALL {
+            let dof = finger.bend();
+            let Some((force_g, at)) = self.force_g(seen.sample, dof).zip(angles[dof].hold()) else {
+                continue;
+            };
+            self.watch_loss(seen, finger, force_g);
+            let is_gone = self.gone_since[finger].is_some();
+            let is_far = self.held_from[finger] - at.get() > FOLLOW_MAX;
+            let Some(hold) = &mut self.fingers[finger] else {
+                continue;
+            };
+            let step = hold.apply(FingerReading {
+                at: seen.now,
+                force_g,
+                angle: at.get(),
+                is_warm: is_warm(seen.sample, dof),
+            });
+            let Some(step) = step.filter(|step| !is_gone && !(is_far && step.cause.is_some()))
+            else {
+                continue;
+            };
+            setpoints.angle[dof] = Some(Target::Go(step.to));
+            setpoints.speed[dof] = Some(step.speed);
+            if let Some(cause) = step.cause {
+                self.tightened += 1;
+                let tightened = Tightened { finger, cause };
+                self.last = Some(tightened);
+                self.events.push_back(tightened);
+            }
+        }
+        if self.is_lost(seen.now) {
+            return Some(self.finish(HoldEnd::Lost));
+        }
+        Some(Order::Set(setpoints))
+    }
+
+    fn watch_loss(&mut self, seen: &Seen<'_>, finger: Finger, force_g: f64) {
+        let tip_n = seen.sample.tactile[finger].and_then(|tip| tip.value.normal());
+        let least = GONE_SHARE * self.start.forces.range().least_g;
+        let is_gone = force_g < least && tip_n.is_none_or(|n| n < TOUCH_N);
+        let since = &mut self.gone_since[finger];
+        *since = is_gone.then(|| since.unwrap_or(seen.now));
+    }
+
+    /// True once every finger that held presses on nothing.
+    fn is_lost(&self, now: Moment) -> bool {
+        let mut holding = self.fingers.iter().filter(|(_, hold)| hold.is_some());
+        let is_gone = |since: Moment| now.since(since) >= GONE_AFTER;
+        holding.all(|(finger, _)| self.gone_since[finger].is_some_and(is_gone))
+    }
+
+    fn finish(&mut self, end: HoldEnd) -> Order {
+        self.end = Some(Ok(end));
+        Order::Stop
+    }
+}
+
+fn is_warm(sample: &HandSample, dof: Dof) -> bool {
+    let celsius = sample
+        .temperature
+        .and_then(|six| six.value[dof].documented());
+    celsius.is_some_and(|celsius| celsius >= WARM)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "clamped to a small range")]
+fn whole(value: f64) -> i16 {
+    value.clamp(-9999.0, 9999.0).round() as i16
+}
+
+fn rounded(value: f64) -> i64 {
+    whole(value).into()
+}

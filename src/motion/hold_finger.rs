@@ -1,0 +1,430 @@
+//! One finger that holds an object: the force it should press with, and the steps of its angle target that lead there. Pure.
+
+use crate::hand::statistics::median;
+use crate::hand::{Angle, Moment, Speed};
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// Stiffness assumed before the first step shows it: that of a hard block, g per unit of angle.
+const HARD_G: f64 = 60.0;
+/// Possible stiffness of a contact, g per unit of angle.
+const STIFFNESS_G: std::ops::RangeInclusive<f64> = 1.0..=120.0;
+/// Ratio of tangential to normal force that is expected to hold on any object, before this one has shown more or less.
+const USUAL_FRICTION: f64 = 0.35;
+/// Share of the friction that is kept in reserve.
+const MARGIN: f64 = 0.25;
+/// Share of the ratio at which an object slid that still holds it.
+const BELOW_SLIP: f64 = 0.85;
+/// Increase of the force after a slip, at least.
+const SLIP_FACTOR: f64 = 1.25;
+/// A step has its effect after this time: the hand acts 66 ms late, and the reading comes later still.
+const EFFECT: Duration = Duration::from_millis(180);
+/// Time in which a step should be completed.
+const STEP_S: f64 = 0.08;
+/// A rising load is extrapolated over this time: until a step acts.
+const AHEAD_S: f64 = 0.12;
+/// Time without a disturbance after which the force is reduced, and the time between two reductions.
+const QUIET: Duration = Duration::from_secs(3);
+const RELAX_INTERVAL: Duration = Duration::from_secs(1);
+/// A reduction that had to be taken back is not tried again for this time.
+const RELAX_PAUSE: Duration = Duration::from_secs(60);
+/// Reduction of the wanted force per second while it is quiet, as a share of it.
+const RELAX_SHARE: f64 = 0.06;
+/// Change of the tangential force that is a disturbance: as a share of the normal force, and at least this, g.
+const JUMP_SHARE: f64 = 0.06;
+const JUMP_LEAST_G: f64 = 6.0;
+/// Normal force below which a ratio says nothing, g.
+const RATIO_FROM_G: f64 = 30.0;
+/// Largest single step, units of angle.
+const STEP_MAX: f64 = 12.0;
+/// Travel of the contact on the fingertip that is a slip, mm, and the time in which it must happen.
+const SLIDE_MM: f64 = 0.7;
+const SLIDE_WITHIN_S: f64 = 0.25;
+/// Readings over which the force is filtered.
+const FORCES: usize = 3;
+/// Readings of the fingertip that are kept.
+const TIPS: usize = 16;
+
+/// Forces between which a hold keeps each finger, g above its zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ForceRange {
+    pub(crate) least_g: f64,
+    pub(crate) most_g: f64,
+}
+
+/// A reading of the fingertip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TipReading {
+    pub(crate) at: Moment,
+    /// Normal and tangential force, g.
+    pub(crate) normal_g: f64,
+    pub(crate) tangential_g: f64,
+    /// Place of the contact on the fingertip, mm; `None` if the channels do not show it.
+    pub(crate) spot_mm: Option<(f64, f64)>,
+}
+
+/// A reading of a finger.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FingerReading {
+    pub(crate) at: Moment,
+    /// Force above the finger's zero, g.
+    pub(crate) force_g: f64,
+    /// Angle, units of ANGLE_ACT.
+    pub(crate) angle: i16,
+    /// The drive is warm.
+    pub(crate) is_warm: bool,
+}
+
+/// Why a finger presses harder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TightenCause {
+    /// It pressed with less than *at least*.
+    TooLittle,
+    /// The tangential force came too close to the friction.
+    Margin,
+    /// The tangential force rose quickly.
+    Load,
+    /// The object slid on the fingertip.
+    Slip,
+}
+
+impl TightenCause {
+    /// Name as in JSON.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::TooLittle => "too_little",
+            Self::Margin => "margin",
+            Self::Load => "load",
+            Self::Slip => "slip",
+        }
+    }
+}
+
+/// A step of the angle target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct HoldStep {
+    pub(crate) to: Angle,
+    pub(crate) speed: Speed,
+    /// Reason for pressing harder; `None` for a reduction.
+    pub(crate) cause: Option<TightenCause>,
+}
+
+/// A step whose effect is not known yet.
+#[derive(Debug, Clone, Copy)]
+struct Underway {
+    at: Moment,
+    /// Force and angle before the step.
+    from_g: f64,
+    from_angle: i16,
+    /// Force that it should lead to, g.
+    aim_g: f64,
+}
+
+/// One finger that holds an object.
+#[derive(Debug, Clone)]
+pub(crate) struct FingerHold {
+    range: ForceRange,
+    noise_g: f64,
+    /// The current target.
+    target: f64,
+    /// g per unit of angle.
+    stiffness: f64,
+    wanted_g: f64,
+    cause: TightenCause,
+    forces: VecDeque<f64>,
+    tips: VecDeque<TipReading>,
+    /// Tangential force while nothing happens, g.
+    base_g: Option<f64>,
+    /// Largest ratio of tangential to normal force at which the object did not slide.
+    held_ratio: f64,
+    /// Smallest ratio at which it slid.
+    slid_ratio: Option<f64>,
+    underway: Option<Underway>,
+    quiet_since: Moment,
+    relaxed: Option<Moment>,
+    relaxes_from: Moment,
+    is_short: bool,
+}
+
+impl FingerHold {
+    /// Starts at this angle, where it presses with `force_g`.
+    pub(crate) fn new(range: ForceRange, noise_g: f64, angle: i16, now: Moment) -> Self {
+        Self {
+            range,
+            noise_g,
+            target: angle.into(),
+            stiffness: HARD_G,
+            wanted_g: range.least_g,
+            cause: TightenCause::TooLittle,
+            forces: VecDeque::new(),
+            tips: VecDeque::new(),
+            base_g: None,
+            held_ratio: 0.0,
+            slid_ratio: None,
+            underway: None,
+            quiet_since: now,
+            relaxed: None,
+            relaxes_from: now,
+            is_short: false,
+        }
+    }
+
+    /// Uses the stiffness that the close showed, g per unit of angle.
+    pub(crate) fn know_stiffness(&mut self, g_per_angle: f64) {
+        self.stiffness = g_per_angle.clamp(*STIFFNESS_G.start(), *STIFFNESS_G.end());
+    }
+
+    /// Force that it presses with, g; `None` before the first reading.
+    pub(crate) fn force_g(&self) -> Option<f64> {
+        let forces: Vec<f64> = self.forces.iter().copied().collect();
+        median(&forces)
+    }
+
+    /// Stiffness of the contact, g per unit of angle.
+    pub(crate) const fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    /// Ratio of tangential to normal force up to which the object is expected to hold.
+    pub(crate) fn friction(&self) -> f64 {
+        let held = self.held_ratio.max(USUAL_FRICTION);
+        self.slid_ratio.map_or(held, |slid| slid * BELOW_SLIP)
+    }
+
+    /// Share of the friction that is in reserve: 1 without tangential force, 0 or less where the object is about to slide.
+    pub(crate) fn margin(&self) -> Option<f64> {
+        let ratio = ratio(self.tips.back()?)?;
+        Some(1.0 - ratio / self.friction())
+    }
+
+    /// True if it would have to press harder than allowed.
+    pub(crate) const fn is_short(&self) -> bool {
+        self.is_short
+    }
+
+    /// Applies a new reading of the fingertip.
+    pub(crate) fn feel(&mut self, tip: TipReading) {
+        if self.tips.len() >= TIPS {
+            self.tips.pop_front();
+        }
+        self.tips.push_back(tip);
+        let Some(ratio) = ratio(&tip) else {
+            return;
+        };
+        let base = *self.base_g.get_or_insert(tip.tangential_g);
+        let jump = tip.tangential_g - base;
+        let is_jump = jump.abs() > (JUMP_SHARE * tip.normal_g).max(JUMP_LEAST_G);
+        self.base_g = Some(base + jump * if is_jump { 0.3 } else { 0.1 });
+        if is_jump {
+            self.quiet_since = tip.at;
+        }
+        if self.slides() {
+            let slid = self.slid_ratio.map_or(ratio, |before| before.min(ratio));
+            self.slid_ratio = Some(slid.max(0.05));
+            self.quiet_since = tip.at;
+            let more = self.force_g().unwrap_or_default() * SLIP_FACTOR;
+            self.want(more.max(self.needed_g()), TightenCause::Slip);
+            return;
+        }
+        if self.slid_ratio.is_none_or(|slid| ratio < slid) {
+            self.held_ratio = self.held_ratio.max(ratio);
+        }
+        let cause = if is_jump && jump > 0.0 {
+            TightenCause::Load
+        } else {
+            TightenCause::Margin
+        };
+        self.want(self.needed_g(), cause);
+    }
+
+    /// Force that the current load needs, with what it will be when a step acts.
+    fn needed_g(&self) -> f64 {
+        let Some(last) = self.tips.back() else {
+            return 0.0;
+        };
+        let before = self.tips.iter().rev().nth(2).or(self.tips.front());
+        let rise = before.map_or(0.0, |before| {
+            let seconds = last.at.since(before.at).as_secs_f64();
+            let rise = last.tangential_g - before.tangential_g;
+            // Noise is no trend.
+            let is_rise = rise > JUMP_LEAST_G / 2.0 && seconds > 0.0;
+            if is_rise {
+                rise / seconds * AHEAD_S
+            } else {
+                0.0
+            }
+        });
+        // The friction acts at the fingertip; the drive's own force may have another scale.
+        let load = last.tangential_g + rise;
+        let normal = load / (self.friction() * (1.0 - MARGIN));
+        let scale = self
+            .force_g()
+            .map_or(1.0, |force| force / last.normal_g.max(1.0));
+        normal * scale.clamp(0.5, 2.0)
+    }
+
+    fn want(&mut self, force_g: f64, cause: TightenCause) {
+        self.is_short = force_g > self.range.most_g * 1.02;
+        let force_g = force_g.clamp(self.range.least_g, self.range.most_g);
+        if force_g > self.wanted_g {
+            (self.wanted_g, self.cause) = (force_g, cause);
+        }
+    }
+
+    /// True if the place of the contact moved more than it does at rest.
+    fn slides(&self) -> bool {
+        let Some((last, spot)) = self.tips.back().and_then(|tip| Some((tip, tip.spot_mm?))) else {
+            return false;
+        };
+        let recent = self.tips.iter().rev().skip(1);
+        let mut recent =
+            recent.take_while(|tip| last.at.since(tip.at).as_secs_f64() <= SLIDE_WITHIN_S);
+        recent.any(|tip| {
+            tip.spot_mm
+                .is_some_and(|before| (spot.0 - before.0).hypot(spot.1 - before.1) > SLIDE_MM)
+        })
+    }
+
+    /// Applies a new reading of the drive; returns the next step.
+    pub(crate) fn apply(&mut self, reading: FingerReading) -> Option<HoldStep> {
+        if self.forces.len() >= FORCES {
+            self.forces.pop_front();
+        }
+        self.forces.push_back(reading.force_g);
+        let force_g = self.force_g()?;
+        let is_acting = |step: &Underway| reading.at.since(step.at) < EFFECT;
+        if let Some(step) = self.underway.take_if(|step| !is_acting(step)) {
+            self.learn(step, force_g, reading.angle);
+        }
+        let expected_g = self.underway.map_or(force_g, |step| step.aim_g);
+        let seen = Seen {
+            force_g,
+            expected_g,
+            reading,
+        };
+        let is_quiet = reading.at.since(self.quiet_since) >= QUIET;
+        if is_quiet {
+            self.relax_wish(reading);
+        }
+        self.tighten(seen).or_else(|| self.relax(seen, is_quiet))
+    }
+
+    /// Learns the stiffness from a step that has acted.
+    fn learn(&mut self, step: Underway, force_g: f64, angle: i16) {
+        let way = f64::from(step.from_angle) - f64::from(angle);
+        let change = force_g - step.from_g;
+        if way.abs() >= 1.0 && change * way > 0.0 && change.abs() > self.noise_g {
+            let measured = change / way;
+            self.know_stiffness(self.stiffness + (measured - self.stiffness) * 0.4);
+        } else if way == 0.0 && change.abs() <= self.noise_g {
+            // The step was lost in the backlash, or the drive rests elsewhere.
+            self.target = self
+                .target
+                .min(f64::from(angle) + 4.0)
+                .max(f64::from(angle) - 4.0);
+        }
+    }
+
+    /// Lowers the wanted force towards what the load needs.
+    fn relax_wish(&mut self, reading: FingerReading) {
+        let since = self
+            .relaxed
+            .map_or(RELAX_INTERVAL, |at| reading.at.since(at));
+        if since < RELAX_INTERVAL {
+            return;
+        }
+        self.relaxed = Some(reading.at);
+        let share = if reading.is_warm {
+            3.0 * RELAX_SHARE
+        } else {
+            RELAX_SHARE
+        };
+        let least = self.needed_g().max(self.range.least_g);
+        self.wanted_g = (self.wanted_g * (1.0 - share)).max(least.min(self.wanted_g));
+    }
+
+    fn tighten(&mut self, seen: Seen) -> Option<HoldStep> {
+        let missing = self.wanted_g - seen.expected_g;
+        let dead = (2.0 * self.noise_g).max(6.0);
+        if missing <= dead {
+            return None;
+        }
+        let room = self.range.most_g - seen.expected_g;
+        let steps = (missing / self.stiffness).round().max(1.0);
+        let allowed = (room / self.stiffness).floor();
+        let steps = steps.min(allowed).min(STEP_MAX);
+        if steps < 1.0 {
+            return None;
+        }
+        if self.relaxed.is_some() && self.cause == TightenCause::TooLittle {
+            self.relaxes_from = seen.reading.at.plus(RELAX_PAUSE);
+        }
+        let cause = if seen.expected_g < self.range.least_g && self.wanted_g <= self.range.least_g {
+            TightenCause::TooLittle
+        } else {
+            self.cause
+        };
+        self.step(seen, -steps, Some(cause))
+    }
+
+    fn relax(&mut self, seen: Seen, is_quiet: bool) -> Option<HoldStep> {
+        let is_allowed = self.underway.is_none() && seen.reading.at >= self.relaxes_from;
+        let over = seen.force_g - self.range.most_g;
+        let spare = seen.force_g - self.wanted_g;
+        let dead = (2.0 * self.noise_g).max(6.0);
+        if over > dead && self.underway.is_none() {
+            return self.step(seen, (over / self.stiffness).ceil().min(STEP_MAX), None);
+        }
+        let fits = spare >= 1.25 * self.stiffness + dead;
+        (is_quiet && is_allowed && fits).then_some(())?;
+        self.step(seen, 1.0, None)
+    }
+
+    fn step(&mut self, seen: Seen, by: f64, cause: Option<TightenCause>) -> Option<HoldStep> {
+        // A drive that was stopped rests beside its target.
+        let from = match self.underway {
+            Some(_) => self.target,
+            None => self.target.clamp(
+                f64::from(seen.reading.angle) - 4.0,
+                f64::from(seen.reading.angle) + 4.0,
+            ),
+        };
+        self.target = (from + by).clamp(0.0, 1000.0);
+        self.underway = Some(Underway {
+            at: seen.reading.at,
+            from_g: seen.force_g,
+            from_angle: seen.reading.angle,
+            aim_g: seen.expected_g - by * self.stiffness,
+        });
+        let counts = by.abs() * 2.0;
+        Some(HoldStep {
+            to: nearest_angle(self.target),
+            speed: nearest_speed(counts / STEP_S / 3.0),
+            cause,
+        })
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    force_g: f64,
+    /// Force once the step under way has acted.
+    expected_g: f64,
+    reading: FingerReading,
+}
+
+fn ratio(tip: &TipReading) -> Option<f64> {
+    (tip.normal_g >= RATIO_FROM_G).then(|| tip.tangential_g / tip.normal_g)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "clamped to 0..=1000")]
+fn nearest_angle(angle: f64) -> Angle {
+    Angle::nearest(angle.round() as i64)
+}
+
+/// Speed of a step: never below the slowest at which drives were measured.
+#[expect(clippy::cast_possible_truncation, reason = "clamped")]
+fn nearest_speed(speed: f64) -> Speed {
+    Speed::nearest(speed.clamp(25.0, 200.0).round() as i64)
+}
