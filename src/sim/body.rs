@@ -45,6 +45,34 @@ impl Body {
         }
     }
 
+    /// Takes the object out of the hand, or puts it back.
+    pub fn set_present(&mut self, present: bool) {
+        for (_, drive) in self.drives.iter_mut() {
+            if present {
+                drive.return_object();
+            } else {
+                drive.remove_object();
+            }
+        }
+    }
+
+    /// Sets the share of the contact force that is present, 1 = all.
+    pub fn set_grip(&mut self, grip: f64) {
+        for (_, drive) in self.drives.iter_mut() {
+            drive.set_grip(grip);
+        }
+    }
+
+    /// True if every joint has room for a new object.
+    pub fn has_room(&self) -> bool {
+        self.drives.iter().all(|(_, drive)| drive.has_room())
+    }
+
+    /// True if a joint broke its side of the object.
+    pub fn is_broken(&self) -> bool {
+        self.drives.iter().any(|(_, drive)| drive.is_broken())
+    }
+
     /// All drives.
     pub const fn drives(&self) -> &PerDof<Drive> {
         &self.drives

@@ -44,6 +44,9 @@ const HELD_PART: f64 = 0.9;
 /// Distance from the open end within which a joint makes room for a new object, counts.
 const OPEN_TOLERANCE: f64 = 20.0;
 
+/// Lowest share of the contact force that forces are divided by.
+const LEAST_GRIP: f64 = 0.01;
+
 /// Goal of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DriveGoal {
@@ -90,6 +93,10 @@ pub struct Drive {
     over_current_ms: u32,
     contact: Option<Obstacle>,
     broken: bool,
+    /// The object is out of the hand.
+    gone: bool,
+    /// Depth of the dent in the object, counts.
+    dent: f64,
     /// Highest speed since it started closing, counts/s.
     fastest: f64,
     rested_ms: u32,
@@ -137,6 +144,8 @@ impl Drive {
             over_current_ms: 0,
             contact: None,
             broken: false,
+            gone: false,
+            dent: 0.0,
             fastest: 0.0,
             rested_ms: 0,
             jam: None,
@@ -144,7 +153,7 @@ impl Drive {
             grip: 1.0,
             heating_factor: 1.0,
             body,
-            contact_draw: normal(&mut rng),
+            contact_draw: number::normal(&mut rng),
             rng,
             opened: false,
             lead: -body.backlash / 2.0,
@@ -171,20 +180,16 @@ impl Drive {
         self.load_at(self.position)
     }
 
-    /// The obstacle in its way, unless it is broken.
+    /// The obstacle in its way, unless it is broken or gone.
     fn whole_contact(&self) -> Option<Obstacle> {
-        let contact = self.contact.filter(|_| !self.broken)?;
+        let contact = self.contact.filter(|_| !self.broken && !self.gone)?;
         let later = self.body.contact_offset + self.body.contact_scatter * self.contact_draw;
-        Some(Obstacle {
-            angle: contact.angle - later / 2.0,
-            stiffness: contact.stiffness * self.body.stiffness_factor,
-            ..contact
-        })
+        Some(contact.shifted(later + self.dent, self.body.stiffness_factor))
     }
 
     fn load_at(&self, position: f64) -> f64 {
         self.whole_contact().map_or(0.0, |contact| {
-            (position - position_of(contact.angle)).max(0.0) * contact.stiffness * self.grip
+            contact.load_g(position - position_of(contact.angle)) * self.grip
         })
     }
 
@@ -229,6 +234,32 @@ impl Drive {
     pub const fn set_contact(&mut self, contact: Option<Obstacle>) {
         self.contact = contact;
         self.broken = false;
+        self.gone = false;
+        self.dent = 0.0;
+    }
+
+    /// Takes the object out of its way.
+    pub const fn remove_object(&mut self) {
+        self.gone = true;
+    }
+
+    /// Puts the object back. It touches a joint that closed further meanwhile, without force.
+    pub fn return_object(&mut self) {
+        self.gone = false;
+        self.dent = 0.0;
+        if let Some(contact) = self.whole_contact() {
+            self.dent = (self.position - position_of(contact.angle)).max(0.0);
+        }
+    }
+
+    /// True if its side of the object is broken.
+    pub const fn is_broken(&self) -> bool {
+        self.broken
+    }
+
+    /// True if nothing is in its way, or it is so far open that a new object finds room.
+    pub fn has_room(&self) -> bool {
+        self.contact.is_none() || self.position < OPEN_TOLERANCE
     }
 
     /// Blocks the linkage at an angle; the fingertip's sensor does not feel it.
@@ -241,7 +272,7 @@ impl Drive {
         self.dead = dead;
     }
 
-    /// Sets the share of the contact force that is present, 1 = all; a slip reduces it.
+    /// Sets the share of the contact force that is present, 1 = all; a tapered object that slides reduces it.
     pub const fn set_grip(&mut self, grip: f64) {
         self.grip = grip;
     }
@@ -308,7 +339,7 @@ impl Drive {
     }
 
     fn draw_latency_ms(&mut self) -> f64 {
-        let scatter = self.body.latency_scatter_ms * normal(&mut self.rng);
+        let scatter = self.body.latency_scatter_ms * number::normal(&mut self.rng);
         (self.body.latency_ms + scatter).max(0.0)
     }
 
@@ -362,13 +393,21 @@ impl Drive {
         }
     }
 
-    /// An object pressed too hard stays broken until the joint is open again.
+    /// An object pressed too hard stays broken or dented until the joint is open again.
     fn watch_object(&mut self) {
         if self.position < OPEN_TOLERANCE {
             self.broken = false;
+            self.dent = 0.0;
         }
-        let most = self.contact.and_then(|contact| contact.breaks_at_g);
-        self.broken |= most.is_some_and(|most| self.load_g() > most);
+        let Some(contact) = self.whole_contact() else {
+            return;
+        };
+        let load = self.load_g();
+        self.broken |= contact.breaks_at_g.is_some_and(|most| load > most);
+        if let Some(most) = contact.yields_at_g.filter(|most| load > *most) {
+            let grip = self.grip.max(LEAST_GRIP);
+            self.dent += contact.compression(load / grip) - contact.compression(most / grip);
+        }
     }
 
     fn begin(&mut self, goal: DriveGoal, setting: DriveSettings) {
@@ -391,7 +430,7 @@ impl Drive {
                         self.opened = true;
                     } else if self.opened && self.load_g() <= 0.0 {
                         self.opened = false;
-                        self.contact_draw = normal(&mut self.rng);
+                        self.contact_draw = number::normal(&mut self.rng);
                     }
                     self.phase = DrivePhase::Moving { to };
                 }
@@ -511,7 +550,8 @@ impl Drive {
         let Some(contact) = contact else {
             return self.stop_moving(Status::ForceReached);
         };
-        let stiffness = (contact.stiffness * self.grip).max(0.01);
+        let grip = self.grip.max(LEAST_GRIP);
+        let stiffness = (contact.stiffness_at(threshold_g / grip) * grip).max(0.01);
         let met = MetThreshold {
             speed: self.velocity / COUNTS_PER_SPEED,
             threshold_g,
@@ -519,13 +559,13 @@ impl Drive {
         };
         let longer = self.draw_latency_ms() / LATENCY_MS;
         let over = run_on_g(met, self.body.run_on) * longer;
-        let met = position_of(contact.angle) + threshold_g / stiffness;
+        let met = position_of(contact.angle) + contact.compression(threshold_g / grip);
         let kept = self.body.kept_overshoot * over * stiffness / RIGID_G_PER_COUNT;
         let rest_g = RELAXED_PART * threshold_g + kept;
         self.status = Status::ForceReached;
         self.phase = DrivePhase::Coasting {
             to: (met + over / RIGID_G_PER_COUNT).min(STROKE),
-            relax_to: (position_of(contact.angle) + rest_g / stiffness).min(STROKE),
+            relax_to: (position_of(contact.angle) + contact.compression(rest_g / grip)).min(STROKE),
         };
     }
 
@@ -579,10 +619,4 @@ impl Drive {
         self.pending.clear();
         self.stop_moving(status);
     }
-}
-
-/// A random number of the standard normal distribution.
-fn normal(rng: &mut fastrand::Rng) -> f64 {
-    let radius = (-2.0 * (1.0 - rng.f64()).ln()).sqrt();
-    radius * (std::f64::consts::TAU * rng.f64()).cos()
 }

@@ -6,6 +6,7 @@ use crate::sim::body::Body;
 use crate::sim::body_params::BodyParams;
 use crate::sim::drive::{DriveGoal, DriveSettings, position_of};
 use crate::sim::extremes;
+use crate::sim::held::{Held, HeldState};
 use crate::sim::live::{self, element};
 use crate::sim::memory::{AccessError, GAP, Memory};
 use crate::sim::number;
@@ -14,8 +15,7 @@ use crate::sim::personality::{
     Beyond, ChangeAck, Doubles, ForceCompared, GapAnswer, Personality, SpeedZero, TactileCheck,
     Turnaround,
 };
-use crate::sim::pull::{Pull, PullPhase};
-use crate::sim::scenario::{self, ActionSetpoints, Ailment, Scenario, Slip};
+use crate::sim::scenario::{self, ActionSetpoints, Ailment, Scenario};
 use crate::sim::supply::Supply;
 use crate::sim::touch::{SENSOR_MS, TouchSensors};
 use std::collections::VecDeque;
@@ -36,6 +36,8 @@ const CREEP: f64 = 5.0;
 pub const JOURNAL_KEEPS: usize = 8192;
 /// Travel of a joint, in counts of its stroke, after which feedback freezes in that scenario.
 const FREEZE_TRAVEL: f64 = 100.0;
+/// Makes the random numbers of the object independent of the body's.
+const HELD_SEED: u64 = 0x0B1EC7;
 /// Location of the read's time stamp, if the personality writes one.
 const STAMP: Span = Span::new(GAP.address, 8);
 
@@ -52,6 +54,8 @@ pub struct SimConfig {
     pub personality: Personality,
     /// Mechanical differences from other hands.
     pub body: BodyParams,
+    /// Object between the fingers; `None` = that of the scenario.
+    pub object: Option<Object>,
 }
 
 impl Default for SimConfig {
@@ -62,6 +66,7 @@ impl Default for SimConfig {
             scenario: Scenario::Idle,
             personality: Personality::default(),
             body: BodyParams::default(),
+            object: None,
         }
     }
 }
@@ -142,15 +147,17 @@ pub struct SimHand {
     began_at: PerDof<f64>,
     /// It replays a recording: no body, no script, and writes change nothing.
     follows_recording: bool,
-    /// Current or scheduled pull on its object.
-    pull: Option<Pull>,
+    /// The object between the fingers.
+    held: Held,
 }
 
 impl SimHand {
     /// Creates a hand that was switched on at [`Moment::ZERO`], open.
     pub fn new(config: SimConfig) -> Self {
         let mut rng = fastrand::Rng::with_seed(config.seed);
-        let body = Body::new(&Object::of(config.scenario), &config.body, &mut rng);
+        let own = || Object::of(config.scenario);
+        let object = config.object.unwrap_or_else(own);
+        let body = Body::new(&object, &config.body, &mut rng);
         let mut touch = TouchSensors::new(&config.body, &mut rng);
         touch.measure(&mut rng);
         let mut hand = Self {
@@ -178,7 +185,7 @@ impl SimHand {
             frozen_angles: PerDof::splat(None),
             began_at: PerDof::splat(0.0),
             follows_recording: false,
-            pull: None,
+            held: Held::new(&object, config.seed ^ HELD_SEED),
         };
         hand.target_actual();
         hand
@@ -363,12 +370,8 @@ impl SimHand {
     /// Puts another object between the fingers.
     pub fn set_object(&mut self, object: &Object) {
         self.body.set_object(object);
-        self.published_ms = None;
-    }
-
-    /// Starts or ends a pull on its object.
-    pub fn set_pull(&mut self, pull: Option<Pull>) {
-        self.pull = pull;
+        self.body.set_grip(1.0);
+        self.held.set_object(object);
         self.published_ms = None;
     }
 
@@ -377,10 +380,14 @@ impl SimHand {
         PerFinger::from_fn(|finger| self.body.fingertip_g(finger))
     }
 
-    /// True if its object slides now, independent of the feedback.
-    pub fn object_slides(&self) -> bool {
-        let phase = self.pull.map(|pull| pull.phase(self.now_ms));
-        matches!(phase, Some(PullPhase::Slides(_)))
+    /// True if its object slides now on every fingertip that touches it, independent of the feedback.
+    pub const fn object_slides(&self) -> bool {
+        self.held.slides()
+    }
+
+    /// True state of its object, independent of the feedback.
+    pub fn held(&self) -> HeldState {
+        self.held.state(self.body.is_broken())
     }
 
     /// Presses a fingertip with this force, g; 0 releases it.
@@ -484,7 +491,7 @@ impl SimHand {
             Scenario::Faults => self.script_faults(),
             _ => {}
         }
-        self.pull_object();
+        self.step_object();
         if self.supply.is_off(self.now_ms) {
             if self.supply.fails(self.now_ms) {
                 self.restart();
@@ -550,32 +557,17 @@ impl SimHand {
         if let Some(order) = scenario::grasp_order(self.now_ms) {
             self.execute(&order);
         }
-        let slip = scenario::slip(Scenario::Grasp, self.now_ms);
-        for dof in Dof::ALL {
-            self.body.drive_mut(dof).set_grip(slip.grip);
-        }
     }
 
-    fn pull_object(&mut self) {
-        let Some(pull) = self.pull else {
-            return;
-        };
-        let grip = pull.slip(self.now_ms).grip;
-        for dof in Dof::ALL {
-            self.body.drive_mut(dof).set_grip(grip);
+    /// Moves the object under the present forces of the drives, which hold it without power as well.
+    fn step_object(&mut self) {
+        let was_present = self.held.is_present();
+        let has_room = self.body.has_room();
+        self.held.step(&self.true_loads(), has_room);
+        if self.held.is_present() != was_present {
+            self.body.set_present(!was_present);
         }
-        if pull.is_lost(self.now_ms) {
-            self.body.set_object(&Object::none());
-            self.pull = None;
-        }
-    }
-
-    /// Slip of the object on the fingertips at the time of measurement.
-    fn slip(&self, measured_ms: u64) -> Slip {
-        match self.pull {
-            Some(pull) => pull.slip(measured_ms),
-            None => scenario::slip(self.config.scenario, measured_ms),
-        }
+        self.body.set_grip(self.held.grip());
     }
 
     fn script_faults(&mut self) {
@@ -663,13 +655,12 @@ impl SimHand {
 
     fn publish_tip(&mut self, finger: Finger) {
         let measured_ms = self.now_ms - self.now_ms % SENSOR_MS;
-        let slip = self.slip(measured_ms);
-        let mut press = live::press(&self.body, finger);
+        let mut press = live::press(&self.body, &self.held, finger);
         press.force_g += scenario::touched_g(self.config.scenario, finger, measured_ms);
         press.force_g += self.pressed_g[finger];
         let block = self
             .touch
-            .block(finger, press, slip, number::seconds(measured_ms));
+            .block(finger, press, number::seconds(measured_ms));
         let at = Group::Tactile(finger).span().address;
         self.memory.put(at, &block.encode());
         self.put_check(at);

@@ -3,6 +3,7 @@
 use crate::hand::register::{ANGLE_ACT, CURRENT, ERROR, FORCE_ACT, POS_ACT, STATUS, TEMP};
 use crate::hand::{Dof, Finger};
 use crate::sim::body::Body;
+use crate::sim::held::Held;
 use crate::sim::memory::Memory;
 use crate::sim::number;
 use crate::sim::touch::Press;
@@ -30,10 +31,13 @@ pub(crate) fn publish_drives(memory: &mut Memory, body: &Body) {
     }
 }
 
-/// Force on a fingertip and its distance from the object.
-pub(crate) fn press(body: &Body, finger: Finger) -> Press {
+/// Load on a fingertip and its distance from the object.
+pub(crate) fn press(body: &Body, held: &Held, finger: Finger) -> Press {
+    let contact = held.finger(finger);
     Press {
         force_g: body.fingertip_g(finger),
+        tangential_g: contact.tangential_g,
+        slid_mm: contact.slid_mm,
         gap: body.drives()[finger.bend()].gap(),
     }
 }

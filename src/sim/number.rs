@@ -1,4 +1,4 @@
-//! The few conversions from the body's numbers to register values. No casts elsewhere.
+//! The few conversions from the body's numbers to register values, and the normal distribution. No casts elsewhere.
 
 /// Rounds to a signed 16-bit value; saturates.
 #[expect(
@@ -61,4 +61,10 @@ pub(crate) fn seconds(ms: u64) -> f64 {
 )]
 pub(crate) fn whole_ms(ms: f64) -> u64 {
     ms.round() as u64
+}
+
+/// A random number of the standard normal distribution.
+pub(crate) fn normal(rng: &mut fastrand::Rng) -> f64 {
+    let radius = (-2.0 * (1.0 - rng.f64()).ln()).sqrt();
+    radius * (std::f64::consts::TAU * rng.f64()).cos()
 }

@@ -1,7 +1,6 @@
 //! Scripts: autonomous behaviour of the simulated hand. Only computes; the hand applies the result.
 
 use crate::hand::{Dof, Fault, Finger, PerDof, Status};
-use crate::sim::number;
 use std::str::FromStr;
 
 /// Autonomous behaviour of the hand.
@@ -94,12 +93,6 @@ pub struct ActionSetpoints {
 const GRASP_MS: u64 = 8000;
 /// Force thresholds of the grasp, different for each finger to distinguish them.
 const GRASP_FORCES: PerDof<i16> = PerDof::new([330, 470, 600, 560, 640, 500]);
-/// Start, s into the grasp, and duration of the slip.
-const SLIP_AT_S: f64 = 2.5;
-const SLIP_LASTS_S: f64 = 0.4;
-/// Time at which the hand opens, s into the grasp.
-const RELEASE_AT_S: f64 = 5.0;
-
 /// Order of the grasp's action that begins in this millisecond.
 pub fn grasp_order(now_ms: u64) -> Option<ActionSetpoints> {
     let (angles, more, speed) = match now_ms % GRASP_MS {
@@ -115,50 +108,6 @@ pub fn grasp_order(now_ms: u64) -> Option<ActionSetpoints> {
         forces: GRASP_FORCES.map(|force| force + more),
         speeds: PerDof::splat(speed),
     })
-}
-
-/// Motion of the object on the fingertips.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slip {
-    /// Share of the contact force that remains, 1 = all.
-    pub grip: f64,
-    /// Increase of the friction ratio.
-    pub friction: f64,
-    /// Turn of the tangential force, degrees.
-    pub turn_deg: f64,
-    /// Travel of the contact on the fingertip, mm.
-    pub slide_mm: f64,
-}
-
-impl Default for Slip {
-    fn default() -> Self {
-        Self {
-            grip: 1.0,
-            friction: 0.0,
-            turn_deg: 0.0,
-            slide_mm: 0.0,
-        }
-    }
-}
-
-/// Slip at this time; none outside the grasp.
-pub fn slip(scenario: Scenario, now_ms: u64) -> Slip {
-    if scenario != Scenario::Grasp {
-        return Slip::default();
-    }
-    let t = number::seconds(now_ms % GRASP_MS);
-    let way = ((t - SLIP_AT_S) / SLIP_LASTS_S).clamp(0.0, 1.0);
-    if way <= 0.0 || t > RELEASE_AT_S + 2.0 {
-        return Slip::default();
-    }
-    let bump = (way * std::f64::consts::PI).sin();
-    let smooth = way * way * (3.0 - 2.0 * way);
-    Slip {
-        grip: 1.0 - 0.14 * bump,
-        friction: 0.38 * bump + 0.06 * smooth,
-        turn_deg: 85.0 * smooth,
-        slide_mm: 2.6 * smooth,
-    }
 }
 
 /// Length of each fingertip's turn in `touched`, and the pressed part of it, ms.

@@ -3,7 +3,7 @@
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::sim::body_params::{BodyParams, FingertipBody};
 use crate::sim::number;
-use crate::sim::scenario::Slip;
+use glam::DVec2;
 
 /// Newtons per gram-force.
 const N_PER_G: f64 = 0.0098;
@@ -40,6 +40,10 @@ const PADS: [(f64, f64); 7] = [
 pub struct Press {
     /// Force, g.
     pub force_g: f64,
+    /// Load along the surface, g.
+    pub tangential_g: DVec2,
+    /// Distance by which the contact slid, mm.
+    pub slid_mm: DVec2,
     /// Position counts to the object; `None` = no object.
     pub gap: Option<f64>,
 }
@@ -51,7 +55,8 @@ struct TipModel {
     proximity_noise: f64,
     phase: f64,
     heading: f64,
-    friction: f64,
+    /// Tangential force of a contact that carries no load, as a share of the normal force.
+    crosstalk: f64,
     body: FingertipBody,
 }
 
@@ -72,7 +77,7 @@ impl TouchSensors {
                 proximity_noise: 0.0,
                 phase: between(0.0, std::f64::consts::TAU),
                 heading: between(0.0, 360.0),
-                friction: between(0.14, 0.3),
+                crosstalk: between(0.007, 0.015),
                 body: body.fingertips[finger],
             }),
         }
@@ -88,12 +93,12 @@ impl TouchSensors {
     }
 
     /// Returns the block of one fingertip at `t_s` seconds.
-    pub fn block(&self, finger: Finger, press: Press, slip: Slip, t_s: f64) -> TactileBlock {
+    pub fn block(&self, finger: Finger, press: Press, t_s: f64) -> TactileBlock {
         let tip = &self.tips[finger];
         let newtons = press.force_g * N_PER_G;
         let touches = newtons > CONTACT_N;
         let normal = if touches { newtons } else { 0.0 };
-        let spot = tip.spot(slip, t_s);
+        let spot = tip.spot(press, t_s);
         let gains = PADS.map(|pad| normal * COUNTS_PER_N * nearness(pad, spot));
         let mut raw = [0; 8];
         let whole = gains.iter().chain([&0.0]);
@@ -105,8 +110,8 @@ impl TouchSensors {
             let shown = u32::try_from(drifted.max(0)).unwrap_or(u32::MAX);
             *raw = if dead { 0 } else { shown };
         }
-        let tangential =
-            normal * (tip.friction + 0.02 * (1.3 * t_s + tip.phase).sin() + slip.friction);
+        let along = tip.tangential(press, t_s);
+        let tangential = if touches { along.length() } else { 0.0 };
         let [first_noise, second_noise, ..] = tip.noise;
         TactileBlock {
             raw,
@@ -115,7 +120,7 @@ impl TouchSensors {
             tangential_n: number::single(tangential),
             tangential_delta: number::counts(tangential * COUNTS_PER_N + second_noise),
             direction_raw: if touches {
-                tip.direction(slip, t_s)
+                TipModel::direction(along)
             } else {
                 u16::MAX
             },
@@ -128,16 +133,29 @@ impl TouchSensors {
 }
 
 impl TipModel {
-    /// Position of the contact, mm: it drifts slightly, and slides in a slip.
-    fn spot(&self, slip: Slip, t_s: f64) -> (f64, f64) {
-        let x = 1.6 * (0.31 * t_s + self.phase).sin();
-        let y = 0.5 + 2.0 * (0.23 * t_s + 2.0 * self.phase).cos() - slip.slide_mm;
+    /// Position of the contact, mm: it drifts slightly, and slides with the object.
+    fn spot(&self, press: Press, t_s: f64) -> (f64, f64) {
+        let slid = self.turned(press.slid_mm);
+        let x = 1.6 * (0.31 * t_s + self.phase).sin() + slid.x;
+        let y = 0.5 + 2.0 * (0.23 * t_s + 2.0 * self.phase).cos() + slid.y;
         (x, y)
     }
 
-    fn direction(&self, slip: Slip, t_s: f64) -> u16 {
-        let wander = 6.0 * (0.7 * t_s + self.phase).sin();
-        let degrees = (self.heading + wander + slip.turn_deg).rem_euclid(360.0);
+    /// Tangential force in the sensor's own frame, N.
+    fn tangential(&self, press: Press, t_s: f64) -> DVec2 {
+        let wander = 6.0_f64.to_radians() * (0.7 * t_s + self.phase).sin();
+        let share = self.crosstalk * (1.0 + 0.1 * (1.3 * t_s + self.phase).sin());
+        let crosstalk = DVec2::from_angle(wander) * share * press.force_g;
+        self.turned(press.tangential_g + crosstalk) * N_PER_G
+    }
+
+    /// Turns from the object's frame to the sensor's, which lies differently in each fingertip.
+    fn turned(&self, vector: DVec2) -> DVec2 {
+        DVec2::from_angle(self.heading.to_radians()).rotate(vector)
+    }
+
+    fn direction(along: DVec2) -> u16 {
+        let degrees = along.to_angle().to_degrees().rem_euclid(360.0);
         number::word(degrees) % 360
     }
 
@@ -160,10 +178,20 @@ mod tests {
     use super::*;
 
     fn block(force_g: f64, gap: Option<f64>) -> TactileBlock {
+        loaded(force_g, gap, DVec2::ZERO)
+    }
+
+    fn loaded(force_g: f64, gap: Option<f64>, tangential_g: DVec2) -> TactileBlock {
         let mut rng = fastrand::Rng::with_seed(3);
         let mut touch = TouchSensors::new(&BodyParams::default(), &mut rng);
         touch.measure(&mut rng);
-        let block = touch.block(Finger::Index, Press { force_g, gap }, Slip::default(), 1.0);
+        let press = Press {
+            force_g,
+            tangential_g,
+            slid_mm: DVec2::ZERO,
+            gap,
+        };
+        let block = touch.block(Finger::Index, press, 1.0);
         TactileBlock::decode(&block.encode()).unwrap()
     }
 
@@ -179,7 +207,7 @@ mod tests {
         }
         let held = block(500.0, Some(0.0));
         assert!((held.normal_n - 4.9).abs() < 0.01);
-        assert!(held.tangential_n > 0.4 && held.tangential_n < 2.0);
+        assert!(held.tangential_n > 0.0 && held.tangential_n < 0.1);
         assert!(held.direction_deg().is_some() && held.check_ok());
         assert!(held.normal_delta > 100_000);
         assert!(held.raw.iter().zip(far.raw).any(|(a, b)| *a > b + 50_000));
@@ -188,5 +216,19 @@ mod tests {
                 .iter()
                 .all(|raw| (2_799_000..3_001_000).contains(raw))
         );
+    }
+
+    #[test]
+    fn the_tangential_force_is_the_load_and_turns_with_it() {
+        let along = |degrees: f64| {
+            let load = DVec2::from_angle(degrees.to_radians()) * 200.0;
+            loaded(500.0, Some(0.0), load)
+        };
+        let (first, turned) = (along(10.0), along(100.0));
+        for block in [first, turned] {
+            assert!((block.tangential_n - 1.96).abs() < 0.1, "{block:?}");
+        }
+        let turn = i32::from(turned.direction_raw) - i32::from(first.direction_raw);
+        assert!((85..=95).contains(&turn.rem_euclid(360)), "{turn}");
     }
 }

@@ -23,11 +23,7 @@ struct Close {
 }
 
 fn on_block(drive: &mut Drive, from: u64) -> Close {
-    drive.set_contact(Some(Obstacle {
-        angle: 500.0,
-        stiffness: RIGID_G_PER_COUNT,
-        breaks_at_g: None,
-    }));
+    drive.set_contact(Some(Obstacle::at(500.0, RIGID_G_PER_COUNT)));
     drive.command(DriveGoal::Position(STROKE), from);
     let start = drive.position();
     let mut close = Close {

@@ -24,11 +24,7 @@ fn run(drive: &mut Drive, from: u64, ms: u64, setting: DriveSettings) -> f64 {
 
 fn rigid() -> Drive {
     let mut drive = Drive::new(25.0);
-    drive.set_contact(Some(Obstacle {
-        angle: 500.0,
-        stiffness: RIGID_G_PER_COUNT,
-        breaks_at_g: None,
-    }));
+    drive.set_contact(Some(Obstacle::at(500.0, RIGID_G_PER_COUNT)));
     drive.command(DriveGoal::Position(STROKE), 0);
     drive
 }
@@ -138,9 +134,8 @@ fn after_the_impact_no_current_flows_and_the_grip_relaxes() {
 #[test]
 fn a_fragile_thing_breaks_if_pressed_too_hard_and_is_replaced_when_the_hand_opens() {
     let cup = Obstacle {
-        angle: 500.0,
-        stiffness: 20.0,
         breaks_at_g: Some(700.0),
+        ..Obstacle::at(500.0, 20.0)
     };
     let mut drive = Drive::new(25.0);
     drive.set_contact(Some(cup));
@@ -282,11 +277,7 @@ fn a_grip_keeps_of_what_it_ran_past_its_threshold_as_much_as_its_body_says() {
             ..JointBody::default()
         };
         let mut drive = Drive::of(body, 25.0, 0);
-        drive.set_contact(Some(Obstacle {
-            angle: 500.0,
-            stiffness: RIGID_G_PER_COUNT,
-            breaks_at_g: None,
-        }));
+        drive.set_contact(Some(Obstacle::at(500.0, RIGID_G_PER_COUNT)));
         drive.command(DriveGoal::Position(STROKE), 0);
         let setting = DriveSettings {
             speed: 250.0,

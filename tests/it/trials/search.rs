@@ -321,11 +321,8 @@ fn what_keeps_it_from_a_claim_is_said() {
     let out_of_reach = meanwhile(usual, &block, &short, |_, _| ());
     assert_eq!(none(out_of_reach), NoClaim::NoContact { dof });
     let at_start = Object {
-        contacts: PerDof::splat(Some(Obstacle {
-            angle: 1002.0,
-            stiffness: 13.0,
-            breaks_at_g: None,
-        })),
+        contacts: PerDof::splat(Some(Obstacle::at(1002.0, 13.0))),
+        ..Object::none()
     };
     let touching = none(meanwhile(usual, &at_start, &quick(), |_, _| ()));
     assert_eq!(touching, NoClaim::Touching { dof });

@@ -294,10 +294,10 @@ pub(crate) struct Run {
 pub(crate) fn object(stiffness: f64, breaks_at_g: Option<f64>) -> Object {
     Object {
         contacts: PerDof::splat(Some(Obstacle {
-            angle: PLACE,
-            stiffness,
             breaks_at_g,
+            ..Obstacle::at(PLACE, stiffness)
         })),
+        ..Object::none()
     }
 }
 

@@ -44,15 +44,12 @@ fn opened() -> Bench {
 fn hold(bench: &mut Bench, mm: f32) {
     let at = Gap::nearest(mm).angles();
     let contacts = PerDof::from_fn(|dof| {
-        matches!(dof, Dof::Index | Dof::ThumbBend).then(|| Obstacle {
-            angle: f64::from(at[dof].get()),
-            stiffness: 40.0,
-            breaks_at_g: None,
-        })
+        matches!(dof, Dof::Index | Dof::ThumbBend)
+            .then(|| Obstacle::at(f64::from(at[dof].get()), 40.0))
     });
     bench.act(Action::Pinch(Gap::MAX));
     bench.wait(6000);
-    bench.hand(|hand, _| hand.set_object(&Object { contacts }));
+    bench.hand(|hand, _| hand.set_object(&Object::touched_at(contacts)));
     bench.act(Action::Pinch(Gap::nearest(mm - 15.0)));
     bench.until(20_000, |bench| bench.reading("Grip").contains("about"));
 }
