@@ -49,8 +49,6 @@ const TAKE_DELAY: Duration = Duration::from_millis(150);
 /// A finger that presses with less than this share of *at least* for this time has lost the object.
 const GONE_SHARE: f64 = 0.2;
 const GONE_AFTER: Duration = Duration::from_millis(400);
-/// The fingers follow an object that gives way for so many units of angle, no farther.
-const FOLLOW_MAX: i16 = 120;
 /// Temperature from which the hold is reduced, °C.
 const WARM: u8 = crate::hand::heat::WARM;
 /// Normal force from which a fingertip touches something, N.
@@ -660,12 +658,20 @@ impl HoldRun {
             let Some(at) = angles[dof].hold() else {
                 continue;
             };
-            let mut hold = FingerHold::new(range, self.zeros[dof].noise_g(), at.get(), seen.now);
+            let zero = &self.zeros[dof];
+            // A drive that counts its zero may stop earlier by as much.
+            let early_g = (zero.mean().unwrap_or_default() - self.shift_g[dof]).max(0.0);
+            let usable = ForceRange {
+                most_g: (range.most_g - early_g - zero.noise_g()).max(range.least_g),
+                ..range
+            };
+            let mut hold = FingerHold::new(usable, zero.noise_g(), at.get(), seen.now);
             let force = self.force_g(seen.sample, dof);
             if let Some(((began, began_g), force)) = self.touched[finger].zip(force) {
                 let way = f64::from(began) - f64::from(at.get());
+                // Angles are whole units: the stiffer of the two possible values.
                 if way >= 2.0 && force > began_g {
-                    hold.know_stiffness((force - began_g) / way);
+                    hold.know_stiffness((force - began_g) / (way - 1.0));
                 }
             }
             self.fingers[finger] = Some(hold);
@@ -720,10 +726,10 @@ impl HoldRun {
             };
             self.watch_loss(seen, finger, force_g);
             let is_gone = self.gone_since[finger].is_some();
-            let is_far = self.held_from[finger] - at.get() > FOLLOW_MAX;
             let Some(hold) = &mut self.fingers[finger] else {
                 continue;
             };
+            let is_far = f64::from(self.held_from[finger] - at.get()) > hold.travel_max();
             let step = hold.apply(FingerReading {
                 at: seen.now,
                 force_g,

@@ -10,33 +10,55 @@ const HARD_G: f64 = 60.0;
 /// Possible stiffness of a contact, g per unit of angle.
 const STIFFNESS_G: std::ops::RangeInclusive<f64> = 1.0..=120.0;
 /// Ratio of tangential to normal force that is expected to hold on any object, before this one has shown more or less.
-const USUAL_FRICTION: f64 = 0.35;
+const USUAL_FRICTION: f64 = 0.45;
 /// Share of the friction that is kept in reserve.
-const MARGIN: f64 = 0.25;
+const MARGIN: f64 = 0.2;
+/// The same while the load rises.
+const MOVING_MARGIN: f64 = 0.4;
 /// Share of the ratio at which an object slid that still holds it.
 const BELOW_SLIP: f64 = 0.85;
+/// The wanted force changes only if the need differs by this factor.
+const HYSTERESIS: f64 = 1.08;
+/// A finger is no longer short once the load needs less than this share of *at most*.
+const NO_LONGER_SHORT: f64 = 0.95;
 /// Increase of the force after a slip, at least.
 const SLIP_FACTOR: f64 = 1.25;
 /// A step has its effect after this time: the hand acts 66 ms late, and the reading comes later still.
 const EFFECT: Duration = Duration::from_millis(180);
 /// Time in which a step should be completed.
 const STEP_S: f64 = 0.08;
+/// Counts per second of a unit of speed, as published.
+const COUNTS_PER_SPEED: f64 = 3.04;
+/// Speed limit of a step times the stiffness: a stiff contact is approached slowly, because a drive that meets its threshold runs on.
+const SPEED_BY_STIFFNESS: f64 = 8000.0;
+/// Share of *at most* from which steps are slower.
+const NEAR_MOST: f64 = 0.7;
 /// A rising load is extrapolated over this time: until a step acts.
-const AHEAD_S: f64 = 0.12;
+const AHEAD_S: f64 = 0.2;
 /// Time without a disturbance after which the force is reduced, and the time between two reductions.
-const QUIET: Duration = Duration::from_secs(3);
+const QUIET: Duration = Duration::from_secs(2);
 const RELAX_INTERVAL: Duration = Duration::from_secs(1);
 /// A reduction that had to be taken back is not tried again for this time.
 const RELAX_PAUSE: Duration = Duration::from_secs(60);
+/// Time after which a step that had no effect is tried again.
+const BLOCKED_PAUSE: Duration = Duration::from_secs(2);
 /// Reduction of the wanted force per second while it is quiet, as a share of it.
-const RELAX_SHARE: f64 = 0.06;
+const RELAX_SHARE: f64 = 0.2;
+/// Share of what a finger presses too hard that one reduction takes away.
+const RELAX_PART: f64 = 0.8;
 /// Change of the tangential force that is a disturbance: as a share of the normal force, and at least this, g.
-const JUMP_SHARE: f64 = 0.06;
-const JUMP_LEAST_G: f64 = 6.0;
+const JUMP_SHARE: f64 = 0.025;
+const JUMP_LEAST_G: f64 = 2.5;
 /// Normal force below which a ratio says nothing, g.
 const RATIO_FROM_G: f64 = 30.0;
+/// A step may meet an object that is stiffer by this factor.
+const STIFFER: f64 = 1.35;
+/// Units of angle by which a finger follows an object beyond what its force explains.
+const FOLLOW: f64 = 40.0;
+/// A finger is still blocked at this share of the force at which steps had no effect.
+const NEARLY_BLOCKED: f64 = 0.9;
 /// Largest single step, units of angle.
-const STEP_MAX: f64 = 12.0;
+const STEP_MAX: f64 = 40.0;
 /// Travel of the contact on the fingertip that is a slip, mm, and the time in which it must happen.
 const SLIDE_MM: f64 = 0.7;
 const SLIDE_WITHIN_S: f64 = 0.25;
@@ -145,6 +167,8 @@ pub(crate) struct FingerHold {
     relaxed: Option<Moment>,
     relaxes_from: Moment,
     is_short: bool,
+    /// Force at which steps had no effect: its threshold or its stroke stops the drive.
+    blocked: Option<(f64, Moment)>,
 }
 
 impl FingerHold {
@@ -167,6 +191,7 @@ impl FingerHold {
             relaxed: None,
             relaxes_from: now,
             is_short: false,
+            blocked: None,
         }
     }
 
@@ -179,6 +204,11 @@ impl FingerHold {
     pub(crate) fn force_g(&self) -> Option<f64> {
         let forces: Vec<f64> = self.forces.iter().copied().collect();
         median(&forces)
+    }
+
+    /// Units of angle by which it may follow an object that gives way: those that lead to *at most*, and some more.
+    pub(crate) fn travel_max(&self) -> f64 {
+        FOLLOW + 1.5 * (self.range.most_g - self.range.least_g) / self.stiffness
     }
 
     /// Stiffness of the contact, g per unit of angle.
@@ -224,22 +254,29 @@ impl FingerHold {
             self.slid_ratio = Some(slid.max(0.05));
             self.quiet_since = tip.at;
             let more = self.force_g().unwrap_or_default() * SLIP_FACTOR;
-            self.want(more.max(self.needed_g()), TightenCause::Slip);
+            self.want(more.max(self.coming_g()), TightenCause::Slip);
             return;
         }
         if self.slid_ratio.is_none_or(|slid| ratio < slid) {
             self.held_ratio = self.held_ratio.max(ratio);
         }
-        let cause = if is_jump && jump > 0.0 {
-            TightenCause::Load
-        } else {
-            TightenCause::Margin
-        };
-        self.want(self.needed_g(), cause);
+        if is_jump && jump > 0.0 {
+            self.want(self.coming_g(), TightenCause::Load);
+        } else if self.steady_g() > self.wanted_g * HYSTERESIS {
+            self.want(self.steady_g() * HYSTERESIS, TightenCause::Margin);
+        }
+        self.is_short &= self.steady_g() > self.range.most_g * NO_LONGER_SHORT;
     }
 
-    /// Force that the current load needs, with what it will be when a step acts.
-    fn needed_g(&self) -> f64 {
+    /// Force that the current load needs.
+    fn steady_g(&self) -> f64 {
+        let recent = self.tips.iter().rev().take(FORCES);
+        let loads: Vec<f64> = recent.map(|tip| tip.tangential_g).collect();
+        median(&loads).unwrap_or_default() / (self.friction() * (1.0 - MARGIN))
+    }
+
+    /// Force that the load needs when a step acts, if it rises on.
+    fn coming_g(&self) -> f64 {
         let Some(last) = self.tips.back() else {
             return 0.0;
         };
@@ -248,24 +285,18 @@ impl FingerHold {
             let seconds = last.at.since(before.at).as_secs_f64();
             let rise = last.tangential_g - before.tangential_g;
             // Noise is no trend.
-            let is_rise = rise > JUMP_LEAST_G / 2.0 && seconds > 0.0;
+            let is_rise = rise > (JUMP_SHARE * last.normal_g).max(JUMP_LEAST_G) && seconds > 0.0;
             if is_rise {
                 rise / seconds * AHEAD_S
             } else {
                 0.0
             }
         });
-        // The friction acts at the fingertip; the drive's own force may have another scale.
-        let load = last.tangential_g + rise;
-        let normal = load / (self.friction() * (1.0 - MARGIN));
-        let scale = self
-            .force_g()
-            .map_or(1.0, |force| force / last.normal_g.max(1.0));
-        normal * scale.clamp(0.5, 2.0)
+        (last.tangential_g + rise) / (self.friction() * (1.0 - MOVING_MARGIN))
     }
 
     fn want(&mut self, force_g: f64, cause: TightenCause) {
-        self.is_short = force_g > self.range.most_g * 1.02;
+        self.is_short |= force_g > self.range.most_g * HYSTERESIS;
         let force_g = force_g.clamp(self.range.least_g, self.range.most_g);
         if force_g > self.wanted_g {
             (self.wanted_g, self.cause) = (force_g, cause);
@@ -312,6 +343,10 @@ impl FingerHold {
 
     /// Learns the stiffness from a step that has acted.
     fn learn(&mut self, step: Underway, force_g: f64, angle: i16) {
+        let tightens = step.aim_g > step.from_g + self.noise_g;
+        let is_blocked = force_g < step.from_g + 0.3 * (step.aim_g - step.from_g);
+        self.blocked = (tightens && is_blocked)
+            .then(|| (force_g.max(step.from_g), step.at.plus(BLOCKED_PAUSE)));
         let way = f64::from(step.from_angle) - f64::from(angle);
         let change = force_g - step.from_g;
         if way.abs() >= 1.0 && change * way > 0.0 && change.abs() > self.noise_g {
@@ -340,7 +375,7 @@ impl FingerHold {
         } else {
             RELAX_SHARE
         };
-        let least = self.needed_g().max(self.range.least_g);
+        let least = (self.steady_g() * HYSTERESIS).max(self.range.least_g);
         self.wanted_g = (self.wanted_g * (1.0 - share)).max(least.min(self.wanted_g));
     }
 
@@ -350,9 +385,15 @@ impl FingerHold {
         if missing <= dead {
             return None;
         }
+        let is_blocked = |(force_g, until): (f64, Moment)| {
+            seen.expected_g >= NEARLY_BLOCKED * force_g && seen.reading.at < until
+        };
+        if self.blocked.is_some_and(is_blocked) {
+            return None;
+        }
         let room = self.range.most_g - seen.expected_g;
         let steps = (missing / self.stiffness).round().max(1.0);
-        let allowed = (room / self.stiffness).floor();
+        let allowed = (room / (self.stiffness * STIFFER)).floor();
         let steps = steps.min(allowed).min(STEP_MAX);
         if steps < 1.0 {
             return None;
@@ -376,9 +417,11 @@ impl FingerHold {
         if over > dead && self.underway.is_none() {
             return self.step(seen, (over / self.stiffness).ceil().min(STEP_MAX), None);
         }
-        let fits = spare >= 1.25 * self.stiffness + dead;
-        (is_quiet && is_allowed && fits).then_some(())?;
-        self.step(seen, 1.0, None)
+        let steps = ((spare - dead) / self.stiffness * RELAX_PART)
+            .floor()
+            .min(STEP_MAX);
+        (is_quiet && is_allowed && steps >= 1.0).then_some(())?;
+        self.step(seen, steps, None)
     }
 
     fn step(&mut self, seen: Seen, by: f64, cause: Option<TightenCause>) -> Option<HoldStep> {
@@ -391,16 +434,20 @@ impl FingerHold {
             ),
         };
         self.target = (from + by).clamp(0.0, 1000.0);
+        let begun = self.underway;
         self.underway = Some(Underway {
             at: seen.reading.at,
-            from_g: seen.force_g,
-            from_angle: seen.reading.angle,
+            from_g: begun.map_or(seen.force_g, |step| step.from_g),
+            from_angle: begun.map_or(seen.reading.angle, |step| step.from_angle),
             aim_g: seen.expected_g - by * self.stiffness,
         });
-        let counts = by.abs() * 2.0;
+        let counts = (self.target - f64::from(seen.reading.angle)).abs() * 2.0;
+        let is_near = seen.expected_g - by * self.stiffness > NEAR_MOST * self.range.most_g;
+        let fastest = SPEED_BY_STIFFNESS / self.stiffness / if is_near { 4.0 } else { 1.0 };
+        let fastest = fastest.clamp(25.0, 1000.0);
         Some(HoldStep {
             to: nearest_angle(self.target),
-            speed: nearest_speed(counts / STEP_S / 3.0),
+            speed: nearest_speed((counts / STEP_S / COUNTS_PER_SPEED).min(fastest)),
             cause,
         })
     }
@@ -426,5 +473,5 @@ fn nearest_angle(angle: f64) -> Angle {
 /// Speed of a step: never below the slowest at which drives were measured.
 #[expect(clippy::cast_possible_truncation, reason = "clamped")]
 fn nearest_speed(speed: f64) -> Speed {
-    Speed::nearest(speed.clamp(25.0, 200.0).round() as i64)
+    Speed::nearest(speed.max(25.0).round() as i64)
 }
