@@ -3,7 +3,7 @@
 use crate::link::Clock;
 use crate::sim::body_params::file;
 use crate::sim::serve::{SharedHand, rs485};
-use crate::sim::{BodyParams, Scenario, SimConfig, SimHand};
+use crate::sim::{BodyParams, Object, Scenario, SimConfig, SimHand, object_file};
 use crate::transport::{
     BoxedWire, Dial, Endpoint, PortFound, SystemDial, TransportError, WireFailure, pair,
 };
@@ -16,6 +16,7 @@ struct Built {
     seed: u64,
     scenario: Scenario,
     body: Option<String>,
+    object: Option<String>,
     hand: SharedHand,
 }
 
@@ -26,7 +27,7 @@ struct BuiltHands {
     all: Arc<Mutex<Vec<Built>>>,
 }
 
-/// Dials all wires: `sim:` connects in memory to a built-in hand per seed, scenario and body; all others go to the system.
+/// Dials all wires: `sim:` connects in memory to a built-in hand per seed, scenario, body and object; all others go to the system.
 pub struct SimDial {
     system: SystemDial,
     built: BuiltHands,
@@ -56,7 +57,7 @@ impl SimDial {
 }
 
 impl BuiltHands {
-    /// Returns the hand of this seed, scenario and body, creating it if needed. A body file is read only for a new hand, on a
+    /// Returns the hand of this seed, scenario, body and object, creating it if needed. A file is read only for a new hand, on a
     /// blocking thread.
     async fn hand(&self, spec: SimHandSpec) -> Result<SharedHand, TransportError> {
         let scenario: Scenario =
@@ -72,6 +73,10 @@ impl BuiltHands {
             None => BodyParams::default(),
             Some(path) => read_body(path).await?,
         };
+        let object = match spec.object.clone() {
+            None => None,
+            Some(text) => Some(read_object(text, scenario).await?),
+        };
         if let Some(hand) = self.known(&spec, scenario) {
             return Ok(hand);
         }
@@ -79,6 +84,7 @@ impl BuiltHands {
             seed: spec.seed,
             scenario,
             body,
+            object,
             ..SimConfig::default()
         };
         let began = self.clock.instant(self.clock.now());
@@ -90,6 +96,7 @@ impl BuiltHands {
             seed: spec.seed,
             scenario,
             body: spec.body,
+            object: spec.object,
             hand: hand.clone(),
         });
         Ok(hand)
@@ -98,7 +105,10 @@ impl BuiltHands {
     fn known(&self, spec: &SimHandSpec, scenario: Scenario) -> Option<SharedHand> {
         let all = self.all.lock().unwrap_or_else(PoisonError::into_inner);
         let is_it = |built: &&Built| {
-            built.seed == spec.seed && built.scenario == scenario && built.body == spec.body
+            built.seed == spec.seed
+                && built.scenario == scenario
+                && built.body == spec.body
+                && built.object == spec.object
         };
         all.iter().find(is_it).map(|built| built.hand.clone())
     }
@@ -109,6 +119,7 @@ struct SimHandSpec {
     seed: u64,
     scenario: String,
     body: Option<String>,
+    object: Option<String>,
 }
 
 async fn read_body(path: String) -> Result<BodyParams, TransportError> {
@@ -117,6 +128,15 @@ async fn read_body(path: String) -> Result<BodyParams, TransportError> {
         Ok(Ok(body)) => Ok(body),
         Ok(Err(error)) => Err(failed(WireFailure::NoBody(error.to_string()))),
         Err(gone) => Err(failed(WireFailure::NoBody(gone.to_string()))),
+    }
+}
+
+async fn read_object(text: String, scenario: Scenario) -> Result<Object, TransportError> {
+    let read = tokio::task::spawn_blocking(move || object_file::in_scenario(&text, scenario));
+    match read.await {
+        Ok(Ok(object)) => Ok(object),
+        Ok(Err(error)) => Err(failed(WireFailure::NoObject(error.to_string()))),
+        Err(gone) => Err(failed(WireFailure::NoObject(gone.to_string()))),
     }
 }
 
@@ -137,6 +157,7 @@ impl Dial for SimDial {
             seed,
             scenario,
             body,
+            object,
         } = hand
         else {
             return self.system.dial(endpoint);
@@ -145,6 +166,7 @@ impl Dial for SimDial {
             seed: *seed,
             scenario: scenario.clone(),
             body: body.clone(),
+            object: object.clone(),
         };
         let built = self.built.clone();
         Box::pin(async move {
@@ -176,6 +198,7 @@ mod tests {
             seed,
             scenario: "idle".into(),
             body: None,
+            object: None,
         };
         dial.built.hand(spec).await.unwrap()
     }
@@ -214,6 +237,7 @@ mod tests {
             seed: 1,
             scenario: "party".into(),
             body: None,
+            object: None,
         };
         let error = SimDial::new(Clock::start())
             .dial(&endpoint)
@@ -232,6 +256,7 @@ mod tests {
             seed: 1,
             scenario: "free".into(),
             body: Some(path.display().to_string()),
+            object: None,
         };
         std::fs::write(&path, "[joint.index]\nlatency_ms = 900\n").unwrap();
         let error = dial.dial(&endpoint).await.err().unwrap().to_string();
@@ -243,5 +268,22 @@ mod tests {
             .hand
             .with(|hand, _| hand.body().joints[crate::hand::Dof::Index].latency_ms);
         assert_eq!(latency, 90.0);
+    }
+
+    #[tokio::test(start_paused = true)]
+    async fn an_object_is_held_by_name_and_an_unknown_one_is_said_in_words() {
+        let dial = SimDial::new(Clock::start());
+        let hand = |object: &str| Endpoint::Sim {
+            seed: 1,
+            scenario: "free".into(),
+            body: None,
+            object: Some(object.into()),
+        };
+        let error = dial.dial(&hand("rock")).await.err().unwrap().to_string();
+        assert!(error.contains("cup, egg, sponge"), "{error}");
+        drop(dial.dial(&hand("egg")).await.unwrap());
+        let built = dial.built.all.lock().unwrap();
+        assert_eq!(built.len(), 1);
+        assert_eq!(built[0].object.as_deref(), Some("egg"));
     }
 }

@@ -200,6 +200,7 @@ Hands are named by URL:
   sim:                                     the built-in simulated hand
   sim:?seed=7&scenario=grasp               the same, playing a scenario
   sim:?body=worn.toml                      the same, with a body of yours
+  sim:?object=egg                          the same, with an object to hold
   rs485:/dev/ttyUSB0?baud=115200&id=1      RS485, the maker's own framing
   rtu:/dev/ttyUSB0?baud=115200&id=1        Modbus RTU on the same kind of port
   tcp:192.168.11.210:6000?unit=255         Modbus TCP

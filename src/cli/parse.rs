@@ -4,6 +4,7 @@ use crate::hand::kinematics::Side;
 use crate::hand::register::{self, REGISTERS, Register};
 use crate::hand::{Angle, Dof, Force, HandId, Speed};
 use crate::sim::body_params::file;
+use crate::sim::object_file;
 use crate::transport::{Endpoint, EndpointError};
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -55,17 +56,19 @@ pub(crate) fn number<T: FromStr + PartialOrd>(
     number.ok_or_else(|| format!("'{text}' is not {what}"))
 }
 
-/// Parses a hand's URL. A body file that it names must be valid: otherwise the hand would fail to answer without an
+/// Parses a hand's URL. The files of body and object that it names must be valid: otherwise the hand would fail to answer without an
 /// explanation.
 pub(crate) fn hand(text: &str) -> Result<Endpoint, String> {
     let endpoint: Endpoint = text
         .parse()
         .map_err(|error: EndpointError| error.to_string())?;
-    if let Endpoint::Sim {
-        body: Some(path), ..
-    } = &endpoint
-    {
-        file::read(Path::new(path)).map_err(|error| error.to_string())?;
+    if let Endpoint::Sim { body, object, .. } = &endpoint {
+        if let Some(path) = body {
+            file::read(Path::new(path)).map_err(|error| error.to_string())?;
+        }
+        if let Some(text) = object {
+            object_file::named_or_file(text).map_err(|error| error.to_string())?;
+        }
     }
     Ok(endpoint)
 }

@@ -5,8 +5,10 @@ use crate::cli::parse::{HandIds, hand_ids};
 use crate::cli::wires::{ServedWire, WireArgs, failed};
 use crate::shell::interrupt::Interrupt;
 use crate::sim::body_params::file;
+use crate::sim::object_file::{self, ObjectError};
 use crate::sim::{
-    BodyParams, Personality, SWITCHES, Scenario, SharedHand, SimConfig, SimHand, SimHands,
+    BodyParams, NamedObject, Object, Personality, SWITCHES, Scenario, SharedHand, SimConfig,
+    SimHand, SimHands,
 };
 use anyhow::Context as _;
 use std::fmt::Write as _;
@@ -39,13 +41,19 @@ pub(crate) struct SimArgs {
     /// The body of the hands, from a file; --print-body writes one to start from
     #[arg(long, value_name = "FILE", value_parser = body)]
     body: Option<Box<BodyParams>>,
+    /// The object between the fingers: cup, egg, sponge, block, tube, can or a file; --print-object writes one to start from
+    #[arg(long, value_name = "OBJECT", value_parser = object)]
+    object: Option<Box<Object>>,
     /// Print the default body with its units, and end
     #[arg(long, exclusive = true, group = "wire")]
     print_body: bool,
+    /// Print an object with its units, and end
+    #[arg(long, value_name = "NAME", exclusive = true, group = "wire", value_parser = named_object)]
+    print_object: Option<NamedObject>,
 }
 
 const SIM_HELP: &str = "\
-Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n  handscope sim --print-body > worn.toml\n  handscope sim --tcp 127.0.0.1:6000 --body worn.toml\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix, SIGUSR1 switches them off for a second, and 'power cycled' is printed once they are back; what was not saved is gone. SIGUSR2 freezes their readings while their joints keep moving, and the next one undoes it; 'feedback frozen' and 'feedback live' are printed.
+Examples:\n  handscope sim --rs485 /tmp/hand --tcp 127.0.0.1:6000\n  handscope sim --rtu /tmp/hand-rtu\n  handscope sim --slcan /tmp/adapter --can vcan0\n  handscope sim --tcp 127.0.0.1:6000 --scenario grasp --seed 7\n  handscope sim --rs485 /tmp/bus --id 1,2,3\n  handscope sim --print-body > worn.toml\n  handscope sim --tcp 127.0.0.1:6000 --body worn.toml\n  handscope sim --print-object egg > duck-egg.toml\n  handscope sim --tcp 127.0.0.1:6000 --object duck-egg.toml\n\nIt runs until Ctrl-C. All wires lead to the same hands. On Unix, SIGUSR1 switches them off for a second, and 'power cycled' is printed once they are back; what was not saved is gone. SIGUSR2 freezes their readings while their joints keep moving, and the next one undoes it; 'feedback frozen' and 'feedback live' are printed.
 On Modbus TCP the unit id selects the hand; 255 means the first, and a single hand answers to every id.";
 
 /// Text below the list of options.
@@ -57,6 +65,13 @@ pub(crate) fn help() -> String {
 pub(crate) async fn run(out: &mut Out, args: &SimArgs) -> anyhow::Result<()> {
     if args.print_body {
         return out.lines(file::print(&BodyParams::default()).trim_end().lines());
+    }
+    if let Some(named) = args.print_object {
+        return out.lines(object_file::print(&named.object()).trim_end().lines());
+    }
+    if args.object.is_some() && !object_file::fits_scenario(args.scenario) {
+        let got = args.scenario.name();
+        return Err(ObjectError::Scenario { got }.into());
     }
     let mut interrupt = Interrupt::listen()?;
     let power = Interrupt::power_cut()?;
@@ -115,6 +130,7 @@ fn hands(args: &SimArgs) -> Option<SimHands> {
             scenario: args.scenario,
             personality: personality(&args.quirks),
             body: args.body.as_deref().copied().unwrap_or_default(),
+            object: args.object.as_deref().copied(),
         });
         SharedHand::new(hand, begun)
     });
@@ -148,6 +164,19 @@ fn few_ids(text: &str) -> Result<HandIds, String> {
 fn body(path: &str) -> Result<Box<BodyParams>, String> {
     let body = file::read(Path::new(path)).map_err(|error| error.to_string())?;
     Ok(Box::new(body))
+}
+
+/// Returns a named object, or reads an object file.
+fn object(text: &str) -> Result<Box<Object>, String> {
+    let object = object_file::named_or_file(text).map_err(|error| error.to_string())?;
+    Ok(Box::new(object))
+}
+
+fn named_object(name: &str) -> Result<NamedObject, String> {
+    NamedObject::by_name(name).ok_or_else(|| {
+        let known = NamedObject::ALL.map(NamedObject::name).join(", ");
+        format!("'{name}' is not an object: choose {known}")
+    })
 }
 
 /// Name and value of a switch.

@@ -385,3 +385,239 @@ fn pull_at(pull: &PullLoad, now_s: f64) -> DVec2 {
 fn vector(length: f64, direction_deg: f64) -> DVec2 {
     DVec2::from_angle(direction_deg.to_radians()) * length
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::object::{Friction, Loads, NamedObject, RandomPulls, listed};
+
+    const AFTER_LIFT_MS: u64 = 2000;
+
+    /// A block of 200 g with a friction of exactly 0.5, lifted at once.
+    fn block() -> Object {
+        Object {
+            mass_g: 200.0,
+            friction: Friction {
+                sticking: 0.5,
+                sliding_ratio: 0.8,
+                scatter: 0.0,
+            },
+            loads: Loads {
+                lift_after_s: Some(0.0),
+                ..Loads::NONE
+            },
+            ..Object::none()
+        }
+    }
+
+    fn pull(force_g: f64, rise_ms: f64) -> PullLoad {
+        PullLoad {
+            at_s: 1.0,
+            force_g,
+            direction_deg: 270.0,
+            rise_ms,
+            lasts_ms: 600_000.0,
+        }
+    }
+
+    fn pulled(force_g: f64, rise_ms: f64) -> Object {
+        let mut object = block();
+        object.loads.pulls = listed(&[pull(force_g, rise_ms)]);
+        object
+    }
+
+    fn run(held: &mut Held, normal_g: [f64; 5], ms: u64) -> HeldState {
+        for _ in 0..ms {
+            held.step(&PerFinger::new(normal_g), false);
+        }
+        held.state(false)
+    }
+
+    fn after(object: &Object, normal_g: [f64; 5], ms: u64) -> HeldState {
+        run(&mut Held::new(object, 1), normal_g, ms)
+    }
+
+    fn carried(state: &HeldState) -> DVec2 {
+        let fingers = state.fingers.as_array().iter();
+        fingers.map(|finger| finger.tangential_g).sum()
+    }
+
+    #[test]
+    fn the_loads_of_the_fingers_add_up_to_the_external_load_at_rest() {
+        for normal_g in [
+            [0.0, 0.0, 0.0, 900.0, 900.0],
+            [300.0, 400.0, 500.0, 600.0, 900.0],
+            [20.0, 0.0, 40.0, 2000.0, 1000.0],
+        ] {
+            for direction_deg in [0.0, 77.0, 270.0, 400.0] {
+                for mass_g in [1.0, 20.0, 300.0] {
+                    let mut object = pulled(120.0, 50.0);
+                    object.mass_g = mass_g;
+                    let turn = Turn {
+                        at_s: 0.5,
+                        direction_deg,
+                        share: 0.7,
+                    };
+                    object.loads.turns = listed(&[turn]);
+                    let state = after(&object, normal_g, 4000);
+                    let rest = carried(&state) - state.external_g;
+                    assert!(state.held && rest.length() < 0.5, "{state:?}");
+                    let load = vector(0.7 * mass_g, direction_deg) + vector(120.0, 270.0);
+                    assert!((state.external_g - load).length() < 0.01, "{state:?}");
+                    for (_, finger) in state.fingers.iter() {
+                        let ratio = finger.tangential_g.length() / finger.normal_g.max(1.0);
+                        assert!(ratio <= 0.5 + 1e-9, "{finger:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_turned_hand_turns_the_load() {
+        let mut object = block();
+        let turn = |at_s, direction_deg| Turn {
+            at_s,
+            direction_deg,
+            share: 1.0,
+        };
+        object.loads.turns = listed(&[turn(1.0, 270.0), turn(2.0, 360.0)]);
+        let mut held = Held::new(&object, 1);
+        let normal_g = [0.0, 0.0, 0.0, 600.0, 600.0];
+        for (ms, degrees) in [(1000, 270.0), (500, 315.0), (700, 360.0)] {
+            let state = run(&mut held, normal_g, ms);
+            let off = (carried(&state) - vector(200.0, degrees)).length();
+            assert!(state.held && off < 25.0, "{degrees} {state:?}");
+        }
+    }
+
+    #[test]
+    fn nothing_holds_without_normal_force_and_the_table_carries_until_the_lift() {
+        let mut object = block();
+        object.loads.lift_after_s = Some(1.5);
+        let mut held = Held::new(&object, 1);
+        let state = run(&mut held, [0.0, 0.0, 0.0, 800.0, 0.0], 5000);
+        assert!(!state.lifted && state.lost.is_none(), "one finger lifts nothing");
+        let state = run(&mut held, [0.0, 0.0, 0.0, 800.0, 800.0], 1400);
+        assert!(!state.lifted && carried(&state) == DVec2::ZERO);
+        let state = run(&mut held, [0.0, 0.0, 0.0, 800.0, 800.0], 2000);
+        assert!(state.held && !state.slides);
+        let state = run(&mut held, [0.0; 5], 2);
+        assert_eq!(state.lost, Some(ObjectLoss::Dropped));
+        assert!(!held.is_present() && carried(&state) == DVec2::ZERO);
+        let state = run(&mut held, [0.0; 5], 2000);
+        assert_eq!(state.lost, Some(ObjectLoss::Dropped));
+        held.step(&PerFinger::splat(0.0), true);
+        assert!(held.is_present());
+    }
+
+    #[test]
+    fn too_little_normal_force_lets_it_slide_out() {
+        let weak = after(&block(), [0.0, 0.0, 0.0, 190.0, 190.0], AFTER_LIFT_MS);
+        assert_eq!(weak.lost, Some(ObjectLoss::Dropped));
+        let firm = after(&block(), [0.0, 0.0, 0.0, 215.0, 215.0], AFTER_LIFT_MS);
+        assert!(firm.held && firm.slid_mm == 0.0, "{firm:?}");
+    }
+
+    #[test]
+    fn the_finger_with_less_friction_slips_first_and_the_others_take_over() {
+        let mut held = Held::new(&block(), 1);
+        let normal_g = [0.0, 0.0, 100.0, 500.0, 500.0];
+        let mut slipped = false;
+        for _ in 0..AFTER_LIFT_MS {
+            held.step(&PerFinger::new(normal_g), false);
+            let state = held.state(false);
+            slipped |= state.fingers[Finger::Middle].slides;
+            assert!(!state.fingers[Finger::Index].slides && !state.slides);
+        }
+        let state = held.state(false);
+        assert!(slipped && state.held && state.lost.is_none());
+        let load = |finger: Finger| state.fingers[finger].tangential_g.length();
+        assert!(load(Finger::Middle) <= 50.0 && load(Finger::Index) > 70.0);
+        assert!((load(Finger::Index) - load(Finger::Thumb)).abs() < 1.0);
+        assert!((carried(&state) - state.external_g).length() < 0.5);
+    }
+
+    #[test]
+    fn a_pull_drops_it_above_the_friction_limit_and_more_force_prevents_that() {
+        let pinch = |normal_g: f64| [0.0, 0.0, 0.0, normal_g, normal_g];
+        // 500 g of normal force on two pads hold 500 g.
+        let under = after(&pulled(280.0, 100.0), pinch(500.0), 3000);
+        assert!(under.held && under.slid_mm == 0.0, "{under:?}");
+        let over = after(&pulled(320.0, 100.0), pinch(500.0), 3000);
+        assert_eq!(over.lost, Some(ObjectLoss::Dropped));
+        let firm = after(&pulled(320.0, 100.0), pinch(600.0), 3000);
+        assert!(firm.held && firm.slid_mm == 0.0, "{firm:?}");
+    }
+
+    #[test]
+    fn a_slide_ends_with_more_normal_force_and_not_by_itself() {
+        let start = |normal_g: [f64; 5]| {
+            let mut held = Held::new(&pulled(305.0, 1000.0), 1);
+            let mut state = held.state(false);
+            while !(state.slides && state.slid_mm > 1.0) {
+                state = run(&mut held, [0.0, 0.0, 0.0, 500.0, 500.0], 1);
+                assert!(state.lost.is_none(), "it slides before it is lost");
+            }
+            run(&mut held, normal_g, 1000)
+        };
+        let same = start([0.0, 0.0, 0.0, 500.0, 500.0]);
+        assert_eq!(same.lost, Some(ObjectLoss::Dropped));
+        let more = start([0.0, 0.0, 0.0, 1000.0, 1000.0]);
+        assert!(more.held && !more.slides && more.slid_mm < TRAVEL_MM, "{more:?}");
+        assert!(more.fingers[Finger::Index].slid_mm.y < -1.0, "{more:?}");
+    }
+
+    #[test]
+    fn an_object_is_taken_away_and_put_back() {
+        let mut object = block();
+        object.loads.taken_away_at_s = Some(1.0);
+        object.loads.put_back_at_s = Some(2.0);
+        let mut held = Held::new(&object, 1);
+        let pinch = [0.0, 0.0, 0.0, 600.0, 600.0];
+        assert!(run(&mut held, pinch, 900).held);
+        assert_eq!(run(&mut held, pinch, 200).lost, Some(ObjectLoss::TakenAway));
+        assert!(!run(&mut held, [0.0; 5], 800).lifted && !held.is_present());
+        assert_eq!(run(&mut held, [0.0; 5], 200).lost, None);
+        assert!(held.is_present());
+        assert!(run(&mut held, pinch, 500).held, "it can be lifted again");
+    }
+
+    #[test]
+    fn random_pulls_depend_on_the_seed_alone_and_stay_in_their_range() {
+        let mut object = block();
+        object.loads.random_pulls = Some(RandomPulls {
+            every_s: 1.0,
+            force_g: [50.0, 100.0],
+            rise_ms: [10.0, 200.0],
+        });
+        let loads = |seed: u64| -> Vec<DVec2> {
+            let mut held = Held::new(&object, seed);
+            let normal_g = [0.0, 0.0, 0.0, 2000.0, 2000.0];
+            let weight = vector(200.0, 270.0);
+            (0..9000)
+                .map(|_| run(&mut held, normal_g, 1).external_g - weight)
+                .skip(900)
+                .collect()
+        };
+        let first = loads(3);
+        assert_eq!(first, loads(3));
+        assert_ne!(first, loads(4));
+        let most = first.iter().map(|load| load.length()).fold(0.0, f64::max);
+        assert!((50.0..=100.1).contains(&most), "{most}");
+    }
+
+    #[test]
+    fn friction_scatters_from_pad_to_pad_and_from_grip_to_grip() {
+        let mut held = Held::new(&NamedObject::Egg.object(), 1);
+        held.lift();
+        let first = held.pads.map(|pad| pad.friction);
+        held.lift();
+        let second = held.pads.map(|pad| pad.friction);
+        assert_ne!(first, second);
+        assert_ne!(first[Finger::Index], first[Finger::Thumb]);
+        for (_, friction) in first.iter().chain(second.iter()) {
+            assert!((0.3..0.6).contains(friction), "{friction}");
+        }
+    }
+}

@@ -400,6 +400,119 @@ impl NamedObject {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hand::register::{ANGLE_SET, FORCE_SET, SPEED_SET};
+    use crate::hand::{Finger, Moment};
+    use crate::sim::{HeldState, ObjectLoss, SimConfig, SimHand};
+
+    fn at(ms: u64) -> Moment {
+        Moment::from_micros(ms * 1000)
+    }
+
+    fn around(object: Object) -> SimHand {
+        SimHand::new(SimConfig {
+            scenario: Scenario::Free,
+            object: Some(object),
+            ..SimConfig::default()
+        })
+    }
+
+    fn set(hand: &mut SimHand, address: u16, values: [i16; 6], ms: u64) {
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        hand.write(address, &bytes, at(ms)).unwrap();
+    }
+
+    /// Closes all fingers slowly at this force threshold.
+    fn close(hand: &mut SimHand, force_g: i16, ms: u64) {
+        set(hand, SPEED_SET.address, [100; 6], ms);
+        set(hand, FORCE_SET.address, [force_g; 6], ms);
+        set(hand, ANGLE_SET.address, [0, 0, 0, 0, 0, 1000], ms);
+    }
+
+    fn open(hand: &mut SimHand, ms: u64) {
+        set(hand, SPEED_SET.address, [1000; 6], ms);
+        set(hand, ANGLE_SET.address, [1000; 6], ms);
+    }
+
+    /// State of a grip 10 s after it began.
+    fn gripped(object: Object, force_g: i16) -> HeldState {
+        let mut hand = around(object);
+        close(&mut hand, force_g, 0);
+        hand.advance_to(at(10_000));
+        hand.held()
+    }
+
+    #[test]
+    fn each_named_object_is_held_at_some_force_and_drops_at_a_smaller_one() {
+        for (named, holds_g, drops_g) in [
+            (NamedObject::Cup, 150, 30),
+            (NamedObject::Egg, 80, 15),
+            (NamedObject::Sponge, 60, 2),
+            (NamedObject::Block, 250, 60),
+            (NamedObject::Tube, 200, 40),
+            (NamedObject::Can, 350, 70),
+        ] {
+            let held = gripped(named.object(), holds_g);
+            assert!(held.held && !held.broken, "{named:?} {held:?}");
+            let dropped = gripped(named.object(), drops_g);
+            assert_eq!(dropped.lost, Some(ObjectLoss::Dropped), "{named:?} {dropped:?}");
+        }
+    }
+
+    #[test]
+    fn a_lost_object_is_gone_from_all_fingers_until_the_hand_is_open() {
+        let mut hand = around(NamedObject::Block.object());
+        close(&mut hand, 60, 0);
+        hand.advance_to(at(10_000));
+        assert!(hand.true_loads().as_array().iter().all(|load| *load == 0.0));
+        open(&mut hand, 10_000);
+        hand.advance_to(at(12_000));
+        assert_eq!(hand.held().lost, None);
+        close(&mut hand, 400, 12_000);
+        hand.advance_to(at(22_000));
+        assert!(hand.held().held, "{:?}", hand.held());
+    }
+
+    #[test]
+    fn an_object_put_back_between_closed_fingers_touches_without_force() {
+        let mut object = NamedObject::Block.object();
+        object.loads.taken_away_at_s = Some(1.0);
+        object.loads.put_back_at_s = Some(3.0);
+        let mut hand = around(object);
+        close(&mut hand, 400, 0);
+        hand.advance_to(at(20_000));
+        assert!(hand.true_loads().as_array().iter().all(|load| *load < 400.0));
+        assert_ne!(hand.held().lost, Some(ObjectLoss::TakenAway));
+    }
+
+    #[test]
+    fn an_egg_breaks_and_a_can_is_dented_under_too_much_force() {
+        assert!(gripped(NamedObject::Egg.object(), 600).broken);
+        let mut hand = around(NamedObject::Can.object());
+        close(&mut hand, 1500, 0);
+        hand.advance_to(at(10_000));
+        let loads = hand.true_loads();
+        assert!(loads[Finger::Index] <= 800.1 && loads[Finger::Index] > 500.0);
+        let dented = hand.true_angles()[Dof::Index];
+        open(&mut hand, 10_000);
+        hand.advance_to(at(12_000));
+        close(&mut hand, 300, 12_000);
+        hand.advance_to(at(22_000));
+        let new = hand.true_angles()[Dof::Index];
+        assert!(dented < new - 50.0, "a new can is whole: {dented} {new}");
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_object_however_often_it_is_read() {
+        let state = |each_ms: u64| {
+            let mut hand = around(NamedObject::Tube.object());
+            close(&mut hand, 200, 0);
+            for ms in (0..=6000).step_by(usize::try_from(each_ms).unwrap()) {
+                hand.advance_to(at(ms));
+            }
+            hand.held()
+        };
+        assert_eq!(state(1), state(1000));
+    }
 
     #[test]
     fn a_two_stage_compression_and_its_force_belong_together() {

@@ -225,6 +225,9 @@ pub enum WireFailure {
     /// The built-in hand cannot have this body; the message about the file.
     #[error("{0}")]
     NoBody(String),
+    /// The built-in hand cannot hold this object; the message about it.
+    #[error("{0}")]
+    NoObject(String),
     /// The CAN adapter reports that it could not open its channel.
     #[error("the CAN adapter could not join the bus")]
     OffBus,

@@ -5,7 +5,8 @@ use handscope::hand::grip::{Grip, GripEstimator, GripState, GripThresholds};
 use handscope::hand::register::{ANGLE_SET, FORCE_SET, SPEED_SET, STATE, TOUCH};
 use handscope::hand::{Dof, Finger, Groups, HandSample, Moment, PerDof, PerFinger, Reply, Span};
 use handscope::sim::body_params::random;
-use handscope::sim::{Object, Obstacle, Pull, PullEnd, Scenario, SimConfig, SimHand};
+use handscope::sim::object::{Friction, Loads, PullLoad, RandomPulls, listed};
+use handscope::sim::{Object, ObjectLoss, Obstacle, Scenario, SimConfig, SimHand};
 
 /// What happened to what was held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,9 +21,8 @@ pub(crate) enum EventKind {
 
 /// Grasps of one body.
 const GRASPS: u64 = 20;
-/// When the fingers close, when something happens to the object, when they open, and the end, ms into a grasp.
+/// When the fingers close, when they open, and the end, ms into a grasp.
 const CLOSES_MS: u64 = 700;
-const EVENT_MS: u64 = 6000;
 const OPENS_MS: u64 = 8500;
 const ENDS_MS: u64 = 10_500;
 /// A state is steady once it lasted so long, ms.
@@ -192,13 +192,43 @@ struct Plan {
     targets: PerDof<i16>,
     speed: i16,
     force: i16,
-    pull: Option<Pull>,
-    vanishes: bool,
     opens: i16,
 }
 
+/// Loads of an object that is held by so much normal force, g, with this friction: some pull it out, some only pull, some take it away.
+fn loads(chance: &mut fastrand::Rng, normal_g: f64, friction: f64) -> Loads {
+    let mut loads = Loads {
+        lift_after_s: Some(1.0),
+        ..Loads::NONE
+    };
+    let event = chance.u8(..10);
+    let mut pull = |share: f64, lasts_ms: f64| {
+        loads.pulls = listed(&[PullLoad {
+            at_s: 1.0 + chance.f64(),
+            force_g: share * normal_g,
+            direction_deg: 360.0 * chance.f64(),
+            rise_ms: 150.0 + 750.0 * chance.f64(),
+            lasts_ms,
+        }]);
+    };
+    match event {
+        0..=3 => pull(1.6 * friction, 2000.0),
+        4..=5 => pull(0.05, 300.0),
+        6 => loads.taken_away_at_s = Some(2.0),
+        7 => {
+            loads.random_pulls = Some(RandomPulls {
+                every_s: 0.8,
+                force_g: [0.0, 0.05 * normal_g],
+                rise_ms: [50.0, 500.0],
+            })
+        }
+        _ => {}
+    }
+    loads
+}
+
 impl Plan {
-    fn draw(chance: &mut fastrand::Rng, begins: u64) -> Self {
+    fn draw(chance: &mut fastrand::Rng) -> Self {
         let angle = f64::from(chance.u16(350..750));
         let stiffness = 40f64.powf(chance.f64()) * 1.0;
         let breaks_at_g = (chance.u8(..6) == 0).then_some(700.0);
@@ -207,46 +237,41 @@ impl Plan {
             let misses = kind == 0 || dof == Dof::ThumbRotate || chance.u8(..5) == 0;
             let own = angle + f64::from(chance.i16(-40..40));
             (!misses).then_some(Obstacle {
-                angle: own,
-                stiffness,
                 breaks_at_g,
+                ..Obstacle::at(own, stiffness)
             })
         });
         let bends = chance.i16(0..300);
-        let event = chance.u8(..10);
-        let end = match event {
-            0..=3 => Some(PullEnd::Lost),
-            4 => Some(PullEnd::Held),
-            5 => Some(PullEnd::LetGo),
-            _ => None,
+        let targets = PerDof::from_fn(|dof| match dof {
+            Dof::ThumbRotate => 500,
+            _ if chance.u8(..8) == 0 => 1000,
+            _ => bends,
+        });
+        let force = match chance.u8(..10) {
+            0 => chance.i16(2400..2900),
+            _ => chance.i16(80..800),
         };
-        let is_tug = end == Some(PullEnd::LetGo);
+        let touching = Dof::ALL.into_iter().filter(|dof| {
+            contacts[*dof].is_some_and(|contact| f64::from(targets[*dof]) < contact.angle)
+        });
+        // A relaxed grip keeps nine tenths of the threshold.
+        let normal_g = 0.9 * f64::from(force) * touching.map(|_| 1.0).sum::<f64>();
+        let sticking = 0.4 + 0.5 * chance.f64();
         Self {
-            object: Object { contacts },
-            targets: PerDof::from_fn(|dof| match dof {
-                Dof::ThumbRotate => 500,
-                _ if chance.u8(..8) == 0 => 1000,
-                _ => bends,
-            }),
-            speed: chance.i16(150..1000),
-            force: match chance.u8(..10) {
-                0 => chance.i16(2400..2900),
-                _ => chance.i16(80..800),
-            },
-            pull: end.map(|end| Pull {
-                at_ms: begins + EVENT_MS,
-                sticks_ms: chance.u64(20..400),
-                slides_ms: chance.u64(120..900),
-                friction: if is_tug {
-                    0.08 * chance.f64()
-                } else {
-                    0.15 + 0.35 * chance.f64()
+            object: Object {
+                mass_g: (normal_g * (0.02 + 0.06 * chance.f64())).max(2.0),
+                friction: Friction {
+                    sticking,
+                    sliding_ratio: 0.7 + 0.25 * chance.f64(),
+                    scatter: 0.05,
                 },
-                turn_deg: if is_tug { 10.0 } else { 90.0 * chance.f64() },
-                grip: 0.5 + 0.5 * chance.f64(),
-                end,
-            }),
-            vanishes: event == 6,
+                taper_per_mm: 0.04 * chance.f64(),
+                loads: loads(chance, normal_g, sticking),
+                ..Object::touched_at(contacts)
+            },
+            targets,
+            speed: chance.i16(150..1000),
+            force,
             opens: chance.i16(500..1000),
         }
     }
@@ -268,9 +293,8 @@ fn grasp(
     chance: &mut fastrand::Rng,
     table: &mut GripTable,
 ) {
-    let plan = Plan::draw(chance, begins);
+    let plan = Plan::draw(chance);
     hand.set_object(&plan.object);
-    hand.set_pull(None);
     let mut truth = Truth::default();
     let mut seen = Seen::default();
     for ms in begins..begins + ENDS_MS {
@@ -280,9 +304,7 @@ fn grasp(
                 write(hand, SPEED_SET.address, PerDof::splat(plan.speed), ms);
                 write(hand, FORCE_SET.address, PerDof::splat(plan.force), ms);
                 write(hand, ANGLE_SET.address, plan.targets, ms);
-                hand.set_pull(plan.pull);
             }
-            EVENT_MS if plan.vanishes => hand.set_object(&Object::none()),
             OPENS_MS => {
                 write(hand, SPEED_SET.address, PerDof::splat(plan.opens), ms);
                 write(hand, ANGLE_SET.address, PerDof::splat(1000), ms);
@@ -294,7 +316,7 @@ fn grasp(
             seen.take(&grip, &truth, ms, table);
         }
     }
-    seen.end(&truth, &plan, table);
+    seen.end(&truth, table);
     table.count += 1;
 }
 
@@ -317,6 +339,7 @@ pub(crate) struct Truth {
     grasp: Option<GripState>,
     since: u64,
     slid: bool,
+    dropped: bool,
 }
 
 impl Truth {
@@ -324,7 +347,9 @@ impl Truth {
         let angles = hand.true_angles();
         let loads = hand.true_loads();
         let slides = hand.object_slides();
-        self.slid |= slides;
+        // What the opening fingers let go slides and falls, too.
+        self.slid |= slides && !opens;
+        self.dropped |= hand.held().lost == Some(ObjectLoss::Dropped) && !opens;
         for (finger, truth) in self.fingers.iter_mut() {
             let angle = match finger {
                 // Both joints of the thumb move it.
@@ -512,7 +537,7 @@ impl Seen {
         }
     }
 
-    fn end(&self, truth: &Truth, plan: &Plan, table: &mut GripTable) {
+    fn end(&self, truth: &Truth, table: &mut GripTable) {
         for (finger, known) in truth.fingers.iter() {
             if let Some(lost_at) = known.lost_at {
                 let told = self.lost_at[finger].map(|told| told - lost_at);
@@ -523,9 +548,8 @@ impl Seen {
             .fingers
             .iter()
             .filter_map(|(_, finger)| finger.lost_at);
-        let is_pulled_out = plan.pull.is_some_and(|pull| pull.end == PullEnd::Lost);
         match lost_at.min() {
-            Some(lost_at) if truth.slid && is_pulled_out => {
+            Some(lost_at) if truth.slid && truth.dropped => {
                 table.slides += 1;
                 table.slides_told += u64::from(self.slipped_at.is_some_and(|told| told < lost_at));
             }

@@ -20,6 +20,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
         seed: 1,
         scenario: "idle".into(),
         body: None,
+        object: None,
     };
     let mut scene = Scene::open(Time::Real, hand)?;
     rest(&mut scene, WARM);

@@ -42,6 +42,7 @@ fn pictures(report: &mut Report) -> Result<(), Failure> {
             seed: 1,
             scenario: "grasp".into(),
             body: None,
+            object: None,
         },
         size: (1440, 900),
         scale: 1.0,

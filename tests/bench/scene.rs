@@ -63,6 +63,7 @@ impl Scene {
             seed: 1,
             scenario: "grasp".into(),
             body: None,
+            object: None,
         };
         Self::open(time, hand)
     }

@@ -146,6 +146,7 @@ fn endpoint(args: &SnapshotArgs) -> Endpoint {
         seed: args.seed,
         scenario: args.scenario.unwrap_or_default().name().into(),
         body: None,
+        object: None,
     })
 }
 

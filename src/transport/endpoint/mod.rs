@@ -32,6 +32,8 @@ pub const SCENARIOS: [&str; 9] = [
     "extremes",
     "frozen",
 ];
+/// Scenarios in which an object can be chosen.
+pub const OBJECT_SCENARIOS: [&str; 5] = [DEFAULT_SCENARIO, "free", "rigid", "fragile", "grasp"];
 
 /// Address and protocol of a hand. The spelling is that of [`fmt::Display`] and `FromStr`.
 ///
@@ -45,7 +47,7 @@ pub const SCENARIOS: [&str; 9] = [
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Endpoint {
-    /// `sim:?seed=7&scenario=grasp&body=worn.toml`: the built-in hand, in this process.
+    /// `sim:?seed=7&scenario=grasp&body=worn.toml&object=cup`: the built-in hand, in this process.
     Sim {
         /// Seed of its random numbers.
         seed: u64,
@@ -53,6 +55,8 @@ pub enum Endpoint {
         scenario: String,
         /// File of its body; `None` for the default body.
         body: Option<String>,
+        /// Name or file of the object between its fingers; `None` for that of the scenario.
+        object: Option<String>,
     },
     /// `rs485:/dev/ttyUSB0?baud=115200&id=1`: private framing.
     Rs485(SerialLine),
@@ -119,6 +123,7 @@ impl Endpoint {
             seed: 1,
             scenario: DEFAULT_SCENARIO.into(),
             body: None,
+            object: None,
         }
     }
 
@@ -132,7 +137,7 @@ impl Endpoint {
         let place = format!("{}:{}", self.kind(), self.place());
         let place = match self {
             Self::Sim { seed, body, .. } => {
-                format!("sim:?seed={seed}{}", body_key(body.as_deref()))
+                format!("sim:?seed={seed}{}", text_key("body", body.as_deref()))
             }
             Self::Slcan { bitrate, .. } => format!("{place}?bitrate={bitrate}"),
             _ => match self.baud() {
@@ -276,9 +281,11 @@ impl fmt::Display for Endpoint {
                 seed,
                 scenario,
                 body,
+                object,
             } => {
-                let body = body_key(body.as_deref());
-                write!(f, "sim:?seed={seed}&scenario={scenario}{body}")
+                let body = text_key("body", body.as_deref());
+                let object = text_key("object", object.as_deref());
+                write!(f, "sim:?seed={seed}&scenario={scenario}{body}{object}")
             }
             Self::Rs485(line) | Self::Rtu(line) | Self::RtuTcp(line) => {
                 write!(
@@ -304,8 +311,9 @@ impl fmt::Display for Endpoint {
     }
 }
 
-fn body_key(body: Option<&str>) -> String {
-    body.map(|file| format!("&body={file}")).unwrap_or_default()
+fn text_key(key: &str, text: Option<&str>) -> String {
+    text.map(|text| format!("&{key}={text}"))
+        .unwrap_or_default()
 }
 
 fn packing_key(f: &mut fmt::Formatter<'_>, packing: Option<BytePacking>) -> fmt::Result {
@@ -328,6 +336,14 @@ mod tests {
             (
                 "sim:?body=b.toml&scenario=rigid&seed=3",
                 "sim:?seed=3&scenario=rigid&body=b.toml",
+            ),
+            (
+                "sim:?object=egg&body=b.toml",
+                "sim:?seed=1&scenario=idle&body=b.toml&object=egg",
+            ),
+            (
+                "sim:?scenario=grasp&object=/tmp/my can.toml",
+                "sim:?seed=1&scenario=grasp&object=/tmp/my can.toml",
             ),
             ("rs485:/dev/ttyUSB0", "rs485:/dev/ttyUSB0?baud=115200&id=1"),
             ("rs485:COM5?id=7&baud=921600", "rs485:COM5?baud=921600&id=7"),
@@ -426,6 +442,12 @@ mod tests {
             ("sim:?seed=-1", "whole number"),
             ("sim:?scenario=nope", "idle, free, rigid"),
             ("sim:?scenario=", "idle, free, rigid"),
+            ("sim:?object=", "--print-object"),
+            ("sim:?object=cup&object=egg", "duplicate key 'object'"),
+            (
+                "sim:?object=cup&scenario=touched",
+                "idle, free, rigid, fragile or grasp where an object is given",
+            ),
             ("sim:?seed=1&seed=1", "duplicate key 'seed'"),
             (
                 "sim:?scenario=idle&seed=1&scenario=free",

@@ -4,7 +4,7 @@ use crate::hand::register::BytePacking;
 use crate::transport::endpoint::error::{EndpointError, Want};
 use crate::transport::endpoint::{
     DEFAULT_BAUD, DEFAULT_BITRATE, DEFAULT_ID, DEFAULT_SCENARIO, DEFAULT_TCP_PORT, DEFAULT_UNIT,
-    Endpoint, SCENARIOS, SerialLine,
+    Endpoint, OBJECT_SCENARIOS, SCENARIOS, SerialLine,
 };
 use std::str::FromStr;
 
@@ -21,6 +21,12 @@ const SCENARIO_WANT: Want =
 /// Permitted values of `body`.
 const BODY_WANT: Want =
     Want::OneOf("the file of a body; 'handscope sim --print-body' writes one to start from");
+/// Permitted values of `object`, and of `scenario` beside it.
+const OBJECT_WANT: Want = Want::OneOf(
+    "cup, egg, sponge, block, tube, can or the file of an object; 'handscope sim --print-object cup' writes one to start from",
+);
+const OBJECT_SCENARIO_WANT: Want =
+    Want::OneOf("idle, free, rigid, fragile or grasp where an object is given");
 /// Largest id on a CAN bus (manual 2.3).
 const CAN_ID_MAX: u16 = 16_383;
 
@@ -92,10 +98,11 @@ impl EndpointText<'_> {
             return Err(unknown_key(
                 self.place,
                 "sim",
-                "seed, scenario and body, after a '?'",
+                "seed, scenario, body and object, after a '?'",
             ));
         }
-        let (mut seed, mut scenario, mut body) = (1, DEFAULT_SCENARIO.to_owned(), None);
+        let (mut seed, mut scenario) = (1, DEFAULT_SCENARIO.to_owned());
+        let (mut body, mut object) = (None, None);
         for (key, value) in self.pairs() {
             match key {
                 "seed" => seed = number(key, value, Want::Whole)?,
@@ -103,13 +110,19 @@ impl EndpointText<'_> {
                 "scenario" => return Err(wrong_value(key, value, SCENARIO_WANT)),
                 "body" if !value.is_empty() => body = Some(value.to_owned()),
                 "body" => return Err(wrong_value(key, value, BODY_WANT)),
-                _ => return Err(unknown_key(key, "sim", "seed, scenario and body")),
+                "object" if !value.is_empty() => object = Some(value.to_owned()),
+                "object" => return Err(wrong_value(key, value, OBJECT_WANT)),
+                _ => return Err(unknown_key(key, "sim", "seed, scenario, body and object")),
             }
+        }
+        if object.is_some() && !OBJECT_SCENARIOS.contains(&scenario.as_str()) {
+            return Err(wrong_value("scenario", &scenario, OBJECT_SCENARIO_WANT));
         }
         Ok(Endpoint::Sim {
             seed,
             scenario,
             body,
+            object,
         })
     }
 

@@ -79,6 +79,7 @@ chinese! {
         WireFailure::Protocol(words) => "应答不符合此协议：“{words}”";
         WireFailure::NoScenario(_) => "没有此场景";
         WireFailure::NoBody(_) => "此文件无法使用（格式见 'handscope sim --print-body'）";
+        WireFailure::NoObject(_) => "此物体无法使用（格式见 'handscope sim --print-object cup'）";
         WireFailure::OffBus => "适配器无法接入总线";
         WireFailure::Recorded(words) => "系统信息为“{words}”";
     }
@@ -539,6 +540,7 @@ mod tests {
             io(WireFailure::NoScenario(
                 "'party' is not a scenario: choose idle".into(),
             )),
+            io(WireFailure::NoObject("line 2, `mass`: unknown key".into())),
             io(WireFailure::NoBody("line 2, `latency`: unknown key".into())),
         ];
         all.extend(

@@ -160,9 +160,14 @@ pub(crate) fn ended(look: Look, book: &ScanState) -> Result<String, Text> {
 pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
     let kind = look.tr(panels::kind(endpoint.kind()));
     match endpoint {
-        Endpoint::Sim { scenario, body, .. } => {
-            let body = body.as_ref().map(|file| format!(", {file}"));
-            let body = body.unwrap_or_default();
+        Endpoint::Sim {
+            scenario,
+            body,
+            object,
+            ..
+        } => {
+            let given = body.iter().chain(object);
+            let body: String = given.map(|text| format!(", {text}")).collect();
             match scenario.parse() {
                 Ok(scenario) => {
                     format!("{kind}, {}{body}", look.tr(panels::scenario(scenario)))

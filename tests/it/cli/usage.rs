@@ -57,6 +57,22 @@ fn wrong_usage_ends_with_two_and_says_what_is_right() {
         ),
         (&["watch", "--hand", "sim:?body="], "--print-body"),
         (
+            &["sim", "--tcp", "127.0.0.1:0", "--object", "rock"],
+            "the object rock cannot be used: it cannot be read",
+        ),
+        (
+            &["sim", "--print-object", "rock"],
+            "cup, egg, sponge, block, tube, can",
+        ),
+        (
+            &["watch", "--hand", "sim:?object=/nowhere/o.toml", "--for", "1"],
+            "the object /nowhere/o.toml cannot be used: it cannot be read",
+        ),
+        (
+            &["watch", "--hand", "sim:?object=cup&scenario=faults"],
+            "idle, free, rigid, fragile or grasp where an object is given",
+        ),
+        (
             &["sim", "--tcp", "127.0.0.1:0", "--print-body"],
             "--print-body",
         ),
@@ -330,4 +346,17 @@ fn the_default_body_is_printed_and_is_a_body() {
     std::fs::write(&path, &text).unwrap();
     let hand = format!("sim:?seed=3&body={}", path.display());
     run(&["watch", "--hand", &hand, "--for", "0.3"]).ok();
+}
+
+#[test]
+fn every_named_object_is_printed_and_can_be_held() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["cup", "egg", "sponge", "block", "tube", "can"] {
+        let text = run(&["sim", "--print-object", name]).ok().out;
+        assert!(text.contains("mass_g = "), "{text}");
+        let path = folder.path().join(name);
+        std::fs::write(&path, &text).unwrap();
+        let hand = format!("sim:?seed=3&object={}", path.display());
+        run(&["watch", "--hand", &hand, "--for", "0.3"]).ok();
+    }
 }

@@ -160,6 +160,7 @@ fn draw(
             seed: 1,
             scenario: stage.scenario.into(),
             body: None,
+            object: None,
         },
         size: SIZE,
         scale,
