@@ -21,7 +21,7 @@ const DAMPING: f64 = 0.7;
 /// Normal force below which a pad does not touch, g.
 const TOUCHES_G: f64 = 0.5;
 /// Normal force from which a finger grips for the lift, and number of fingers that it takes.
-const GRIPS_G: f64 = 5.0;
+const GRIPS_G: f64 = 2.0;
 const GRIPPING_FINGERS: usize = 2;
 /// Time in which the weight is transferred from the table to the hand, s.
 const LIFT_S: f64 = 0.3;
@@ -497,7 +497,10 @@ mod tests {
         object.loads.lift_after_s = Some(1.5);
         let mut held = Held::new(&object, 1);
         let state = run(&mut held, [0.0, 0.0, 0.0, 800.0, 0.0], 5000);
-        assert!(!state.lifted && state.lost.is_none(), "one finger lifts nothing");
+        assert!(
+            !state.lifted && state.lost.is_none(),
+            "one finger lifts nothing"
+        );
         let state = run(&mut held, [0.0, 0.0, 0.0, 800.0, 800.0], 1400);
         assert!(!state.lifted && carried(&state) == DVec2::ZERO);
         let state = run(&mut held, [0.0, 0.0, 0.0, 800.0, 800.0], 2000);
@@ -564,7 +567,10 @@ mod tests {
         let same = start([0.0, 0.0, 0.0, 500.0, 500.0]);
         assert_eq!(same.lost, Some(ObjectLoss::Dropped));
         let more = start([0.0, 0.0, 0.0, 1000.0, 1000.0]);
-        assert!(more.held && !more.slides && more.slid_mm < TRAVEL_MM, "{more:?}");
+        assert!(
+            more.held && !more.slides && more.slid_mm < TRAVEL_MM,
+            "{more:?}"
+        );
         assert!(more.fingers[Finger::Index].slid_mm.y < -1.0, "{more:?}");
     }
 

@@ -22,8 +22,8 @@ pub mod touch;
 pub use body::Body;
 pub use body_params::BodyParams;
 pub use hand::{JournalEntry, ReplyTiming, SaveFrame, SimConfig, SimHand, WriteEffect};
-pub use memory::AccessError;
 pub use held::{HeldFinger, HeldState, ObjectLoss};
+pub use memory::AccessError;
 pub use object::{NamedObject, Object, Obstacle};
 pub use personality::{
     AnyId, BaudEffect, Beyond, ByteWords, Calibration, ChangeAck, ClearError, DefaultsWrite,

@@ -417,7 +417,10 @@ mod tests {
     }
 
     fn set(hand: &mut SimHand, address: u16, values: [i16; 6], ms: u64) {
-        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        let bytes: Vec<u8> = values
+            .iter()
+            .flat_map(|value| value.to_le_bytes())
+            .collect();
         hand.write(address, &bytes, at(ms)).unwrap();
     }
 
@@ -454,7 +457,11 @@ mod tests {
             let held = gripped(named.object(), holds_g);
             assert!(held.held && !held.broken, "{named:?} {held:?}");
             let dropped = gripped(named.object(), drops_g);
-            assert_eq!(dropped.lost, Some(ObjectLoss::Dropped), "{named:?} {dropped:?}");
+            assert_eq!(
+                dropped.lost,
+                Some(ObjectLoss::Dropped),
+                "{named:?} {dropped:?}"
+            );
         }
     }
 
@@ -480,7 +487,12 @@ mod tests {
         let mut hand = around(object);
         close(&mut hand, 400, 0);
         hand.advance_to(at(20_000));
-        assert!(hand.true_loads().as_array().iter().all(|load| *load < 400.0));
+        assert!(
+            hand.true_loads()
+                .as_array()
+                .iter()
+                .all(|load| *load < 400.0)
+        );
         assert_ne!(hand.held().lost, Some(ObjectLoss::TakenAway));
     }
 

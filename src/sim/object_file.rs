@@ -43,11 +43,9 @@ pub enum ObjectError {
 /// True for the scenarios in which an object can lie between the fingers.
 pub const fn fits_scenario(scenario: Scenario) -> bool {
     match scenario {
-        Scenario::Idle
-        | Scenario::Free
-        | Scenario::Rigid
-        | Scenario::Fragile
-        | Scenario::Grasp => true,
+        Scenario::Idle | Scenario::Free | Scenario::Rigid | Scenario::Fragile | Scenario::Grasp => {
+            true
+        }
         Scenario::Touched | Scenario::Faults | Scenario::Extremes | Scenario::Frozen => false,
     }
 }
@@ -261,7 +259,7 @@ fn contacts(
     let Some(size_mm) = &row.size_mm else {
         if row.contact.is_empty() {
             let cause = FileCause::Malformed(
-                "is missing: write it, or the angles of the joints under [contact]".into(),
+                "it is missing: add it, or the angles of the joints under [contact]".into(),
             );
             return Err(source.blame(0..0, SIZE.name, cause));
         }
@@ -275,7 +273,7 @@ fn contacts(
         return Ok(contacts);
     };
     if !row.contact.is_empty() {
-        let cause = FileCause::Malformed("excludes [contact]: keep one of them".into());
+        let cause = FileCause::Both { other: "contact" };
         return Err(source.blame(size_mm.span(), SIZE.name, cause));
     }
     let size_mm = fits(source, size_mm, &SIZE)?;
@@ -290,8 +288,7 @@ fn obstacle(source: FileText<'_>, row: &ObjectRow) -> Result<Obstacle, FileError
         }),
         (None, None) => None,
         (Some(one), None) | (None, Some(one)) => {
-            let cause =
-                FileCause::Malformed("needs both harder_from and harder_stiffness".into());
+            let cause = FileCause::Malformed("needs both harder_from and harder_stiffness".into());
             return Err(source.blame(one.span(), "harder_stiffness", cause));
         }
     };
@@ -520,7 +517,10 @@ fn shown<T: Copy>(loads: &[T], example: T) -> Vec<(&'static str, T)> {
 
 fn put_load(text: &mut String, sign: &str, key: &NumberKey, value: f64) {
     let (name, least, most, about) = (key.name, key.least, key.most, key.about);
-    let _written = writeln!(text, "{sign}{name} = {value:?} # {about}; {least} to {most}");
+    let _written = writeln!(
+        text,
+        "{sign}{name} = {value:?} # {about}; {least} to {most}"
+    );
 }
 
 /// Writes a number, or an example of it as a comment.
@@ -603,17 +603,23 @@ mod tests {
         let usual = "stiffness = 30\nmass_g = 60\nfriction = 0.45\n";
         let sized = format!("size_mm = 40\n{usual}");
         for (text, words) in [
-            (usual.to_owned(), "`size_mm`: is missing"),
+            (usual.to_owned(), "`size_mm`: it is missing"),
             (format!("{sized}colour = 3\n"), "colour"),
-            ("size_mm = 40\nstiffness = 30\nfriction = 1\n".into(), "mass_g"),
-            (format!("{sized}mass_g = 2\n"), "mass_g"),
+            (
+                "size_mm = 40\nstiffness = 30\nfriction = 1\n".into(),
+                "mass_g",
+            ),
+            (format!("{sized}mass_g = 2\n"), "duplicate key"),
             (
                 format!("size_mm = 200\n{usual}"),
                 "line 1, `size_mm`: 200 is not a number from 3 to 120",
             ),
             (format!("{sized}breaks_at_g = nan\n"), "NaN is not a number"),
             (format!("{sized}taper_per_mm = inf\n"), "inf is not"),
-            (format!("{sized}[contact]\nindex = 4\n"), "keep one of them"),
+            (
+                format!("{sized}[contact]\nindex = 4\n"),
+                "conflicts with `contact`",
+            ),
             (format!("{usual}[contact]\nwrist = 4\n"), "wrist"),
             (format!("{usual}[contact]\nindex = 1001\n"), "0 to 1000"),
             (format!("{sized}harder_from = 4\n"), "needs both"),
@@ -622,12 +628,17 @@ mod tests {
                 "a number from 30, the first stiffness",
             ),
             (
-                format!("{sized}[[turn]]\nat_s = 2\ndirection_deg = 0\n[[turn]]\nat_s = 1\ndirection_deg = 0\n"),
+                format!(
+                    "{sized}[[turn]]\nat_s = 2\ndirection_deg = 0\n[[turn]]\nat_s = 1\ndirection_deg = 0\n"
+                ),
                 "line 9, `at_s`: 1 is not a time from 2 s",
             ),
             (format!("{sized}[[pull]]\nat_s = 2\n"), "force_g"),
             (
-                format!("{sized}{}", "[[turn]]\nat_s = 2\ndirection_deg = 0\n".repeat(17)),
+                format!(
+                    "{sized}{}",
+                    "[[turn]]\nat_s = 2\ndirection_deg = 0\n".repeat(17)
+                ),
                 "at most 16",
             ),
             (

@@ -65,7 +65,13 @@ fn wrong_usage_ends_with_two_and_says_what_is_right() {
             "cup, egg, sponge, block, tube, can",
         ),
         (
-            &["watch", "--hand", "sim:?object=/nowhere/o.toml", "--for", "1"],
+            &[
+                "watch",
+                "--hand",
+                "sim:?object=/nowhere/o.toml",
+                "--for",
+                "1",
+            ],
             "the object /nowhere/o.toml cannot be used: it cannot be read",
         ),
         (
