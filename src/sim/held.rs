@@ -100,12 +100,13 @@ struct Pad {
     slides_ms: u32,
 }
 
-/// Stiffness and damping of a bristle, and sliding friction as a share of static friction.
+/// Stiffness and damping of a bristle, sliding friction as a share of static friction, and its growth with speed.
 #[derive(Debug, Clone, Copy)]
 struct Bristle {
     g_per_mm: f64,
     g_s_per_mm: f64,
     sliding_ratio: f64,
+    drag_s_per_mm: f64,
 }
 
 impl Pad {
@@ -133,8 +134,10 @@ impl Pad {
         self.contact.slides = load.length() > most_g;
         if self.contact.slides {
             self.slides_ms = self.slides_ms.saturating_add(1);
-            self.contact.tangential_g = load.normalize_or_zero() * sliding_g;
-            self.bent_mm = self.contact.tangential_g / bristle.g_per_mm;
+            let drag = 1.0 + bristle.drag_s_per_mm * along.max(0.0);
+            let along_load = load.normalize_or_zero() * sliding_g;
+            self.contact.tangential_g = along_load * drag;
+            self.bent_mm = along_load / bristle.g_per_mm;
             self.contact.slid_mm += bent_mm - self.bent_mm;
         } else {
             self.slides_ms = 0;
@@ -336,11 +339,17 @@ impl Held {
         let pads: f64 = touching.map(|_| 1.0).sum();
         let softer = mass_g * FASTEST_PER_S * FASTEST_PER_S / GRAVITY / 5.0;
         let g_per_mm = PAD_G_PER_MM.min(softer);
+        let friction = self.object.friction;
+        let normal_sum_g: f64 = normal_g.as_array().iter().sum();
+        let sliding_g = friction.sticking * friction.sliding_ratio * normal_sum_g;
+        // More would turn the motion round within a step.
+        let most_drag = 0.3 * mass_g / (GRAVITY * STEP_S * sliding_g.max(TOUCHES_G));
         let bristle = Bristle {
             g_per_mm,
             // The damping of one mass on all touching pads, shared by them.
             g_s_per_mm: 2.0 * DAMPING * (g_per_mm * mass_g / GRAVITY / f64::max(pads, 1.0)).sqrt(),
-            sliding_ratio: self.object.friction.sliding_ratio,
+            sliding_ratio: friction.sliding_ratio,
+            drag_s_per_mm: friction.drag_per_mm_s.min(most_drag),
         };
         let mut carried_g = DVec2::ZERO;
         for (finger, pad) in self.pads.iter_mut() {
@@ -400,6 +409,7 @@ mod tests {
             friction: Friction {
                 sticking: 0.5,
                 sliding_ratio: 0.8,
+                drag_per_mm_s: 0.0,
                 scatter: 0.0,
             },
             loads: Loads {

@@ -96,6 +96,8 @@ pub struct Friction {
     pub sticking: f64,
     /// Sliding friction as a share of static friction.
     pub sliding_ratio: f64,
+    /// Share by which sliding friction grows for each mm/s, as that of rubber does.
+    pub drag_per_mm_s: f64,
     /// Standard deviation of a fingertip's coefficient, as a share of it; drawn for each grip.
     pub scatter: f64,
 }
@@ -204,6 +206,7 @@ pub const LIFT_AFTER_S: f64 = 1.5;
 const USUAL_FRICTION: Friction = Friction {
     sticking: 0.6,
     sliding_ratio: 0.8,
+    drag_per_mm_s: 0.0,
     scatter: 0.05,
 };
 
@@ -270,16 +273,21 @@ impl Object {
         };
         Self {
             mass_g: 400.0,
+            friction: Friction {
+                sliding_ratio: 0.9,
+                drag_per_mm_s: 0.015,
+                ..USUAL_FRICTION
+            },
             taper_per_mm: 0.04,
             loads: Loads {
                 lift_after_s: Some(0.3),
                 turns: listed(&[turn(0.0, 270.0), turn(0.9, 270.0), turn(1.2, 355.0)]),
                 pulls: listed(&[PullLoad {
                     at_s: 0.9,
-                    force_g: 1500.0,
+                    force_g: 1300.0,
                     direction_deg: 310.0,
                     rise_ms: 150.0,
-                    lasts_ms: 20.0,
+                    lasts_ms: 100.0,
                 }]),
                 ..Loads::NONE
             },
@@ -402,6 +410,7 @@ mod tests {
     use super::*;
     use crate::hand::register::{ANGLE_SET, FORCE_SET, SPEED_SET};
     use crate::hand::{Finger, Moment};
+    use crate::sim::held::TRAVEL_MM;
     use crate::sim::{HeldState, ObjectLoss, SimConfig, SimHand};
 
     fn at(ms: u64) -> Moment {
@@ -524,6 +533,34 @@ mod tests {
             hand.held()
         };
         assert_eq!(state(1), state(1000));
+    }
+
+    #[test]
+    fn the_ball_of_the_grasp_slides_a_little_and_is_never_lost() {
+        for seed in 1..12 {
+            let mut hand = SimHand::new(SimConfig {
+                seed,
+                scenario: Scenario::Grasp,
+                ..SimConfig::default()
+            });
+            for begins in [0, 8000, 16_000] {
+                hand.advance_to(at(begins + 2400));
+                let before = hand.held();
+                assert!(before.held && !before.slides, "{seed} {before:?}");
+                let mut slid = false;
+                for ms in begins + 2400..begins + 4900 {
+                    hand.advance_to(at(ms));
+                    slid |= hand.object_slides();
+                    assert_eq!(hand.held().lost, None, "{seed} {ms}");
+                }
+                let after = hand.held();
+                assert!(slid && after.held && !after.slides, "{seed} {after:?}");
+                assert!(
+                    (1.0..TRAVEL_MM).contains(&after.slid_mm),
+                    "{seed} {after:?}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -125,6 +125,12 @@ const BREAKS: NumberKey = key(
 const MASS: NumberKey = key("mass_g", 1.0, 10_000.0, "g");
 const FRICTION: NumberKey = key("friction", 0.0, 3.0, "coefficient of static friction");
 const SLIDING: NumberKey = key("sliding_ratio", 0.05, 1.0, "sliding over static friction");
+const DRAG: NumberKey = key(
+    "drag_per_mm_s",
+    0.0,
+    1.0,
+    "share by which sliding friction grows for each mm/s",
+);
 const SCATTER: NumberKey = key(
     "friction_scatter",
     0.0,
@@ -174,6 +180,7 @@ struct ObjectRow {
     mass_g: Number,
     friction: Number,
     sliding_ratio: Option<Number>,
+    drag_per_mm_s: Option<Number>,
     friction_scatter: Option<Number>,
     taper_per_mm: Option<Number>,
     lift_after_s: Option<Number>,
@@ -231,6 +238,7 @@ pub fn parse(text: &str) -> Result<Object, FileError> {
         friction: Friction {
             sticking: fits(source, &row.friction, &FRICTION)?,
             sliding_ratio: optional(&row.sliding_ratio, &SLIDING)?.unwrap_or(0.8),
+            drag_per_mm_s: optional(&row.drag_per_mm_s, &DRAG)?.unwrap_or(0.0),
             scatter: optional(&row.friction_scatter, &SCATTER)?.unwrap_or(0.05),
         },
         taper_per_mm: optional(&row.taper_per_mm, &TAPER)?.unwrap_or(0.0),
@@ -427,6 +435,7 @@ pub fn print(object: &Object) -> String {
     put(&mut text, &FRICTION, Some(object.friction.sticking), "0.6");
     let sliding = Some(object.friction.sliding_ratio);
     put(&mut text, &SLIDING, sliding, "0.8");
+    put(&mut text, &DRAG, Some(object.friction.drag_per_mm_s), "0.0");
     put(&mut text, &SCATTER, Some(object.friction.scatter), "0.05");
     put(&mut text, &TAPER, Some(object.taper_per_mm), "0.0");
     put(&mut text, &LIFT, loads.lift_after_s, "1.5");

@@ -263,6 +263,8 @@ impl Plan {
                 friction: Friction {
                     sticking,
                     sliding_ratio: 0.7 + 0.25 * chance.f64(),
+                    // Some objects shoot out, others creep.
+                    drag_per_mm_s: 0.02 * chance.f64(),
                     scatter: 0.05,
                 },
                 taper_per_mm: 0.04 * chance.f64(),
