@@ -213,12 +213,12 @@ fn loads(chance: &mut fastrand::Rng, normal_g: f64, friction: f64) -> Loads {
     };
     match event {
         0..=3 => pull(1.6 * friction, 2000.0),
-        4..=5 => pull(0.05, 300.0),
+        4..=5 => pull(0.02, 300.0),
         6 => loads.taken_away_at_s = Some(2.0),
         7 => {
             loads.random_pulls = Some(RandomPulls {
                 every_s: 0.8,
-                force_g: [0.0, 0.05 * normal_g],
+                force_g: [0.0, 0.02 * normal_g],
                 rise_ms: [50.0, 500.0],
             })
         }
@@ -259,7 +259,8 @@ impl Plan {
         let sticking = 0.4 + 0.5 * chance.f64();
         Self {
             object: Object {
-                mass_g: (normal_g * (0.02 + 0.06 * chance.f64())).max(2.0),
+                // Light: the lift of a heavier one looks like a slip to a fingertip.
+                mass_g: (normal_g * (0.01 + 0.02 * chance.f64())).max(1.0),
                 friction: Friction {
                     sticking,
                     sliding_ratio: 0.7 + 0.25 * chance.f64(),
@@ -350,8 +351,10 @@ impl Truth {
         let loads = hand.true_loads();
         let slides = hand.object_slides();
         // What the opening fingers let go slides and falls, too.
-        self.slid |= slides && !opens;
-        self.dropped |= hand.held().lost == Some(ObjectLoss::Dropped) && !opens;
+        let held = hand.held();
+        let one_slides = held.fingers.iter().any(|(_, finger)| finger.slides);
+        self.slid |= one_slides && !opens;
+        self.dropped |= held.lost == Some(ObjectLoss::Dropped) && !opens;
         for (finger, truth) in self.fingers.iter_mut() {
             let angle = match finger {
                 // Both joints of the thumb move it.
