@@ -33,6 +33,8 @@ const TOUCHES_G: std::ops::Range<f64> = 5.0..31.0;
 const TOO_HARD_G: std::ops::Range<f64> = 1750.0..2100.0;
 /// Angles between these are neither open nor closed.
 const OPEN_FROM: std::ops::Range<f64> = 895.0..905.0;
+/// Length of a pull that is meant to pull the object out, ms.
+const PULL_OUT_MS: f64 = 2000.0;
 const STATES: usize = GripState::ALL.len();
 
 /// What was counted.
@@ -212,7 +214,7 @@ fn loads(chance: &mut fastrand::Rng, normal_g: f64, friction: f64) -> Loads {
         }]);
     };
     match event {
-        0..=3 => pull(1.6 * friction, 2000.0),
+        0..=3 => pull(1.6 * friction, PULL_OUT_MS),
         4..=5 => pull(0.02, 300.0),
         6 => loads.taken_away_at_s = Some(2.0),
         7 => {
@@ -260,7 +262,7 @@ impl Plan {
         Self {
             object: Object {
                 // Light: the lift of a heavier one looks like a slip to a fingertip.
-                mass_g: (normal_g * (0.01 + 0.02 * chance.f64())).max(1.0),
+                mass_g: (normal_g * (0.005 + 0.015 * chance.f64())).max(1.0),
                 friction: Friction {
                     sticking,
                     sliding_ratio: 0.7 + 0.25 * chance.f64(),
@@ -277,6 +279,13 @@ impl Plan {
             force,
             opens: chance.i16(500..1000),
         }
+    }
+}
+
+impl Plan {
+    fn pulls_out(&self) -> bool {
+        let mut pulls = self.object.loads.pulls.iter().flatten();
+        pulls.any(|pull| pull.lasts_ms >= PULL_OUT_MS)
     }
 }
 
@@ -319,7 +328,7 @@ fn grasp(
             seen.take(&grip, &truth, ms, table);
         }
     }
-    seen.end(&truth, table);
+    seen.end(&truth, plan.pulls_out(), table);
     table.count += 1;
 }
 
@@ -542,7 +551,7 @@ impl Seen {
         }
     }
 
-    fn end(&self, truth: &Truth, table: &mut GripTable) {
+    fn end(&self, truth: &Truth, pulls_out: bool, table: &mut GripTable) {
         for (finger, known) in truth.fingers.iter() {
             if let Some(lost_at) = known.lost_at {
                 let told = self.lost_at[finger].map(|told| told - lost_at);
@@ -558,7 +567,8 @@ impl Seen {
                 table.slides += 1;
                 table.slides_told += u64::from(self.slipped_at.is_some_and(|told| told < lost_at));
             }
-            _ if !truth.slid => {
+            // A grip that withstood such a pull is not calm.
+            _ if !truth.slid && !pulls_out => {
                 table.calm += 1;
                 table.calm_slips += u64::from(self.slipped_at.is_some());
             }
