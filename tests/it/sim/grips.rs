@@ -21,7 +21,7 @@ fn judged(table: &GripTable) -> String {
 
 #[test]
 fn the_state_of_a_grip_is_the_objects_own() {
-    let table = grasps(0..soak::times_at_least(3, 12));
+    let table = grasps(0..soak::times_at_least(6, 12));
     let told = judged(&table);
     assert!(GripTable::wrong(&table.fingers) <= 0.01, "{told}");
     assert!(GripTable::wrong(&table.grasps) <= 0.02, "{told}");
