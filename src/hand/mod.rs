@@ -14,6 +14,7 @@ pub mod heat;
 pub mod impact;
 pub mod kinematics;
 pub mod moment;
+pub mod newtons;
 pub mod overshoot;
 pub mod quantity;
 pub mod refusal;
