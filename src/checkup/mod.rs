@@ -5,6 +5,7 @@ pub mod check;
 pub mod free_file;
 pub mod kept;
 mod measure;
+pub mod newtons_file;
 pub mod report;
 pub mod run;
 mod steps;
