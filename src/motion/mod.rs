@@ -16,6 +16,7 @@ pub mod move_to;
 mod pinch;
 pub mod play;
 pub mod program;
+pub mod scale;
 pub mod series;
 pub mod source;
 #[cfg(test)]

@@ -3,6 +3,7 @@
 mod checkup;
 mod hidden;
 mod other_hand;
+mod scale;
 mod search;
 mod series;
 mod virtual_hand;
