@@ -17,6 +17,7 @@ use crate::cli::recordings::import::ImportArgs;
 use crate::cli::recordings::info::InfoArgs;
 use crate::cli::recordings::record::RecordArgs;
 use crate::cli::recordings::replay::ReplayArgs;
+use crate::cli::scale::ScaleArgs;
 use crate::cli::scan::ScanArgs;
 use crate::cli::share::ShareArgs;
 use crate::cli::share::fleet::FleetArgs;
@@ -124,6 +125,11 @@ pub(crate) enum CliCommand {
         after_help = "Examples:\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 30 --arm\n  handscope grip --hand tcp:192.168.11.210 --kind pinch --gap 12.5 --speed 100 --force 300 --arm --json\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 120 --arm\n\nThe hand opens, and closes along the path on which the pads of thumb and index meet. It ends where the hand rests: at the gap, or on what it holds, whose size the model gives. Ctrl-C stops the hand. 'handscope help grip' describes it.\n\nExit status: 0 at the gap, or something is held; 1 ended early, or stopped by something that is not held; 2 wrong usage."
     )]
     Grip(GripArgs),
+    /// Find out what the forces of a joint are in newtons, with a kitchen scale
+    #[command(
+        after_help = "Examples:\n  handscope scale --hand rs485:/dev/ttyUSB0 --joint index --arm\n  handscope scale --hand rs485:/dev/ttyUSB0\n  handscope scale --hand rs485:/dev/ttyUSB0 --out newtons.csv\n  handscope scale --hand rs485:/dev/ttyUSB0 --forget --joint index\n\nWith --arm the finger presses the scale at five loads below --limit, each time from the air, and lets go afterwards. At each load type what the scale shows in g, 'again' to press once more, or 'skip'. The end of standard input ends it, Ctrl-C stops the hand. Loads that were accepted remain, and the next run measures the others. 'handscope help scale' describes it.\n\nExit status: 0 all five loads accepted, or shown; 1 ended early or contradicted; 2 wrong usage."
+    )]
+    Scale(ScaleArgs),
     /// Check an empty hand: strokes, backlash, friction, speed, forces, fingertips, supply
     #[command(
         after_help = "Examples:\n  handscope check --hand rs485:/dev/ttyUSB0 --arm\n  handscope check --hand tcp:192.168.11.210 --arm --out checked\n  handscope check --hand rs485:/dev/ttyUSB0 --arm --json\n\nThis moves the hand, and only with --arm: take everything out of it and out of its way. Each joint bends and opens alone, at speeds 200 and 500, then all six open and close a little, in about 80 seconds. Each joint stops by itself at 150 g; the hand is stopped at 300 g or 60 degrees, and where it is not empty. With --press it asks for a press of each fingertip at the end, when nothing moves. Ctrl-C stops the hand, and the program stays until feedback shows rest. 'handscope help check' explains each figure, and what is stored.\n\nExit status: 0 no action needed; 1 action needed, or it ended early; 2 wrong usage."
@@ -249,6 +255,10 @@ mod tests {
             "handscope grip --hand sim: --gap 2 --arm",
             "handscope grip --hand sim: --gap 30 --kind around --arm",
             "handscope grip --hand sim: --gap 30 --force 2001 --arm",
+            "handscope scale --hand sim: --arm",
+            "handscope scale --hand sim: --joint thumb_rotate --arm",
+            "handscope scale --hand sim: --joint index --limit 200 --arm",
+            "handscope scale --hand sim: --joint index --arm --forget",
             "handscope share --hand sim:",
             "handscope share --tcp 127.0.0.1:6001",
             "handscope share --hand sim: --tcp localhost:6001",

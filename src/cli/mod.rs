@@ -14,6 +14,7 @@ mod parse;
 mod quirks;
 mod read;
 mod recordings;
+mod scale;
 mod scan;
 mod session;
 mod share;
@@ -125,6 +126,7 @@ fn execute(command: CliCommand) -> anyhow::Result<()> {
         }
         CliCommand::Man(args) => about::packaging::man(&mut out, &args, Cli::command()),
         CliCommand::Grip(args) => wait_for(grip::run(&mut out, &args)),
+        CliCommand::Scale(args) => wait_for(scale::run(&mut out, &args)),
         CliCommand::Follow(args) => wait_for(inputs::follow::run(&mut out, &args)),
         CliCommand::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
         CliCommand::Info(args) => recordings::info::run(&mut out, &args),

@@ -38,6 +38,8 @@ mod quirks;
 #[cfg(unix)]
 mod recordings;
 #[cfg(unix)]
+mod scale;
+#[cfg(unix)]
 mod scan;
 #[cfg(unix)]
 mod several;
