@@ -2,8 +2,9 @@
 
 use crate::app::connect::SimDial;
 use crate::app::files::settings_file;
-use crate::checkup::free_file;
+use crate::checkup::{free_file, newtons_file};
 use crate::cli::out::notify;
+use crate::hand::PerDof;
 use crate::hand::grip::GripEstimator;
 use crate::hand::heat::HOT;
 use crate::link::{
@@ -42,6 +43,14 @@ pub(crate) fn grip_estimator(hand: &Endpoint) -> GripEstimator {
     let file = settings.and_then(|settings| free_file::file_of(&settings, hand));
     let known = file.and_then(|file| free_file::read(&file).ok());
     GripEstimator::knowing(known.unwrap_or_default())
+}
+
+/// Newtons of a gram of each joint of a hand; `None` where they were not measured. An unreadable file counts as missing.
+pub(crate) fn newtons_per_g(hand: &Endpoint) -> PerDof<Option<f64>> {
+    let settings = settings_file::default_path();
+    let file = settings.and_then(|settings| newtons_file::file_of(&settings, hand));
+    let known = file.and_then(|file| newtons_file::read(&file).ok());
+    known.unwrap_or_default().per_g()
 }
 
 /// Opens a link and waits for the hand. Must be called within a tokio runtime.

@@ -10,10 +10,10 @@ pub(crate) use args::WatchArgs;
 use crate::cli::out::{Out, notify};
 use crate::cli::session;
 use crate::cli::watch::datagrams::Datagrams;
-use crate::cli::watch::telemetry::{sample_json, sample_text, stats_json, stats_text};
+use crate::cli::watch::telemetry::{sample_text, stats_json, stats_text, watch_json};
 use crate::cli::watch::wire::FramePrinter;
 use crate::hand::grip::{Grip, GripEstimator};
-use crate::hand::{Group, Moment};
+use crate::hand::{Group, Moment, PerDof};
 use crate::link::{Clock, LinkHandle, LinkTrouble, Records};
 use crate::record::Record;
 use crate::shell::interrupt::Interrupt;
@@ -46,6 +46,8 @@ struct WatchRun<'a> {
     frames: Option<FramePrinter>,
     /// Grip estimate from all readings.
     grip: GripEstimator,
+    /// Newtons of a gram of each joint, where they are known.
+    newtons_per_g: PerDof<Option<f64>>,
     /// Number of state reads so far; each of them is a line of JSON, unless frames are printed.
     taken: u64,
     last_text: Option<Moment>,
@@ -67,6 +69,7 @@ impl<'a> WatchRun<'a> {
             out,
             clock,
             grip: session::grip_estimator(&args.hand),
+            newtons_per_g: session::newtons_per_g(&args.hand),
             taken: 0,
             last_text: None,
             answered: false,
@@ -173,11 +176,12 @@ impl<'a> WatchRun<'a> {
         }
         let at = angle.received;
         if let Some(datagrams) = &mut self.datagrams {
-            datagrams.send(&sample_json(&sample, &grip, at));
+            datagrams.send(&watch_json(&sample, &grip, &self.newtons_per_g, at));
             return Ok(());
         }
         if self.args.json {
-            return self.out.stream_object(&sample_json(&sample, &grip, at));
+            let object = watch_json(&sample, &grip, &self.newtons_per_g, at);
+            return self.out.stream_object(&object);
         }
         let is_soon = |last| at.since(last) < TEXT_LINE_INTERVAL;
         if self.last_text.is_some_and(is_soon) {

@@ -3,7 +3,8 @@
 use crate::hand::grip::{Grip, GripEstimate};
 use crate::hand::units::decimal;
 use crate::hand::{
-    Fault, Faults, Finger, HandSample, Moment, PerDof, Quantity, RateClass, Status, TactileBlock,
+    Fault, Faults, Finger, ForceReading, HandSample, Moment, PerDof, Quantity, RateClass, Status,
+    TactileBlock,
 };
 use crate::link::{LineUse, LinkStats};
 use serde_json::{Map, Value, json};
@@ -36,6 +37,30 @@ pub(crate) fn sample_json(sample: &HandSample, grip: &Grip, at: Moment) -> Value
         fields.extend(measured);
     }
     object
+}
+
+/// One sample as `watch` prints it: with forces in newtons, null where they are unknown.
+pub(crate) fn watch_json(
+    sample: &HandSample,
+    grip: &Grip,
+    newtons_per_g: &PerDof<Option<f64>>,
+    at: Moment,
+) -> Value {
+    let mut object = sample_json(sample, grip, at);
+    let force = sample.force.map(|force| force.value);
+    let newtons = force.map(|force| {
+        let newtons = |dof, per_g: f64| f64::from(ForceReading::raw(force[dof])) * per_g;
+        PerDof::from_fn(|dof| Some(rounded_mn(newtons(dof, newtons_per_g[dof]?))))
+    });
+    if let Value::Object(fields) = &mut object {
+        fields.insert("force_n".into(), json!(newtons));
+    }
+    object
+}
+
+/// Rounds newtons to millinewtons.
+fn rounded_mn(newtons: f64) -> f64 {
+    (newtons * 1000.0).round() / 1000.0
 }
 
 /// A grip as JSON: state, start and age of the grasp and of each finger.
@@ -247,7 +272,7 @@ fn rounded(value: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::hand::grip::GripState;
-    use crate::hand::{PerFinger, Reply, register};
+    use crate::hand::{Dof, PerFinger, Reply, Timed, register};
 
     #[test]
     fn what_was_not_read_is_null() {
@@ -329,6 +354,24 @@ mod tests {
         assert_eq!(json["temp_c"][5], 255);
         assert!(json["position"].is_null());
         assert!(sample_text(&sample, at).contains("over_temperature+over_current"));
+    }
+
+    #[test]
+    fn newtons_stand_beside_the_grams_where_they_are_known() {
+        let mut sample = HandSample::default();
+        let mut per_g = PerDof::splat(None);
+        per_g[Dof::Index] = Some(0.0071);
+        let at = Moment::ZERO;
+        let json = |sample: &HandSample| watch_json(sample, &Grip::default(), &per_g, at);
+        assert!(json(&sample)["force_n"].is_null());
+        sample.force = Some(Timed {
+            value: PerDof::splat(ForceReading::new(500)),
+            asked: at,
+            received: at,
+        });
+        let json = json(&sample);
+        assert_eq!(json["force_n"], json!([null, null, null, 3.55, null, null]));
+        assert_eq!(json["force_g"][3], 500);
     }
 
     #[test]
