@@ -7,6 +7,7 @@ pub mod list;
 pub mod mover;
 #[cfg(test)]
 mod news_tests;
+pub mod newtons;
 pub mod running;
 
 use crate::app::activity::{Activity, RecordedMover};
@@ -20,6 +21,7 @@ use crate::app::env::Ctx;
 use crate::app::env::Env;
 use crate::app::env::running::Running;
 use crate::app::hand::free_force::HandFreeForce;
+use crate::app::hand::newtons::HandNewtons;
 use crate::app::hand::running::SequenceRun;
 use crate::app::hand::running::{AskedSeries, MotionRun, RunningMotion};
 use crate::app::inputs::HandInputs;
@@ -71,6 +73,8 @@ pub struct Hand {
     pub overshoot: HandOvershoot,
     /// Forces that its joints read while they touch nothing.
     pub(crate) free_force: HandFreeForce,
+    /// Newtons of its joints, where they were measured.
+    pub newtons: HandNewtons,
     /// Last check-up.
     pub checkup: HandCheckup,
     /// Open procedure: change of address, reset or calibration.
@@ -218,6 +222,7 @@ impl Hand {
             measured: before.measured,
             overshoot: before.overshoot,
             free_force: before.free_force,
+            newtons: before.newtons,
             controls: if is_moved {
                 before.controls.at_next_connection()
             } else {

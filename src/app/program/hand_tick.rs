@@ -67,6 +67,7 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     tick_series(hand, shared.trials, ctx);
     let endpoint = hand.connection.endpoint.as_ref();
     hand.overshoot.tick(endpoint, ctx);
+    hand.newtons.tick(endpoint, ctx);
     hand.free_force.tick(endpoint, &mut hand.readings.grip, ctx);
     tick_checkup(hand, ctx);
     tick_procedure(hand, shared.settings, ctx);

@@ -57,7 +57,16 @@ impl JointRow {
         let odd = force.is_some_and(|force| force.documented().is_none());
         let live = if odd { palette.warn } else { palette.text };
         let raw = force.map(|force| i64::from(force.raw()));
-        let text = format::with_unit(raw, 4, Quantity::Force.row().unit);
+        let mut text = format::with_unit(raw, 4, Quantity::Force.row().unit);
+        let per_g = pane.hand().newtons.per_g(self.dof);
+        let newtons = force
+            .zip(per_g)
+            .map(|(force, per_g)| per_g * f64::from(force.raw()));
+        // A narrow row has room for one unit, and a recording may be of another hand.
+        let has_both = rect.width() >= READING && pane.recorded().is_none();
+        if let Some(newtons) = newtons.filter(|_| has_both) {
+            text = format!("{text} {newtons:>5.1} N");
+        }
         let name = self.named(pane, main::NAME_FORCE_ACTUAL);
         let color = pane.look.value(freshness, live);
         number_ui(ui, rect, &name, Label::new(&text, color));

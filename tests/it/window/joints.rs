@@ -1,7 +1,13 @@
 //! What a person does with the joints beside dragging one: presets, links, all at once, units, the frame behind a control.
 
-use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, Role, SPEED_SET};
-use handscope::hand::{Dof, Speed};
+use crate::setup::window::{ANGLE_SET, Bench, FORCE_SET, LARGE, Role, SPEED_SET};
+use handscope::app::action::Action;
+use handscope::checkup::newtons_file;
+use handscope::hand::newtons::{JointPoints, ScalePoint};
+use handscope::hand::{Dof, Force, Speed};
+use handscope::sim::SimConfig;
+use handscope::transport::Endpoint;
+use std::time::Duration;
 
 #[test]
 fn a_preset_goes_at_the_speeds_that_are_set_and_leaves_locked_joints() {
@@ -243,4 +249,38 @@ fn what_the_hand_holds_otherwise_stands_beside_what_is_set() {
     bench.click("Arm the hand");
     bench.run(1500);
     assert!(!bench.shows(name), "{:?}", bench.texts_with("hand"));
+}
+
+#[test]
+fn newtons_stand_beside_the_grams_of_a_joint_that_was_measured() {
+    let measured: Endpoint = "tcp:127.0.0.1:6000?unit=1".parse().unwrap();
+    let mut bench = Bench::kept(SimConfig::default(), "tcp:127.0.0.1:6000?unit=2", LARGE);
+    bench.wait(1000);
+    let file = newtons_file::file_of(&bench.folder().join("kept/settings.toml"), &measured);
+    let point = |load: u16| {
+        let hand_g = f64::from(150 + 60 * load);
+        ScalePoint {
+            load: load.into(),
+            hand_g,
+            scale_g: 0.7 * hand_g,
+            tip_n: None,
+        }
+    };
+    let index = JointPoints {
+        limit: Force::GENTLE,
+        day: "2026-11-30".into(),
+        points: (0..5).map(point).collect(),
+    };
+    newtons_file::put(&file.unwrap(), Dof::Index, index).unwrap();
+    let index = |bench: &Bench| bench.reading("Index live force");
+    assert!(index(&bench).ends_with(" g"), "{}", index(&bench));
+    bench.act(Action::Connect(measured));
+    for _ in 0..20 {
+        std::thread::sleep(Duration::from_millis(20));
+        bench.run(100);
+    }
+    let text = index(&bench);
+    assert!(text.contains(" g ") && text.ends_with(" N"), "{text}");
+    let ring = bench.reading("Ring live force");
+    assert!(ring.ends_with(" g"), "{ring}");
 }
