@@ -82,7 +82,11 @@ fn a_mistyped_reading_is_found_and_what_was_accepted_outlasts_an_early_end() {
     unless_busy(|| {
         let folder = tempfile::tempdir().unwrap();
         let home = folder.path();
-        let (_sim, hand) = sim_on_tcp(&["--scenario", "rigid"]);
+        // Faster than real ones, so that the test does not take a minute.
+        let body = home.join("fast.toml");
+        std::fs::write(&body, "[joint.index]\ncounts_per_speed = 10.0\n").unwrap();
+        let body = body.to_str().unwrap();
+        let (_sim, hand) = sim_on_tcp(&["--scenario", "rigid", "--body", body]);
         assert_eq!(
             known(home, &hand, &[])["joints"].as_array().unwrap().len(),
             0
