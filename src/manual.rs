@@ -35,6 +35,7 @@ topics! {
     files: "poses, parameters, backups and trial sessions on disk";
     tune: "the fastest close on an object that stays under a limit";
     grip: "grips by size: which there are, how they close, how sure a size is";
+    hold: "holding an object with the least force that holds it, between two limits";
     scale: "forces of a hand in newtons, with a kitchen scale";
     check: "a check-up of an empty hand: what is measured, what is good";
     sessions: "recordings of everything at a hand: files, exports, replay";

@@ -6,6 +6,7 @@ use crate::cli::about::packaging::{CompletionsArgs, ManArgs};
 use crate::cli::check::CheckArgs;
 use crate::cli::doctor::DoctorArgs;
 use crate::cli::grip::GripArgs;
+use crate::cli::guard::GuardArgs;
 use crate::cli::hold::HoldArgs;
 use crate::cli::inputs::follow::FollowArgs;
 use crate::cli::inputs::show::InputsArgs;
@@ -125,6 +126,11 @@ pub(crate) enum CliCommand {
         after_help = "Examples:\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 30 --arm\n  handscope grip --hand tcp:192.168.11.210 --kind pinch --gap 12.5 --speed 100 --force 300 --arm --json\n  handscope grip --hand rs485:/dev/ttyUSB0 --gap 120 --arm\n\nThe hand opens, and closes along the path on which the pads of thumb and index meet. It ends where the hand rests: at the gap, or on what it holds, whose size the model gives. Ctrl-C stops the hand. 'handscope help grip' describes it.\n\nExit status: 0 at the gap, or something is held; 1 ended early, or stopped by something that is not held; 2 wrong usage."
     )]
     Grip(GripArgs),
+    /// Hold an object with the least force that holds it, between two limits
+    #[command(
+        after_help = "Examples:\n  handscope hold --hand sim:?object=egg --pose 'Power grasp' --at-least 120 --at-most 300 --arm --for 30\n  handscope hold --hand rs485:/dev/ttyUSB0 --gap 20 --at-least 150 --at-most 400 --arm --json\n  handscope hold --hand tcp:192.168.11.210 --at-least 1.5 --at-most 4 --newtons --arm\n\nThis moves the hand, and only with --arm: the fingers close slowly until each presses with --at-least. What the hand holds already is taken over without opening, with its present pose. Then the force follows the load: a finger presses harder where the object is about to slide, never with more than --at-most, and less again when it is quiet. Ctrl-C stops the hand: it keeps its position, and so what it holds. 'handscope help hold' describes it.\n\nExit status: 0 held until --for was over or Ctrl-C; 1 nothing was held, the object was lost, or it ended early; 2 wrong usage."
+    )]
+    Hold(HoldArgs),
     /// Find out what the forces of a joint are in newtons, with a kitchen scale
     #[command(
         after_help = "Examples:\n  handscope scale --hand rs485:/dev/ttyUSB0 --joint index --arm\n  handscope scale --hand rs485:/dev/ttyUSB0\n  handscope scale --hand rs485:/dev/ttyUSB0 --out newtons.csv\n  handscope scale --hand rs485:/dev/ttyUSB0 --forget --joint index\n\nWith --arm the finger presses the scale at five loads below --limit, each time from the air, and lets go afterwards. At each load type what the scale shows in g, 'again' to press once more, or 'skip'. The end of standard input ends it, Ctrl-C stops the hand. Loads that were accepted remain, and the next run measures the others. 'handscope help scale' describes it.\n\nExit status: 0 all five loads accepted, or shown; 1 ended early or contradicted; 2 wrong usage."
@@ -187,7 +193,7 @@ pub(crate) enum CliCommand {
     Sim(SimArgs),
     /// Hold a hand if the program that started this one dies: started by each program that arms a hand, connected by its standard input
     #[command(hide = true)]
-    Hold(HoldArgs),
+    Guard(GuardArgs),
     /// Print the register map
     Registers(RegistersArgs),
     /// Explain a command or a topic of the manual

@@ -52,7 +52,7 @@ fn kind(text: &str) -> Result<GripKind, String> {
     Ok(kind)
 }
 
-fn gap(text: &str) -> Result<Gap, String> {
+pub(crate) fn gap(text: &str) -> Result<Gap, String> {
     let mm = text
         .parse()
         .map_err(|_not_one| format!("'{text}' is not a number of millimetres"))?;
@@ -148,12 +148,7 @@ const fn end_name(end: Ended<GripEnd>) -> &'static str {
         Ok(GripEnd::Stopped) => "stopped",
         Ok(GripEnd::NotOpened) => "not_opened",
         Ok(GripEnd::Late) => "late",
-        Err(Abort::Person) => "person",
-        Err(Abort::OtherController { .. } | Abort::TakenOver) => "taken_over",
-        Err(Abort::Fault { .. }) => "fault",
-        Err(Abort::LinkLost) => "link_lost",
-        // The other reasons disarm, or occur only in trials.
-        Err(_) => "disarmed",
+        Err(why) => session::early_end(why),
     }
 }
 

@@ -1,183 +1,340 @@
-//! `hold`: the process that holds a hand if the program that moved it dies. It is started by that program and tied to it by its
-//! standard input; users do not start it themselves.
+//! `hold`: keeps an object between two forces. It moves the hand, so it requires `--arm`.
 
-use crate::cli::out::{AlreadyReported, notify};
+use crate::app::files::{pose_file, settings_file};
+use crate::checkup::newtons_file;
+use crate::cli::grip::gap;
+use crate::cli::out::{Out, WrongUsage};
+use crate::cli::parse::{hand, seconds};
 use crate::cli::session;
-use crate::link::guard::holder::MOVES;
-use crate::link::{self, Clock, LinkConfig, LinkHandle, PollRates};
-use crate::record::Hold;
-use crate::transport::{BoxedWire, Dial, Endpoint, SystemDial, TransportError};
-use futures::future::BoxFuture;
-use std::io::Read;
-use std::sync::Arc;
-use std::time::Duration;
-use tokio::time::{Instant, sleep, timeout};
-
-/// Maximum time to reach the hand: its port may be busy, and its socket in use, until the system has cleaned up.
-const REACH_TIMEOUT: Duration = Duration::from_secs(5);
-/// Maximum time after that until feedback shows rest.
-const REST_TIMEOUT: Duration = Duration::from_secs(5);
-/// Retry interval for a busy port.
-const DIAL_INTERVAL: Duration = Duration::from_millis(10);
-/// Retry delay after a hand has closed the connection at once, and the number of such retries; then the delay for a hand that
-/// accepts no connection for a while after the last one.
-const RETRY_DELAY: Duration = Duration::from_millis(20);
-const RETRIES_AT_ONCE: u32 = 25;
-const RETRY_DELAY_LATER: Duration = Duration::from_millis(320);
-/// Polling interval of the link state.
-const POLL_INTERVAL: Duration = Duration::from_millis(2);
-
-/// Only the joint positions are read.
-const MOTION_ONLY: PollRates = PollRates {
-    state_hz: 200.0,
-    tactile_hz: 0.0,
-    settings_hz: 0.0,
+use crate::cli::trial::drive::ArmedHand;
+use crate::hand::gap::Gap;
+use crate::hand::newtons::N_PER_G;
+use crate::hand::overshoot::OvershootMap;
+use crate::hand::statistics::mean;
+use crate::hand::{Finger, Force, Moment, PerDof, Speed};
+use crate::link::ArmRequest;
+use crate::motion::drive::{STOP_LOST, stop_words};
+use crate::motion::hold::{
+    HoldClose, HoldEnd, HoldForces, HoldPhase, HoldRun, HoldStart, HoldView, Tightened,
 };
+use crate::motion::program::{Ended, Progress};
+use crate::poses::starter::starter;
+use crate::record::Abort;
+use crate::transport::Endpoint;
+use crate::trials::overshoot_file;
+use anyhow::{Context as _, bail};
+use clap::Args;
+use serde_json::json;
+use std::time::Duration;
 
-#[derive(Debug, clap::Args)]
+/// Interval of the lines that show the hold.
+const LINE_INTERVAL: Duration = Duration::from_secs(1);
+
+#[derive(Debug, Args)]
 pub(crate) struct HoldArgs {
-    /// The hand to hold
-    #[arg(long, value_name = "URL")]
-    hand: Endpoint,
+    #[arg(long, value_name = "URL", value_parser = hand)]
+    pub(crate) hand: Endpoint,
+    /// Move the hand: nothing but the object is in its way, and the 24 V switch is in reach
+    #[arg(long)]
+    pub(crate) arm: bool,
+    /// Close to this pose of the library, until the object stops the fingers
+    #[arg(long, value_name = "NAME", conflicts_with = "gap")]
+    pub(crate) pose: Option<String>,
+    /// Close thumb and index to this many mm between the pads, 3 to 120, until the object stops them
+    #[arg(long, value_name = "MM", value_parser = gap, allow_negative_numbers = true)]
+    pub(crate) gap: Option<Gap>,
+    /// Force of each finger at least: g of this hand, or N with --newtons
+    #[arg(
+        long,
+        value_name = "FORCE",
+        default_value = "150",
+        allow_negative_numbers = true
+    )]
+    pub(crate) at_least: f64,
+    /// Force of each finger at most
+    #[arg(
+        long,
+        value_name = "FORCE",
+        default_value = "400",
+        allow_negative_numbers = true
+    )]
+    pub(crate) at_most: f64,
+    /// The forces are newtons, as measured with 'handscope scale'
+    #[arg(long)]
+    pub(crate) newtons: bool,
+    /// Seconds to hold; without it, until Ctrl-C
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) duration: Option<Duration>,
+    /// Print JSON objects, one a line
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
-/// Waits for the end of the program that started this one. Returns true if the hand must then be held because that
-/// program did not.
-pub(crate) fn is_needed() -> bool {
-    live_on_the_pipe_alone();
-    died_moving(std::io::stdin().lock())
-}
-
-/// Detaches from that program's end: blocks signals, and closes all inherited descriptors except the standard streams.
-#[cfg(unix)]
-fn live_on_the_pipe_alone() {
-    // No other thread runs yet. A failure here does not prevent holding.
-    let _blocked = nix::sys::signal::SigSet::all().thread_block();
-    let open = std::fs::read_dir("/proc/self/fd").into_iter().flatten();
-    let inherited: Vec<i32> = open
-        .filter_map(|entry| entry.ok()?.file_name().to_str()?.parse().ok())
-        .filter(|descriptor| *descriptor > 2)
-        .collect();
-    for descriptor in inherited {
-        let _closed = nix::unistd::close(descriptor);
+/// Holds. Fails if nothing was held, the object was lost, or it ended early.
+pub(crate) async fn run(out: &mut Out, args: &HoldArgs) -> anyhow::Result<()> {
+    let forces = forces(args)?;
+    let close = close(args)?;
+    let newtons = newtons(&args.hand)?;
+    let reading_per_g = reading_per_g(args, &newtons)?;
+    if !args.arm {
+        bail!(
+            "nothing was moved: this closes the hand at {} on an object and holds it with {} to {} g; when nothing but the object is in the way, add --arm",
+            args.hand,
+            forces.at_least().get(),
+            forces.at_most().get()
+        );
     }
-}
-
-#[cfg(not(unix))]
-fn live_on_the_pipe_alone() {}
-
-/// True if the pipe broke after the last message reported that the hand may move.
-fn died_moving(mut pipe: impl Read) -> bool {
-    let (mut moves, mut words) = (false, [0; 64]);
-    loop {
-        match pipe.read(&mut words) {
-            Ok(0) => return moves,
-            Ok(len) => {
-                let last = len.checked_sub(1).and_then(|last| words.get(last));
-                moves = last == Some(&MOVES);
-            }
-            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
-            Err(_broken) => return moves,
-        }
-    }
-}
-
-/// Holds until feedback shows rest, and reports the outcome.
-pub(crate) async fn run(args: &HoldArgs) -> anyhow::Result<()> {
-    let hand = &args.hand;
-    let died = Instant::now();
-    let config = LinkConfig {
-        endpoint: hand.clone(),
-        rates: MOTION_ONLY,
-        clock: Clock::start(),
-        dial: Arc::new(Insistent(SystemDial)),
-        wake: Arc::new(|| ()),
+    let limits = ArmRequest {
+        speed: PerDof::splat(Speed::nearest(25)),
+        force: PerDof::splat(forces.at_least()),
     };
-    let (link, _records) = link::open(config, &tokio::runtime::Handle::current());
-    let how = match timeout(REACH_TIMEOUT, reached(&link)).await {
-        Err(_late) => "could not be reached: switch off its 24 V supply if it moves",
-        Ok(()) => match timeout(REST_TIMEOUT, held(&link)).await {
-            Err(_late) => session::NOT_CONFIRMED,
-            Ok(()) => {
-                let ms = died.elapsed().as_millis();
-                notify(&format!(
-                    "the program that moved {hand} terminated unexpectedly; the hand was stopped and at rest {ms} ms later"
-                ));
-                return Ok(());
-            }
-        },
+    let mut hand = ArmedHand::ready(&args.hand, limits).await?;
+    let start = HoldStart {
+        close,
+        forces,
+        duration: args.duration,
+        reading_per_g,
+        locked: PerDof::splat(false),
+        overshoot: overshoot(&args.hand),
+        grip: session::grip_estimator(&args.hand),
     };
-    notify(&format!(
-        "the program that moved {hand} terminated unexpectedly, and the hand: {how}"
-    ));
-    Err(AlreadyReported.into())
-}
-
-/// Waits until the hand answers. The stop is repeated: one sent before the hand answers is not retained.
-async fn reached(link: &LinkHandle) {
-    loop {
-        link.stop();
-        let status = link.status();
-        if status.state.is_live() && status.hold != Hold::None {
-            return;
-        }
-        sleep(POLL_INTERVAL).await;
+    let program = HoldRun::new(hand.armed.epoch, start, hand.armed.clock.now());
+    let clock = hand.armed.clock;
+    let mut lines = HoldLines {
+        args,
+        newtons,
+        shown: None,
+        due: clock.now(),
+        view: None,
+    };
+    let driven = hand
+        .run(program, |progress| {
+            lines.report(out, clock.now(), progress).is_ok()
+        })
+        .await;
+    let view = lines.view;
+    let done = outcome(driven.end);
+    let object = json!({ "hold": {
+        "hand": args.hand.to_string(),
+        "end": end_name(driven.end),
+        "seconds_held": driven.program.held_for(clock.now()).map(|held| held.as_secs_f64()),
+        "at_least_g": forces.at_least(),
+        "at_most_g": forces.at_most(),
+        "state": driven.program.grip().grasp.state,
+        "last": view,
+        "stop": driven.stop,
+    }});
+    out.result(args.json, &object, done.as_ref().ok())?;
+    out.flush()?;
+    match done {
+        Ok(_words) => Ok(()),
+        Err(why) => bail!("{why}{}", stop_words(driven.stop)),
     }
 }
 
-/// Waits until feedback shows rest. If the link was lost meanwhile, the stop is repeated.
-async fn held(link: &LinkHandle) {
-    loop {
-        match link.status().hold {
-            Hold::Confirmed { .. } => return,
-            Hold::Asked { .. } | Hold::Alarm { .. } => {}
-            Hold::None => drop(link.stop()),
-        }
-        sleep(POLL_INTERVAL).await;
-    }
+/// Prints the hold while it lasts.
+struct HoldLines<'a> {
+    args: &'a HoldArgs,
+    newtons: PerDof<Option<f64>>,
+    shown: Option<HoldPhase>,
+    /// Time of the next line.
+    due: Moment,
+    view: Option<HoldView>,
 }
 
-/// Redials a busy port at once; the link itself would wait.
-struct Insistent(SystemDial);
-
-impl Dial for Insistent {
-    fn dial(&self, endpoint: &Endpoint) -> BoxFuture<'static, Result<BoxedWire, TransportError>> {
-        let (system, endpoint) = (self.0, endpoint.clone());
-        let until = Instant::now() + REACH_TIMEOUT;
-        Box::pin(async move {
-            loop {
-                match system.dial(&endpoint).await {
-                    Err(_) if Instant::now() < until => sleep(DIAL_INTERVAL).await,
-                    dialled => return dialled,
+impl HoldLines<'_> {
+    fn report(
+        &mut self,
+        out: &mut Out,
+        now: Moment,
+        progress: Progress<HoldView, Tightened>,
+    ) -> anyhow::Result<()> {
+        match progress {
+            Progress::Event(tightened) if self.args.json => {
+                out.stream_object(&json!({ "tightened": tightened }))?;
+            }
+            Progress::View(view) => {
+                self.view = Some(view);
+                let is_due = now >= self.due || self.shown != Some(view.phase);
+                if is_due {
+                    self.due = now.plus(LINE_INTERVAL);
+                    self.shown = Some(view.phase);
+                    if self.args.json {
+                        out.stream_object(&json!({ "holding": view }))?;
+                    } else {
+                        out.stream_line(&self.line(&view))?;
+                    }
                 }
             }
-        })
+            Progress::Event(_) | Progress::Sent(_) => {}
+        }
+        out.shown()
     }
 
-    fn retry_delay(&self, attempt: u32) -> Option<Duration> {
-        Some(if attempt <= RETRIES_AT_ONCE {
-            RETRY_DELAY
+    fn line(&self, view: &HoldView) -> String {
+        let force = match view.mean_g() {
+            None => "nothing yet".into(),
+            Some(g) => format!("{g} g{}", self.in_newtons(view)),
+        };
+        let margin = view.margin_percent;
+        let margin = margin.map_or("unknown".into(), |percent| format!("{percent} %"));
+        let tightened = match view.last {
+            None => "not tightened".into(),
+            Some(last) => format!(
+                "tightened {} times, last: {} ({})",
+                view.tightened,
+                last.finger.name(),
+                last.cause.name()
+            ),
+        };
+        let warm = if view.is_warm {
+            "; a drive is warm"
         } else {
-            RETRY_DELAY_LATER
-        })
+            ""
+        };
+        match view.phase {
+            HoldPhase::Measuring => "measuring the zero of the force sensors".into(),
+            HoldPhase::Closing => "closing".into(),
+            HoldPhase::Holding => {
+                format!("holding with {force}, margin {margin}; {tightened}{warm}")
+            }
+            HoldPhase::CannotHold => format!(
+                "CANNOT HOLD within {} g: pressing with {force}, margin {margin}; {tightened}{warm}",
+                view.forces.at_most().get()
+            ),
+        }
+    }
+
+    /// Mean force in newtons, if all fingers that hold were measured.
+    fn in_newtons(&self, view: &HoldView) -> String {
+        let held = view
+            .force_g
+            .iter()
+            .filter_map(|(finger, g)| Some((finger, (*g)?)));
+        let newtons: Option<Vec<f64>> = held
+            .map(|(finger, g)| Some(f64::from(g) * self.newtons[finger.bend()]?))
+            .collect();
+        newtons
+            .and_then(|all| mean(&all))
+            .map_or(String::new(), |mean| format!(" ({mean:.1} N)"))
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::link::guard::holder::RESTS;
+fn forces(args: &HoldArgs) -> anyhow::Result<HoldForces> {
+    let grams = |option: &str, value: f64| {
+        let grams = if args.newtons { value / N_PER_G } else { value };
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "checked by the range of a force"
+        )]
+        let whole = grams.round().clamp(-1e6, 1e6) as i64;
+        let force = if value.is_finite() {
+            Force::new(whole).ok()
+        } else {
+            None
+        };
+        force.ok_or_else(|| {
+            let unit = if args.newtons { "N" } else { "g" };
+            WrongUsage::error(format!(
+                "--{option} {value} {unit} is outside the manual's range: at most {}",
+                if args.newtons { "29 N" } else { "3000 g" }
+            ))
+        })
+    };
+    let (least, most) = (
+        grams("at-least", args.at_least)?,
+        grams("at-most", args.at_most)?,
+    );
+    HoldForces::new(least, most).map_err(|error| WrongUsage::error(error.to_string()))
+}
 
-    #[test]
-    fn only_a_pipe_that_breaks_while_the_hand_may_move_is_a_death() {
-        for (bytes, died) in [
-            (vec![], false),
-            (vec![MOVES], true),
-            (vec![MOVES, RESTS], false),
-            (vec![MOVES, RESTS, MOVES], true),
-            ([MOVES, RESTS].repeat(100), false),
-        ] {
-            assert_eq!(died_moving(bytes.as_slice()), died, "{bytes:?}");
-        }
+fn close(args: &HoldArgs) -> anyhow::Result<HoldClose> {
+    if let Some(gap) = args.gap {
+        return Ok(HoldClose::Pinch(gap));
+    }
+    let Some(name) = &args.pose else {
+        return Ok(HoldClose::TakeOver);
+    };
+    let own = settings_file::default_path().map(|settings| pose_file::path_beside(&settings));
+    let own = own
+        .filter(|path| path.exists())
+        .map(|path| pose_file::read(&path));
+    let own = own
+        .transpose()
+        .map_err(|error| anyhow::anyhow!("{error}"))?;
+    let pose = own.as_ref().and_then(|own| own.pose_named(name));
+    let pose = pose.or_else(|| starter().pose_named(name)).ok_or_else(|| {
+        let names = starter().poses.iter().map(|pose| pose.name.as_str());
+        let names: Vec<&str> = names.collect();
+        WrongUsage::error(format!(
+            "there is no pose '{name}': write one of the library's, such as {}",
+            names.join(", ")
+        ))
+    })?;
+    Ok(match pose.gap {
+        Some(gap) => HoldClose::Pinch(gap),
+        None => HoldClose::To(pose.targets()),
+    })
+}
+
+/// Newtons of each joint for a reading of one gram, where they were measured.
+fn newtons(hand: &Endpoint) -> anyhow::Result<PerDof<Option<f64>>> {
+    let settings = settings_file::default_path();
+    let file = settings.and_then(|settings| newtons_file::file_of(&settings, hand));
+    let Some(file) = file else {
+        return Ok(PerDof::splat(None));
+    };
+    let known =
+        newtons_file::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
+    Ok(known.per_g())
+}
+
+fn reading_per_g(args: &HoldArgs, newtons: &PerDof<Option<f64>>) -> anyhow::Result<PerDof<f64>> {
+    if !args.newtons {
+        return Ok(PerDof::splat(1.0));
+    }
+    let unknown = Finger::ALL
+        .map(Finger::bend)
+        .into_iter()
+        .find(|dof| newtons[*dof].is_none());
+    if let Some(dof) = unknown {
+        bail!(
+            "nothing was moved: the newtons of {} of this hand are not known; 'handscope scale --joint {}' measures them",
+            dof.name(),
+            dof.name()
+        );
+    }
+    Ok(newtons.map(|newtons| newtons.map_or(1.0, |newtons| N_PER_G / newtons)))
+}
+
+fn overshoot(hand: &Endpoint) -> OvershootMap {
+    let settings = settings_file::default_path();
+    let file = settings.and_then(|settings| overshoot_file::file_of(&settings, hand));
+    file.and_then(|file| overshoot_file::read(&file).ok())
+        .unwrap_or_default()
+}
+
+/// The outcome in one sentence; `Err` for failures.
+fn outcome(end: Ended<HoldEnd>) -> Result<String, String> {
+    match end {
+        Ok(HoldEnd::Held) => Ok("held; the hand keeps its position and what it holds".into()),
+        Err(Abort::Person) => Ok("ended by the user; the hand keeps its position and what it holds".into()),
+        Ok(HoldEnd::Nothing) => Err(
+            "the hand holds nothing: put the object in its place, and name a pose or a gap with --pose or --gap".into(),
+        ),
+        Ok(HoldEnd::Lost) => Err("the object left the hand".into()),
+        Ok(HoldEnd::Late) => Err("the hand did not get there in time".into()),
+        Err(Abort::LinkLost) => Err(STOP_LOST.into()),
+        Err(why) => Err(why.to_string()),
+    }
+}
+
+const fn end_name(end: Ended<HoldEnd>) -> &'static str {
+    match end {
+        Ok(HoldEnd::Held) => "held",
+        Ok(HoldEnd::Nothing) => "nothing",
+        Ok(HoldEnd::Lost) => "lost",
+        Ok(HoldEnd::Late) => "late",
+        Err(why) => session::early_end(why),
     }
 }

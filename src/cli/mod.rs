@@ -5,6 +5,7 @@ mod args;
 mod check;
 mod doctor;
 mod grip;
+mod guard;
 mod hold;
 mod inputs;
 mod listen;
@@ -26,7 +27,7 @@ mod watch;
 mod window;
 mod wires;
 
-use crate::link::guard::{self, holder};
+use crate::link::guard::{hold_all, holder};
 use anyhow::Context as _;
 use args::{Cli, CliCommand};
 use clap::{CommandFactory as _, Parser as _};
@@ -80,7 +81,7 @@ fn status(done: anyhow::Result<()>) -> ExitCode {
 fn report_panics() {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        guard::hold_all();
+        hold_all();
         if std::env::var_os("RUST_BACKTRACE").is_some() {
             default(panic);
         }
@@ -94,10 +95,10 @@ fn report_panics() {
 }
 
 fn execute(command: CliCommand) -> anyhow::Result<()> {
-    if let CliCommand::Hold(args) = command {
+    if let CliCommand::Guard(args) = command {
         // Before any thread is started: the threads of this process must inherit its signal mask.
-        return if hold::is_needed() {
-            wait_for(hold::run(&args))
+        return if guard::is_needed() {
+            wait_for(guard::run(&args))
         } else {
             Ok(())
         };
@@ -126,6 +127,7 @@ fn execute(command: CliCommand) -> anyhow::Result<()> {
         }
         CliCommand::Man(args) => about::packaging::man(&mut out, &args, Cli::command()),
         CliCommand::Grip(args) => wait_for(grip::run(&mut out, &args)),
+        CliCommand::Hold(args) => wait_for(hold::run(&mut out, &args)),
         CliCommand::Scale(args) => wait_for(scale::run(&mut out, &args)),
         CliCommand::Follow(args) => wait_for(inputs::follow::run(&mut out, &args)),
         CliCommand::Record(args) => wait_for(recordings::record::run(&mut out, &args)),
@@ -138,7 +140,7 @@ fn execute(command: CliCommand) -> anyhow::Result<()> {
         CliCommand::Share(args) => wait_for(share::run(&mut out, &args)),
         CliCommand::Sim(args) => wait_for(sim::run(&mut out, &args)),
         CliCommand::Registers(args) => about::registers::run(&mut out, args.json),
-        CliCommand::Hold(_) => Ok(()),
+        CliCommand::Guard(_) => Ok(()),
         CliCommand::Help(args) => about::help::run(&mut out, &args, Cli::command()),
     };
     // Output written before a failure is shown as well.

@@ -12,7 +12,7 @@ use crate::link::{
     Stop,
 };
 use crate::motion::drive::STOP_LOST;
-use crate::record::{Disarmed, LinkState};
+use crate::record::{Abort, Disarmed, LinkState};
 use crate::transport::Endpoint;
 use anyhow::bail;
 use std::sync::Arc;
@@ -136,6 +136,18 @@ impl HeatStatus {
                 Some(format!("{}: the hand is stopped", heat?))
             }
         }
+    }
+}
+
+/// Name of an early end, as in JSON.
+pub(crate) const fn early_end(why: Abort) -> &'static str {
+    match why {
+        Abort::Person => "person",
+        Abort::OtherController { .. } | Abort::TakenOver => "taken_over",
+        Abort::Fault { .. } => "fault",
+        Abort::LinkLost => "link_lost",
+        // The other reasons disarm, or occur only in trials.
+        _ => "disarmed",
     }
 }
 

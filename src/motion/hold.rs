@@ -72,7 +72,9 @@ pub struct HoldForces {
     HoldForces::LEAST, HoldForces::LEAST + HoldForces::ROOM, HoldForces::MOST, HoldForces::ROOM
 )]
 pub struct NoRoom {
+    /// *At least*, g.
     pub at_least: i16,
+    /// *At most*, g.
     pub at_most: i16,
 }
 
@@ -113,10 +115,10 @@ impl HoldForces {
         self.at_most_g
     }
 
-    fn range(self) -> ForceRange {
+    fn range(self, reading_per_g: f64) -> ForceRange {
         ForceRange {
-            least_g: self.at_least_g.get().into(),
-            most_g: self.at_most_g.get().into(),
+            least_g: f64::from(self.at_least_g.get()) * reading_per_g,
+            most_g: f64::from(self.at_most_g.get()) * reading_per_g,
         }
     }
 }
@@ -141,6 +143,8 @@ pub struct HoldStart {
     pub forces: HoldForces,
     /// Time for which the object is held; `None` until it is ended.
     pub duration: Option<Duration>,
+    /// Reading of each joint for one gram of its forces: 1, or what was measured with a kitchen scale for forces in newtons.
+    pub reading_per_g: PerDof<f64>,
     /// Joints that do not move.
     pub locked: PerDof<bool>,
     /// Overshoot measured on this hand, which sets the speed of the close.
@@ -180,6 +184,7 @@ pub enum HoldPhase {
 /// A hold for display.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct HoldView {
+    /// Its phase.
     pub phase: HoldPhase,
     /// Forces between which it holds.
     pub forces: HoldForces,
@@ -209,7 +214,9 @@ impl HoldView {
 /// A finger that pressed harder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Tightened {
+    /// The finger.
     pub finger: Finger,
+    /// Its reason.
     pub cause: TightenCause,
 }
 
@@ -311,6 +318,16 @@ impl HoldRun {
             is_warm: false,
             end: None,
         }
+    }
+
+    /// Forces of a joint, as its sensor reads them.
+    fn range(&self, dof: Dof) -> ForceRange {
+        self.start.forces.range(self.start.reading_per_g[dof])
+    }
+
+    /// Time for which it has held; `None` if it never did.
+    pub fn held_for(&self, now: Moment) -> Option<Duration> {
+        self.held_since.map(|since| now.since(since))
     }
 
     /// Grip at the end of the readings.
@@ -486,7 +503,7 @@ impl HoldRun {
             GripState::Holding | GripState::Slipping | GripState::TooHard
         );
         let force = self.force_g(sample, finger.bend());
-        let presses = |force: f64| force >= f64::from(self.start.forces.at_least().get()) / 2.0;
+        let presses = |force: f64| force >= self.range(finger.bend()).least_g / 2.0;
         (is_held || force.is_some_and(presses)) && !self.start.locked[finger.bend()]
     }
 }
@@ -541,14 +558,14 @@ impl HoldRun {
 
     fn send_leg(&mut self, now: Moment, angles: &PerDof<AngleReading>) -> Option<Order> {
         let leg = self.legs.as_ref()?.front().copied()?;
-        let close_g = f64::from(self.start.forces.at_least().get()) * CLOSE_FACTOR;
-        let most = self.start.forces.range().most_g;
         let mut setpoints = Setpoints::none(self.epoch);
         for (dof, to) in leg.targets.iter() {
             let Some(to) = *to else {
                 continue;
             };
-            self.threshold_g[dof] = close_g.min(most) + self.shift_g[dof];
+            let range = self.range(dof);
+            let close_g = (range.least_g * CLOSE_FACTOR).min(range.most_g);
+            self.threshold_g[dof] = close_g + self.shift_g[dof];
             setpoints.angle[dof] = Some(Target::Go(to));
             setpoints.force[dof] = Some(Force::nearest(rounded(self.threshold_g[dof])));
             setpoints.speed[dof] = Some(self.close_speed(dof, to, angles[dof]));
@@ -565,7 +582,7 @@ impl HoldRun {
         if dof == Dof::ThumbRotate {
             return Speed::nearest(ROTATE_SPEED);
         }
-        let range = self.start.forces.range();
+        let range = self.range(dof);
         let threshold_g = range.least_g * CLOSE_FACTOR;
         let fits = |speed: i16| {
             let expected =
@@ -615,10 +632,10 @@ impl HoldRun {
         if !self.is_at_rest(seen, |dof| leg.targets[dof].is_some()) {
             return None;
         }
-        let range = self.start.forces.range();
         let mut setpoints = Setpoints::none(self.epoch);
         for finger in Finger::ALL {
             let dof = finger.bend();
+            let range = self.range(dof);
             let (Some(to), Some(force)) = (leg.targets[dof], self.force_g(seen.sample, dof)) else {
                 continue;
             };
@@ -648,7 +665,6 @@ impl HoldRun {
 impl HoldRun {
     /// Makes the held position the target of the fingers that hold.
     fn take_over(&mut self, seen: &Seen<'_>, angles: &PerDof<AngleReading>) -> Option<Order> {
-        let range = self.start.forces.range();
         let mut setpoints = Setpoints::none(self.epoch);
         for finger in Finger::ALL {
             if !self.holds(seen.sample, finger) {
@@ -658,7 +674,7 @@ impl HoldRun {
             let Some(at) = angles[dof].hold() else {
                 continue;
             };
-            let zero = &self.zeros[dof];
+            let (zero, range) = (&self.zeros[dof], self.range(dof));
             // A drive that counts its zero may stop earlier by as much.
             let early_g = (zero.mean().unwrap_or_default() - self.shift_g[dof]).max(0.0);
             let usable = ForceRange {
@@ -691,11 +707,10 @@ impl HoldRun {
         if seen.now.since(self.sent) < TAKE_DELAY {
             return None;
         }
-        let most = self.start.forces.range().most_g;
         let mut setpoints = Setpoints::none(self.epoch);
         for (finger, _) in self.fingers.iter().filter(|(_, hold)| hold.is_some()) {
             let dof = finger.bend();
-            self.threshold_g[dof] = most + self.shift_g[dof];
+            self.threshold_g[dof] = self.range(dof).most_g + self.shift_g[dof];
             setpoints.force[dof] = Some(Force::nearest(rounded(self.threshold_g[dof])));
         }
         (self.step, self.held_since) = (Step::Holding, Some(seen.now));
@@ -757,7 +772,7 @@ impl HoldRun {
 
     fn watch_loss(&mut self, seen: &Seen<'_>, finger: Finger, force_g: f64) {
         let tip_n = seen.sample.tactile[finger].and_then(|tip| tip.value.normal());
-        let least = GONE_SHARE * self.start.forces.range().least_g;
+        let least = GONE_SHARE * self.range(finger.bend()).least_g;
         let is_gone = force_g < least && tip_n.is_none_or(|n| n < TOUCH_N);
         let since = &mut self.gone_since[finger];
         *since = is_gone.then(|| since.unwrap_or(seen.now));

@@ -211,11 +211,6 @@ impl FingerHold {
         FOLLOW + 1.5 * (self.range.most_g - self.range.least_g) / self.stiffness
     }
 
-    /// Stiffness of the contact, g per unit of angle.
-    pub(crate) const fn stiffness(&self) -> f64 {
-        self.stiffness
-    }
-
     /// Ratio of tangential to normal force up to which the object is expected to hold.
     pub(crate) fn friction(&self) -> f64 {
         let held = self.held_ratio.max(USUAL_FRICTION);

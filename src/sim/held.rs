@@ -222,8 +222,9 @@ impl Held {
         }
     }
 
-    /// Advances by one millisecond with these normal forces; `is_open` is true if no joint is near the object's place.
-    pub fn step(&mut self, normal_g: &PerFinger<f64>, is_open: bool) {
+    /// Advances by one millisecond with these normal forces. `is_open` is true if no joint is near the object's place, `is_closing` while
+    /// a joint moves: nobody lifts an object before the grip is complete.
+    pub fn step(&mut self, normal_g: &PerFinger<f64>, is_open: bool, is_closing: bool) {
         let loads = self.object.loads;
         match self.phase {
             Phase::Stands { pressed_ms } => {
@@ -231,7 +232,7 @@ impl Held {
                     pad.contact.normal_g = normal_g[finger];
                 }
                 let grips = normal_g.iter().filter(|(_, force)| **force >= GRIPS_G);
-                let pressed_ms = if grips.count() >= GRIPPING_FINGERS {
+                let pressed_ms = if grips.count() >= GRIPPING_FINGERS && !is_closing {
                     pressed_ms + 1
                 } else {
                     0
@@ -438,7 +439,7 @@ mod tests {
 
     fn run(held: &mut Held, normal_g: [f64; 5], ms: u64) -> HeldState {
         for _ in 0..ms {
-            held.step(&PerFinger::new(normal_g), false);
+            held.step(&PerFinger::new(normal_g), false, false);
         }
         held.state(false)
     }
@@ -520,7 +521,7 @@ mod tests {
         assert!(!held.is_present() && carried(&state) == DVec2::ZERO);
         let state = run(&mut held, [0.0; 5], 2000);
         assert_eq!(state.lost, Some(ObjectLoss::Dropped));
-        held.step(&PerFinger::splat(0.0), true);
+        held.step(&PerFinger::splat(0.0), true, false);
         assert!(held.is_present());
     }
 
@@ -538,7 +539,7 @@ mod tests {
         let normal_g = [0.0, 0.0, 100.0, 500.0, 500.0];
         let mut slipped = false;
         for _ in 0..AFTER_LIFT_MS {
-            held.step(&PerFinger::new(normal_g), false);
+            held.step(&PerFinger::new(normal_g), false, false);
             let state = held.state(false);
             slipped |= state.fingers[Finger::Middle].slides;
             assert!(!state.fingers[Finger::Index].slides && !state.slides);

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
 /// The subcommand that starts the holder, before `--hand` and the endpoint.
-pub const COMMAND: &str = "hold";
+pub const COMMAND: &str = "guard";
 /// Sent through the pipe: the hand may move from now on.
 pub const MOVES: u8 = b'm';
 /// Sent through the pipe: the hand rests, and nothing is armed.

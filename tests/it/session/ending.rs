@@ -160,7 +160,7 @@ fn holders(endpoint: &str) -> Vec<Pid> {
         let words = String::from_utf8_lossy(&words).replace('\0', " ");
         let is_one = words
             .trim_end()
-            .ends_with(&format!(" hold --hand {endpoint}"));
+            .ends_with(&format!(" guard --hand {endpoint}"));
         is_one.then(|| id(&entry.path()).map(Pid::from_raw))?
     })
     .collect()
