@@ -40,8 +40,11 @@ const QUIET: Duration = Duration::from_secs(2);
 const RELAX_INTERVAL: Duration = Duration::from_secs(1);
 /// A reduction that had to be taken back is not tried again for this time.
 const RELAX_PAUSE: Duration = Duration::from_secs(60);
-/// Time after which a step that had no effect is tried again.
+/// Share of the expected rise of the force below which a step had no effect, and the time after which it is tried again.
+const BLOCKED_SHARE: f64 = 0.3;
 const BLOCKED_PAUSE: Duration = Duration::from_secs(2);
+/// Time after which a blocked drive is opened again.
+const OPEN_PAUSE: Duration = Duration::from_secs(20);
 /// Reduction of the wanted force per second while it is quiet, as a share of it.
 const RELAX_SHARE: f64 = 0.2;
 /// Share of what a finger presses too hard that one reduction takes away.
@@ -169,6 +172,10 @@ pub(crate) struct FingerHold {
     is_short: bool,
     /// Force at which steps had no effect: its threshold or its stroke stops the drive.
     blocked: Option<(f64, Moment)>,
+    /// A drive that its threshold stopped may ignore further closing until it opens: it opens by one unit first.
+    opens_first: bool,
+    /// Time at which it last did.
+    opened: Option<Moment>,
 }
 
 impl FingerHold {
@@ -192,6 +199,8 @@ impl FingerHold {
             relaxes_from: now,
             is_short: false,
             blocked: None,
+            opens_first: false,
+            opened: None,
         }
     }
 
@@ -338,10 +347,12 @@ impl FingerHold {
 
     /// Learns the stiffness from a step that has acted.
     fn learn(&mut self, step: Underway, force_g: f64, angle: i16) {
-        let tightens = step.aim_g > step.from_g + self.noise_g;
-        let is_blocked = force_g < step.from_g + 0.3 * (step.aim_g - step.from_g);
-        self.blocked = (tightens && is_blocked)
-            .then(|| (force_g.max(step.from_g), step.at.plus(BLOCKED_PAUSE)));
+        let rise = step.aim_g - step.from_g;
+        let is_blocked = rise > self.noise_g && force_g < step.from_g + BLOCKED_SHARE * rise;
+        let blocked = (force_g.max(step.from_g), step.at.plus(BLOCKED_PAUSE));
+        self.blocked = is_blocked.then_some(blocked);
+        let may_open = |opened: Moment| step.at.since(opened) >= OPEN_PAUSE;
+        self.opens_first = is_blocked && self.opened.is_none_or(may_open);
         let way = f64::from(step.from_angle) - f64::from(angle);
         let change = force_g - step.from_g;
         if way.abs() >= 1.0 && change * way > 0.0 && change.abs() > self.noise_g {
@@ -383,6 +394,12 @@ impl FingerHold {
         let is_blocked = |(force_g, until): (f64, Moment)| {
             seen.expected_g >= NEARLY_BLOCKED * force_g && seen.reading.at < until
         };
+        if self.opens_first && self.underway.is_none() {
+            self.opens_first = false;
+            self.opened = Some(seen.reading.at);
+            self.target = f64::from(seen.reading.angle);
+            return self.step(seen, 1.0, None);
+        }
         if self.blocked.is_some_and(is_blocked) {
             return None;
         }
