@@ -4,6 +4,7 @@ use crate::app::checkup::CheckupAction;
 use crate::app::controls::HoldKey;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::files::export::Export;
+use crate::app::hand::hold::HoldAction;
 use crate::app::hand::list::HandsAction;
 use crate::app::inputs::InputAction;
 use crate::app::layout::Layout;
@@ -61,6 +62,8 @@ pub enum Action {
     MeasureBlock(f32),
     /// Forget the blocks that were measured with this hand.
     ForgetBlocks,
+    /// An action on a hold between two forces.
+    Hold(HoldAction),
     /// Start a gesture stored in the hand. Needs arming.
     Gesture(Gesture),
     /// Store the current pose of the hand, by this name or the next unused one.
@@ -185,11 +188,13 @@ impl Action {
             Self::Recall(id) => UserAct::Pose(poses.pose(*id)?.name.as_str().into()),
             Self::Pinch(gap) => UserAct::Pose(format!("pinch {:.0} mm", gap.mm()).into()),
             Self::Play(play) => UserAct::Play(*play),
+            Self::Hold(HoldAction::Start(_)) => UserAct::Pose("hold".into()),
             Self::Stop
             | Self::Arm
             | Self::HoldToRun(_)
             | Self::HoldKey(_)
             | Self::DisarmIdle(_)
+            | Self::Hold(_)
             | Self::Gesture(_)
             | Self::Capture(_)
             | Self::Recapture(_)

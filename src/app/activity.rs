@@ -13,7 +13,7 @@ pub enum Activity {
     Series,
     /// The hand follows another party, to which the user granted control.
     Following(Owner),
-    /// An entry of the library is playing. The user takes over by moving the hand.
+    /// An entry of the library is playing, or a hold runs. The user takes over by moving the hand.
     Playing,
     Idle,
 }

@@ -6,6 +6,7 @@ use crate::hand::{
     Setpoints, Speed, Target,
 };
 use crate::link::{ArmRequest, HoldToRun};
+use crate::motion::hold::HoldForces;
 use crate::record::Record;
 use std::time::Duration;
 
@@ -53,6 +54,8 @@ pub struct Controls {
     pub joints: PerDof<JointControl>,
     /// The stored gesture that was started last, unless it failed.
     pub gesture: Option<Gesture>,
+    /// Forces of a hold, if the user set any.
+    pub(crate) hold_forces: Option<HoldForces>,
     /// Hold-to-run key.
     pub(crate) held: HeldKey,
     /// Sliders that show the commanded target; the others show the actual angle.
@@ -68,6 +71,7 @@ impl Controls {
     pub(crate) fn at_next_connection(self) -> Self {
         Self {
             joints: self.joints,
+            hold_forces: self.hold_forces,
             ..Self::default()
         }
     }

@@ -3,6 +3,7 @@
 use crate::app::action::Action;
 use crate::app::checkup::CheckupAction;
 use crate::app::controls::HoldKey;
+use crate::app::hand::hold::HoldAction;
 use crate::app::hand::list::HandsAction;
 use crate::app::inputs::InputAction;
 use crate::app::params::state::ParamAction;
@@ -103,6 +104,7 @@ impl Action {
             | Self::HoldToRun(true)
             | Self::HoldKey(HoldKey::LetGo)
             | Self::Play(Play::Pause | Play::End)
+            | Self::Hold(HoldAction::End)
             | Self::Input(InputAction::TakeBack)
             | Self::Hands(HandsAction::StopOne(_)) => ActionEffect::Stop,
             Self::Arm
@@ -110,6 +112,7 @@ impl Action {
             | Self::Target(..)
             | Self::Preset(_)
             | Self::Pinch(_)
+            | Self::Hold(HoldAction::Start(_))
             | Self::Gesture(_)
             | Self::Recall(_)
             | Self::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
@@ -122,6 +125,7 @@ impl Action {
             | Self::Force(..)
             | Self::Speed(..)
             | Self::Lock(..)
+            | Self::Hold(HoldAction::Forces(_))
             | Self::Input(InputAction::Limit(_))
             | Self::ClearErrors => ActionEffect::Adjustment,
             Self::Param(

@@ -6,6 +6,8 @@ use crate::hand::gap::BlockError;
 use crate::hand::grip::GripState;
 use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, Owner, RequestError};
+use crate::motion::hold::HoldEnd;
+use crate::motion::program::Ended;
 use crate::record::Abort;
 use crate::record::export::ExportError;
 use crate::record::file::{OpenError, RecorderNotice};
@@ -124,6 +126,10 @@ pub enum NoticeKind {
     },
     /// A sequence ended because no object was held in time.
     NotHolding { grip: GripState },
+    /// A hold needs more than *at most*.
+    CannotHold,
+    /// A hold ended by itself, or early.
+    HoldEnded(Ended<HoldEnd>),
     /// A series of trials has ended.
     SeriesEnded {
         /// Number of measured trials.

@@ -8,6 +8,7 @@ use crate::cli::parse::{hand, seconds};
 use crate::cli::session;
 use crate::cli::trial::drive::ArmedHand;
 use crate::hand::gap::Gap;
+use crate::hand::grip::Tightened;
 use crate::hand::newtons::N_PER_G;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::statistics::mean;
@@ -15,7 +16,7 @@ use crate::hand::{Finger, Force, Moment, PerDof, Speed};
 use crate::link::ArmRequest;
 use crate::motion::drive::{STOP_LOST, stop_words};
 use crate::motion::hold::{
-    HoldClose, HoldEnd, HoldForces, HoldPhase, HoldRun, HoldStart, HoldView, Tightened,
+    HoldClose, HoldEnd, HoldForces, HoldPhase, HoldRun, HoldStart, HoldView,
 };
 use crate::motion::program::{Ended, Progress};
 use crate::poses::starter::starter;

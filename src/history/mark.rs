@@ -1,6 +1,7 @@
 //! Events marked by a line across all plots. Bounded.
 
 use crate::hand::Moment;
+use crate::hand::grip::Tightened;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -27,6 +28,8 @@ pub enum MarkKind {
     Reconnected,
     /// A gesture was started; its number.
     Gesture(u8),
+    /// A finger of a hold pressed harder.
+    Tightened(Tightened),
     /// A note by the user, at most [`NOTE_MAX`] characters on one line.
     Note(Arc<str>),
 }
@@ -55,6 +58,9 @@ impl MarkKind {
             Self::LinkLost => "link lost".into(),
             Self::Reconnected => "reconnected".into(),
             Self::Gesture(number) => format!("gesture {number}"),
+            Self::Tightened(own) => {
+                format!("tightened: {}, {}", own.finger.name(), own.cause.name())
+            }
             Self::Note(words) => format!("note: {words}"),
         }
     }

@@ -2,7 +2,7 @@
 //! holds, and never with more than *at most*. The hand itself enforces *at most* by its force threshold, also if this program dies.
 
 use crate::hand::gap::Gap;
-use crate::hand::grip::{Grip, GripEstimator, GripState};
+use crate::hand::grip::{Grip, GripEstimator, GripState, Tightened};
 use crate::hand::overshoot::{MeasuredOn, OvershootMap, Stages};
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Finger, Force, ForceReading, Group, Groups, HandSample,
@@ -16,8 +16,6 @@ use crate::record::Abort;
 use serde::Serialize;
 use std::collections::VecDeque;
 use std::time::Duration;
-
-pub use crate::motion::hold_finger::TightenCause;
 
 /// Poll rates while a hold lasts: slips show first on the fingertips.
 pub const RATES: PollRates = PollRates {
@@ -102,6 +100,16 @@ impl HoldForces {
                 at_least: least,
                 at_most: most,
             })
+        }
+    }
+
+    /// The nearest two forces that leave room for a hold.
+    pub fn nearest(at_least: Force, at_most: Force) -> Self {
+        let least = at_least.get().clamp(Self::LEAST, Self::MOST - Self::ROOM);
+        let most = at_most.get().clamp(least + Self::ROOM, Self::MOST);
+        Self {
+            at_least_g: Force::nearest(least),
+            at_most_g: Force::nearest(most),
         }
     }
 
@@ -201,6 +209,19 @@ pub struct HoldView {
 }
 
 impl HoldView {
+    /// A hold that has just started.
+    pub const fn first(forces: HoldForces) -> Self {
+        Self {
+            phase: HoldPhase::Measuring,
+            forces,
+            force_g: PerFinger::splat(None),
+            margin_percent: None,
+            tightened: 0,
+            last: None,
+            is_warm: false,
+        }
+    }
+
     /// Mean force of the fingers that hold, g; `None` if none does.
     pub fn mean_g(&self) -> Option<i16> {
         let forces = self.force_g.as_array().iter().flatten();
@@ -209,15 +230,6 @@ impl HoldView {
         });
         (count > 0).then(|| i16::try_from(sum / count).unwrap_or(i16::MAX))
     }
-}
-
-/// A finger that pressed harder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Tightened {
-    /// The finger.
-    pub finger: Finger,
-    /// Its reason.
-    pub cause: TightenCause,
 }
 
 /// The zero of a joint's force sensor, as measured before the close.

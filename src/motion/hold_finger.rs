@@ -1,5 +1,6 @@
 //! One finger that holds an object: the force it should press with, and the steps of its angle target that lead there. Pure.
 
+use crate::hand::grip::TightenCause;
 use crate::hand::statistics::median;
 use crate::hand::{Angle, Moment, Speed};
 use std::collections::VecDeque;
@@ -98,32 +99,6 @@ pub(crate) struct FingerReading {
     pub(crate) angle: i16,
     /// The drive is warm.
     pub(crate) is_warm: bool,
-}
-
-/// Why a finger presses harder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TightenCause {
-    /// It pressed with less than *at least*.
-    TooLittle,
-    /// The tangential force came too close to the friction.
-    Margin,
-    /// The tangential force rose quickly.
-    Load,
-    /// The object slid on the fingertip.
-    Slip,
-}
-
-impl TightenCause {
-    /// Name as in JSON.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::TooLittle => "too_little",
-            Self::Margin => "margin",
-            Self::Load => "load",
-            Self::Slip => "slip",
-        }
-    }
 }
 
 /// A step of the angle target.

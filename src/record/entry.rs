@@ -63,6 +63,8 @@ pub enum EventKind {
     Person,
     /// A grasp trial began; the text names it.
     Trial,
+    /// A finger of a hold pressed harder, or the hold does not suffice; the text says which.
+    Hold,
     /// A setting of the program or of the hand was changed.
     Setting,
     /// The hand's stored parameters, in TOML.
@@ -91,6 +93,7 @@ impl EventKind {
             Self::NoteRemoved => "note_removed",
             Self::Person => "person",
             Self::Trial => "trial",
+            Self::Hold => "hold",
             Self::Setting => "setting",
             Self::Parameters => "parameters",
             Self::Settings => "settings",
@@ -105,11 +108,12 @@ impl EventKind {
 
     /// Kind of a name in a file; `None` if it is unknown.
     pub fn by_key(key: &str) -> Option<Self> {
-        const ALL: [EventKind; 13] = [
+        const ALL: [EventKind; 14] = [
             EventKind::Note,
             EventKind::NoteRemoved,
             EventKind::Person,
             EventKind::Trial,
+            EventKind::Hold,
             EventKind::Setting,
             EventKind::Parameters,
             EventKind::Settings,

@@ -3,6 +3,7 @@
 
 mod free_force;
 pub mod grip;
+pub mod hold;
 pub mod list;
 pub mod mover;
 #[cfg(test)]
@@ -104,7 +105,9 @@ impl Hand {
             Activity::Series
         } else if let Some(owner) = self.connection.outside_owner() {
             Activity::Following(owner)
-        } else if self.running.sequence().is_some_and(SequenceRun::is_running) {
+        } else if self.running.sequence().is_some_and(SequenceRun::is_running)
+            || self.running.holds()
+        {
             Activity::Playing
         } else {
             Activity::Idle
@@ -463,6 +466,9 @@ impl Hand {
     /// Gives control to the user; whatever moved the hand before loses it.
     pub(crate) fn take_over(&mut self) {
         if let Some(run) = self.running.sequence_mut() {
+            run.leave();
+        }
+        if let Some(run) = self.running.hold_mut() {
             run.leave();
         }
         self.connection.take_over();

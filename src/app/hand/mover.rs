@@ -22,6 +22,8 @@ pub enum Mover {
     Checkup(usize, usize),
     /// An entry of the library, with the index of its step, from 0.
     Playing(EntryId, usize),
+    /// A hold between two forces.
+    Hold,
     /// A stored gesture.
     Gesture(Gesture),
     /// A party outside this window, to which the user granted control.
@@ -68,6 +70,9 @@ impl Mover {
         }
         if let Some(run) = hand.running.sequence().filter(|run| run.is_running()) {
             return Some(Self::Playing(run.entry, run.view.at));
+        }
+        if hand.running.holds() {
+            return Some(Self::Hold);
         }
         if link.rest != Rest::Moving || connection.commanded && came_to_rest(hand, now) {
             return None;

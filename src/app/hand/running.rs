@@ -2,6 +2,7 @@
 
 use crate::app::checkup::CheckupRun;
 use crate::app::env::running::Running;
+use crate::app::hand::hold::HoldMotion;
 use crate::app::inputs::FollowRun;
 use crate::app::trials::{SeriesPlan, SeriesRun};
 use crate::checkup::CheckupPlan;
@@ -37,6 +38,8 @@ pub enum MotionRun {
     Checkup(CheckupRun),
     /// An external source.
     Follow(FollowRun),
+    /// A hold between two forces, also one that has ended.
+    Hold(HoldMotion),
 }
 
 /// The one place for a program that moves a hand.
@@ -84,6 +87,27 @@ impl RunningMotion {
         }
     }
 
+    /// The hold that runs, or ran last.
+    pub const fn hold(&self) -> Option<&HoldMotion> {
+        match &self.0 {
+            Some(MotionRun::Hold(run)) => Some(run),
+            _ => None,
+        }
+    }
+
+    /// The current or last hold, mutable.
+    pub(crate) const fn hold_mut(&mut self) -> Option<&mut HoldMotion> {
+        match &mut self.0 {
+            Some(MotionRun::Hold(run)) => Some(run),
+            _ => None,
+        }
+    }
+
+    /// True while a hold runs.
+    pub fn holds(&self) -> bool {
+        self.hold().is_some_and(HoldMotion::is_running)
+    }
+
     /// True while a series waits for arming.
     pub const fn awaits_arming(&self) -> bool {
         matches!(self.0, Some(MotionRun::Arming(..)))
@@ -99,12 +123,13 @@ impl RunningMotion {
         self.0.take_if(|run| matches!(run, MotionRun::Arming(..)));
     }
 
-    /// Ends a series early, because the user stopped the hand.
+    /// Ends a series or a hold early, because the user stopped the hand.
     pub(crate) fn end_series(&mut self) {
         self.forget_arming();
         match &mut self.0 {
             Some(MotionRun::Trials(run)) => run.end(Abort::Person),
             Some(MotionRun::Checkup(run)) => run.end(Abort::Person),
+            Some(MotionRun::Hold(run)) => run.end(Abort::Person),
             Some(MotionRun::Arming(..) | MotionRun::Sequence(_) | MotionRun::Follow(_)) | None => {}
         }
     }

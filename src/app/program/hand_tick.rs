@@ -3,6 +3,7 @@
 use crate::app::checkup::{CheckupRun, files};
 use crate::app::env::Ctx;
 use crate::app::hand::Hand;
+use crate::app::hand::hold::HoldMotion;
 use crate::app::hand::running::SequenceRun;
 use crate::app::hand::running::{AskedSeries, MotionRun};
 use crate::app::notices::NoticeKind;
@@ -17,8 +18,9 @@ use crate::app::trials::work::SeriesHand;
 use crate::app::trials::{SeriesPlan, SeriesRun, TrialsState};
 use crate::checkup::CheckupPlan;
 use crate::hand::{Moment, Status};
+use crate::history::MarkKind;
 use crate::poses::player::{PlayEnd, PlayPhase};
-use crate::record::EventKind;
+use crate::record::{Abort, EventKind};
 use std::time::Duration;
 
 /// A hand that is not armed within this time, even on the slowest wire, will not be armed.
@@ -47,13 +49,15 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     if let Some(PlayPhase::Ended(Ok(PlayEnd::NotHolding(grip)))) = phase.filter(|_| ran) {
         ctx.notify(NoticeKind::NotHolding { grip });
     }
-    if !hand.running.sequence().is_some_and(SequenceRun::is_running) {
+    tick_hold(hand, ctx);
+    if !hand.running.sequence().is_some_and(SequenceRun::is_running) && !hand.running.holds() {
         restore_rested(hand);
     }
     inputs::tick(hand, shared.settings, shared.poses, ctx);
     hand.need_key(shared.settings.hold_to_run);
     hand.tick_requests(ctx);
-    if shared.settings.disarm_idle && hand.connection.idle(ctx.now).is_some() {
+    let is_idle = !hand.running.holds() && hand.connection.idle(ctx.now).is_some();
+    if shared.settings.disarm_idle && is_idle {
         hand.disarm(ctx.now);
         ctx.notify(NoticeKind::IdleDisarmed);
     }
@@ -193,6 +197,26 @@ fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
         if hand.connection.status.armed == Some(epoch) {
             hand.disarm(ctx.now);
         }
+    }
+}
+
+/// Applies the progress of a hold: each finger that pressed harder is a mark.
+fn tick_hold(hand: &mut Hand, ctx: &mut Ctx<'_>) {
+    let Some(news) = hand.running.hold_mut().map(HoldMotion::news) else {
+        return;
+    };
+    news.sent.iter().for_each(|setpoints| hand.sent(setpoints));
+    for (at, tightened) in news.tightened {
+        let mark = MarkKind::Tightened(tightened);
+        record_event(hand, at, EventKind::Hold, mark.words());
+        hand.measured.history.mark(at, mark);
+    }
+    if news.cannot_hold {
+        record_event(hand, ctx.now, EventKind::Hold, "cannot hold".into());
+        ctx.notify(NoticeKind::CannotHold);
+    }
+    if let Some(end) = news.end.filter(|end| *end != Err(Abort::Person)) {
+        ctx.notify(NoticeKind::HoldEnded(end));
     }
 }
 

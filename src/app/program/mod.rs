@@ -228,6 +228,7 @@ impl App {
             Action::Pinch(gap) => pinch::pinch(state, gap, env),
             Action::MeasureBlock(size_mm) => pinch::measure_block(state, size_mm),
             Action::ForgetBlocks => pinch::forget_blocks(state),
+            Action::Hold(action) => pinch::hold(state.hand_mut(), action, env),
             Action::Gesture(gesture) => hands::with_shown(state, env, |hand, settings, ctx| {
                 hand.gesture(gesture, settings.gesture_route, ctx);
             }),

@@ -9,8 +9,10 @@ mod motion;
 pub mod slip;
 mod state;
 mod thresholds;
+mod tightened;
 
 pub use estimator::GripEstimator;
 pub use free::{FreeClose, FreeForce, NoFreeForce};
 pub use state::{Grip, GripEstimate, GripState};
 pub use thresholds::{GripThreshold, GripThresholds};
+pub use tightened::{TightenCause, Tightened};

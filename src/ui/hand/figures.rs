@@ -7,10 +7,11 @@ use crate::hand::grip::{Grip, GripState};
 use crate::hand::heat::WARM;
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, Quantity};
+use crate::motion::hold::HoldPhase;
 use crate::ui::hand::view::{HandPoints, HandView};
 use crate::ui::kit::DriveWords;
 use crate::ui::kit::{Label, Pane, format, text_width};
-use crate::ui::text::{main, panels, poses, words};
+use crate::ui::text::{hold, main, panels, poses, words};
 use crate::ui::theme;
 use egui::{Color32, FontId, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
@@ -178,7 +179,7 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
     }
 }
 
-fn grip(pane: &Pane<'_>) -> Grip {
+pub(crate) fn grip(pane: &Pane<'_>) -> Grip {
     grip::grip_now(pane.hand(), pane.state.now)
 }
 
@@ -203,8 +204,14 @@ pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
     if let Some(size) = held_size(pane).filter(|_| state == GripState::Holding) {
         words = look.list(&[&words, &size]);
     }
+    let mut color = grip_color(pane, state);
+    if let Some(run) = pane.hand().running.hold().filter(|run| run.is_running()) {
+        words = hold::state(look, &run.view);
+        let is_short = run.view.phase == HoldPhase::CannotHold;
+        color = if is_short { look.palette.warn } else { color };
+    }
     let line = place.with_min_y(place.bottom() - theme::PAD);
-    let label = Label::new(&words, grip_color(pane, state)).small();
+    let label = Label::new(&words, color).small();
     let label = label.named(look.tr(panels::GRIP)).put(ui, line);
     label.on_hover_text(look.tip(panels::GRIP));
 }

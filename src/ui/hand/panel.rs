@@ -9,6 +9,7 @@ use crate::hand::heat::{HOT, WARM};
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, Finger, Moment, PerDof, PerFinger, Status};
 use crate::sim::Scenario;
+use crate::sim::object::NamedObject;
 use crate::transport::Endpoint;
 use crate::ui::hand::fingertip::{Sense as Meant, Tip};
 use crate::ui::hand::pointed::{self, PointedPlace};
@@ -178,11 +179,21 @@ fn load(tip: &Tip) -> TipLoad {
     }
 }
 
-/// Object in front of the built-in simulated hand, known from its scenario; `None` for any other hand.
+/// Object in front of the built-in simulated hand, known from its object or scenario; `None` for any other hand.
 fn held(endpoint: &Endpoint) -> Option<Held> {
-    let Endpoint::Sim { scenario, .. } = endpoint else {
+    let Endpoint::Sim {
+        scenario, object, ..
+    } = endpoint
+    else {
         return None;
     };
+    if let Some(object) = object {
+        return Some(match NamedObject::by_name(object) {
+            Some(NamedObject::Cup) => Held::Cup,
+            Some(NamedObject::Block) => Held::Block,
+            _ => Held::Ball,
+        });
+    }
     Some(match scenario.parse().ok()? {
         Scenario::Free | Scenario::Touched | Scenario::Frozen => return None,
         Scenario::Rigid => Held::Block,
@@ -249,6 +260,8 @@ mod tests {
             ("sim:?scenario=rigid", Some(Held::Block)),
             ("sim:?scenario=fragile", Some(Held::Cup)),
             ("sim:?scenario=grasp", Some(Held::Ball)),
+            ("sim:?scenario=free&object=block", Some(Held::Block)),
+            ("sim:?object=egg", Some(Held::Ball)),
             ("tcp:127.0.0.1:6000", None),
             ("rs485:/dev/ttyUSB0", None),
         ] {

@@ -5,7 +5,7 @@ use crate::ui::kit::{self, Label, Look, Pane};
 use crate::ui::plots::chart::{ChartResponse, pointed_s};
 use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::clock;
-use crate::ui::text::{notices, panels};
+use crate::ui::text::{hold, notices, panels};
 use crate::ui::theme;
 use egui::{Color32, Rect, Ui, pos2, vec2};
 
@@ -105,6 +105,9 @@ pub(crate) fn mark_text(look: Look, kind: &MarkKind) -> (String, Color32) {
         MarkKind::Gesture(number) => {
             let text = look.tr_with(panels::GESTURE, number);
             return (text, palette.accent);
+        }
+        MarkKind::Tightened(tightened) => {
+            return (hold::tightened(look, *tightened), palette.accent);
         }
         MarkKind::Note(words) => return (words.to_string(), palette.text),
     };

@@ -2,6 +2,7 @@
 pub(crate) mod editor;
 pub(crate) mod gestures;
 mod grip_size;
+mod hold;
 pub(crate) mod sequence_step;
 pub(crate) mod sequence_view;
 pub(crate) mod shipped;

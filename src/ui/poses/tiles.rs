@@ -10,7 +10,7 @@ use crate::poses::Play;
 use crate::poses::library::{EntryId, LibraryPose, StepGoal};
 use crate::ui::hand::tile;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight};
-use crate::ui::poses::grip_size;
+use crate::ui::poses::{grip_size, hold};
 use crate::ui::text::{Text, main, panels, poses, window};
 use crate::ui::theme;
 use crate::ui::view::View;
@@ -92,6 +92,7 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             capture_ui(ui, pane, Button::new(look.tr(poses::CAPTURE), tip));
             gestures_ui(ui, pane);
             grip_size::drawer_ui(ui, pane);
+            hold::drawer_ui(ui, pane);
             for_all_ui(ui, pane);
         });
         shelf_ui(ui, pane);

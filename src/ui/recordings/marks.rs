@@ -2,7 +2,7 @@
 
 use crate::record::EventKind;
 use crate::ui::kit::Look;
-use crate::ui::text::{Text, main, panels, recordings, tune};
+use crate::ui::text::{Text, hold, main, panels, recordings, tune};
 use egui::Color32;
 use std::time::Duration;
 
@@ -16,6 +16,7 @@ pub(crate) fn shown(look: Look, kind: EventKind) -> Option<(Text, Color32)> {
         EventKind::LinkLost => (main::STATE_LOST, palette.bad),
         EventKind::Reconnected => (panels::MARK_RECONNECT, palette.ok),
         EventKind::Trial => (tune::COLUMN_TRIAL, palette.accent),
+        EventKind::Hold => (hold::HOLD, palette.accent),
         EventKind::Note => (panels::NOTES, palette.text),
         EventKind::Recording => (recordings::RECORDING, palette.warn),
         _ => return None,

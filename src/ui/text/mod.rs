@@ -5,6 +5,7 @@ pub(crate) mod checkup;
 pub(crate) mod device;
 pub(crate) mod errors;
 pub(crate) mod exhibit;
+pub(crate) mod hold;
 pub(crate) mod inputs;
 pub(crate) mod main;
 pub(crate) mod notices;

@@ -11,7 +11,7 @@ use crate::record::quirk_sheet::FactDifference;
 use crate::ui::style::phrase::{Text, texts};
 use crate::ui::style::{Look, format};
 use crate::ui::text::{
-    checkup, errors, inputs, main, panels, poses, recordings, scan, tune, window, words,
+    checkup, errors, hold, inputs, main, panels, poses, recordings, scan, tune, window, words,
 };
 use std::path::Path;
 
@@ -225,6 +225,8 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         NoticeKind::NotHolding { grip } => {
             look.fill(poses::END_NOT_HOLDING, &[&look.tr(panels::grip(*grip))])
         }
+        NoticeKind::CannotHold => tr(hold::CANNOT_HOLD_NOTICE),
+        NoticeKind::HoldEnded(end) => hold::end(look, *end),
         NoticeKind::SeriesEnded { trials, aborted } => match aborted {
             None => look.fill(tune::ENDED, &[trials]),
             Some(why) => look.fill(tune::ENDED_EARLY, &[trials, &tune::abort(look, *why)]),

@@ -2,6 +2,7 @@
 //! and the note being written. The line is always visible, so nothing shifts when its content changes.
 
 use crate::app::action::Action;
+use crate::app::hand::hold::HoldAction;
 use crate::app::hand::mover::{Mover, rests};
 use crate::app::inputs::InputAction;
 use crate::app::notices::{Level, Notice, NoticeKind};
@@ -15,7 +16,9 @@ use crate::record::{Hold, LinkState};
 use crate::ui::inputs::owner_words;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight, format};
 use crate::ui::plots::times::clock;
-use crate::ui::text::{Text, checkup, errors, main, notices, panels, poses, tune, window, words};
+use crate::ui::text::{
+    Text, checkup, errors, hold, main, notices, panels, poses, tune, window, words,
+};
 use crate::ui::theme;
 use crate::ui::view::View;
 use egui::{Color32, Frame, Key, TextEdit, Ui, vec2};
@@ -250,6 +253,7 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
     Some(match Mover::of(pane.hand(), pane.state.now)? {
         Mover::Stop => (tr(window::MOVES_STOP), None),
         Mover::Calibration => (tr(window::MOVES_CALIBRATION), None),
+        Mover::Hold => (tr(hold::MOVES), Some(Action::Hold(HoldAction::End))),
         Mover::Series(number, total) => {
             let words = format!("{} {number} / {total}", look.tr(tune::COLUMN_TRIAL));
             (words, Some(Action::Stop))

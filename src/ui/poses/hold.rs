@@ -1,0 +1,158 @@
+//! A hold between two forces: a popup with its forces, the ways in which it begins, and its state.
+
+use crate::app::action::Action;
+use crate::app::hand::hold::HoldAction;
+use crate::hand::Force;
+use crate::hand::gap::Gap;
+use crate::hand::grip::GripState;
+use crate::motion::hold::{HoldClose, HoldForces, HoldPhase};
+use crate::poses::starter::starter;
+use crate::ui::hand::figures;
+use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
+use crate::ui::text::hold;
+use crate::ui::theme;
+use egui::{CornerRadius, Id, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+
+/// Width of the popup.
+const POPUP: f32 = 420.0;
+/// Highest force on the slider, g; the fields beside it go on to the limit.
+const SLIDER_MOST: f32 = 1000.0;
+/// Radius of a handle.
+const HANDLE: f32 = 8.0;
+/// The shipped pose to which all fingers close.
+const POWER: &str = "Power grasp";
+
+/// Draws the button in the strip of poses, with its popup.
+pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let is_on = pane.hand().running.holds();
+    let button = Button::text(look, hold::HOLD).switch(is_on).ui(ui, look);
+    kit::lasting_popup(&button).width(POPUP).show(|ui| {
+        ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
+        forces_ui(ui, pane);
+        if pane.hand().running.holds() {
+            let end = Button::text(look, hold::END).weight(Weight::Strong);
+            end.on_click(ui, pane, Action::Hold(HoldAction::End));
+        } else {
+            starts_ui(ui, pane);
+        }
+        state_ui(ui, pane);
+    });
+}
+
+/// Draws both forces: one slider with two handles, and a field for each.
+fn forces_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let (look, forces) = (pane.look, pane.hand().hold_forces());
+    let [least, most] = [forces.at_least(), forces.at_most()].map(|force| f32::from(force.get()));
+    let running = pane.hand().running.holds();
+    let moved = ui
+        .add_enabled_ui(!running, |ui| slider_ui(ui, look, [least, most]))
+        .inner;
+    let mut wanted = moved;
+    ui.horizontal(|ui| {
+        let both = [(hold::AT_LEAST, least), (hold::AT_MOST, most)];
+        for (nth, (text, now)) in both.into_iter().enumerate() {
+            Label::muted(look, text).ui(ui);
+            let range = f64::from(HoldForces::LEAST)..=f64::from(HoldForces::MOST);
+            let field = NumberField::new(look.tr(text), look.tip(text), range).needs_enter();
+            let refused = running.then(|| look.tr(hold::MOVES));
+            let typed = field.disabled(refused).ui(ui, pane, Some(now.into()));
+            #[expect(clippy::cast_possible_truncation, reason = "a force of at most 2000 g")]
+            if let Some(typed) = typed {
+                let mut both = [least, most];
+                if let Some(own) = both.get_mut(nth) {
+                    *own = typed as f32;
+                }
+                wanted = Some(both);
+            }
+        }
+    });
+    if let Some([least, most]) = wanted {
+        #[expect(clippy::cast_possible_truncation, reason = "a force of at most 2000 g")]
+        let [least, most] = [least, most].map(|g| Force::nearest(g.round() as i64));
+        let forces = HoldForces::nearest(least, most);
+        pane.actions.push(Action::Hold(HoldAction::Forces(forces)));
+    }
+}
+
+/// A slider with two handles; returns both forces if one was dragged.
+fn slider_ui(ui: &mut Ui, look: Look, [least, most]: [f32; 2]) -> Option<[f32; 2]> {
+    let size = vec2(ui.available_width(), 2.0 * HANDLE + 4.0);
+    let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+    let track = rect.shrink2(vec2(HANDLE, 0.0));
+    let x = |g: f32| track.left() + track.width() * (g / SLIDER_MOST).clamp(0.0, 1.0);
+    let line = |from: f32, to: f32| {
+        let middle = rect.center().y;
+        Rect::from_min_max(pos2(from, middle - 2.0), pos2(to, middle + 2.0))
+    };
+    let (palette, round) = (look.palette, CornerRadius::same(2));
+    let painter = ui.painter().clone();
+    painter.rect_filled(line(track.left(), track.right()), round, palette.control);
+    painter.rect_filled(line(x(least), x(most)), round, palette.accent);
+    let mut moved = None;
+    let both = [(hold::AT_LEAST, least), (hold::AT_MOST, most)];
+    for (nth, (text, now)) in both.into_iter().enumerate() {
+        let center = pos2(x(now), rect.center().y);
+        let place = Rect::from_center_size(center, vec2(2.0 * HANDLE, rect.height()));
+        let id = Id::unique(("hold force", nth));
+        let handle = ui.interact(place, id, Sense::drag());
+        let name = look.tr(text);
+        handle.widget_info(|| {
+            let mut info = WidgetInfo::labeled(Role::Slider, true, name);
+            info.value = Some(now.into());
+            info
+        });
+        let is_hot = handle.hovered() || handle.dragged();
+        let fill = if is_hot { palette.text } else { palette.accent };
+        painter.circle_filled(center, HANDLE, fill);
+        if let Some(pointer) = handle.interact_pointer_pos().filter(|_| handle.dragged()) {
+            let share = (pointer.x - track.left()) / track.width();
+            let g = (share.clamp(0.0, 1.0) * SLIDER_MOST / 10.0).round() * 10.0;
+            let room = f32::from(HoldForces::ROOM);
+            moved = Some(match nth {
+                0 => [g.min(most - room), most],
+                _ => [least, g.max(least + room)],
+            });
+        }
+        handle.on_hover_text(look.tip(text));
+    }
+    moved
+}
+
+/// Draws the ways in which a hold begins.
+fn starts_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let state = figures::grip(pane).grasp.state;
+    let holds = matches!(
+        state,
+        GripState::Holding | GripState::Slipping | GripState::TooHard
+    );
+    ui.horizontal(|ui| {
+        let nothing = (!holds).then(|| look.tr(hold::END_NOTHING));
+        let take = Button::text(look, hold::TAKE).disabled(pane.unready().or(nothing));
+        let start = |close| Action::Hold(HoldAction::Start(close));
+        take.on_click(ui, pane, start(HoldClose::TakeOver));
+        if let Some(pose) = starter().pose_named(POWER) {
+            let close = Button::text(look, hold::POWER).disabled(pane.unready());
+            close.on_click(ui, pane, start(HoldClose::To(pose.targets())));
+        }
+        let pinch = Button::text(look, hold::PINCH).disabled(pane.unready());
+        pinch.on_click(ui, pane, start(HoldClose::Pinch(Gap::MIN)));
+    });
+}
+
+/// Draws the state of the hold, or how the last one ended.
+fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let (look, palette) = (pane.look, pane.look.palette);
+    let Some(run) = pane.hand().running.hold() else {
+        return;
+    };
+    let (words, color) = match run.end {
+        Some(end) => (hold::end(look, end), palette.muted),
+        None if run.view.phase == HoldPhase::CannotHold => {
+            (hold::state(look, &run.view), palette.warn)
+        }
+        None => (hold::state(look, &run.view), palette.text),
+    };
+    Label::new(&words, color).wrap().ui(ui);
+}
