@@ -59,6 +59,7 @@ impl Try {
                 Start::Window(Window::armed_series),
                 Start::Window(Window::search),
                 Start::Window(Window::checkup),
+                Start::Window(Window::hold),
             ],
             Row::Exhibition => &[Start::Window(Window::exhibition)],
             Row::Calibration => &[Start::Window(Window::calibration)],
@@ -95,12 +96,17 @@ impl Try {
             },
             // The index of a grip has no farther to go than a drive may rest beside its target: it may have arrived.
             Row::Trial if self.column == Column::JointFrozen => {
-                &[Start::Process(Place::trial), Start::Process(Place::tune)]
+                &[
+                    Start::Process(Place::trial),
+                    Start::Process(Place::tune),
+                    Start::Process(Place::hold),
+                ]
             }
             Row::Trial => &[
                 Start::Process(Place::trial),
                 Start::Process(Place::tune),
                 Start::Process(Place::grip),
+                Start::Process(Place::hold),
             ],
             Row::Stdio => &[
                 Start::Process(Place::stdio_move),

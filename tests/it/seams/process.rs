@@ -180,6 +180,10 @@ impl Place {
         )
     }
 
+    pub(super) fn hold(self) -> Process {
+        self.start("hold", &["--pose", "Power grasp", "--json", "--arm"])
+    }
+
     /// A program that moves the hand by lines of JSON.
     fn stdio(self) -> Process {
         let hand = self.hand.endpoint.clone();

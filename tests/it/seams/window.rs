@@ -12,6 +12,7 @@ use handscope::app::action::Action;
 use handscope::app::checkup::CheckupAction;
 use handscope::app::env::Env;
 use handscope::app::exhibit::{ExhibitAction, Exhibition};
+use handscope::app::hand::hold::HoldAction;
 use handscope::app::hand::list::HandsAction;
 use handscope::app::inputs::InputAction;
 use handscope::app::procedures::procedure::ProcedureAction;
@@ -26,6 +27,7 @@ use handscope::hand::{Angle, Dof, Force, PerDof, Setpoints, Speed, Target};
 use handscope::inputs::mirror::MirrorScale;
 use handscope::inputs::pad::device::{OpenPads, PadReader};
 use handscope::inputs::pad::{PadNews, PadReport};
+use handscope::motion::hold::HoldClose;
 use handscope::motion::source::SourceKind;
 use handscope::poses::Play;
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
@@ -175,6 +177,15 @@ impl Window {
         }
         self.arm();
         self.act(Action::Play(Play::Start(EntryId::Sequence(own))));
+        self
+    }
+
+    /// A hold that closes.
+    pub(super) fn hold(mut self) -> Self {
+        self.arm();
+        let targets = PerDof::splat(Some(Angle::MIN));
+        let close = HoldAction::Start(HoldClose::To(targets));
+        self.act(Action::Hold(close));
         self
     }
 
