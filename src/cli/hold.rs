@@ -10,13 +10,13 @@ use crate::cli::trial::drive::ArmedHand;
 use crate::hand::gap::Gap;
 use crate::hand::grip::Tightened;
 use crate::hand::newtons::N_PER_G;
-use crate::hand::overshoot::OvershootMap;
+use crate::hand::overshoot::{OvershootMap, Stiffness};
 use crate::hand::statistics::mean;
 use crate::hand::{Finger, Force, Moment, PerDof, Speed};
 use crate::link::ArmRequest;
 use crate::motion::drive::{STOP_LOST, stop_words};
 use crate::motion::hold::{
-    HoldClose, HoldEnd, HoldForces, HoldPhase, HoldRun, HoldStart, HoldView,
+    HeldThing, HoldClose, HoldEnd, HoldForces, HoldPhase, HoldRun, HoldStart, HoldView,
 };
 use crate::motion::program::{Ended, Progress};
 use crate::poses::starter::starter;
@@ -197,7 +197,8 @@ impl HoldLines<'_> {
             HoldPhase::Measuring => "measuring the zero of the force sensors".into(),
             HoldPhase::Closing => "closing".into(),
             HoldPhase::Holding => {
-                format!("holding with {force}, margin {margin}; {tightened}{warm}")
+                let thing = view.thing.map_or(String::new(), |thing| held_words(&thing));
+                format!("holding with {force}, margin {margin}; {tightened}{warm}{thing}")
             }
             HoldPhase::CannotHold => format!(
                 "CANNOT HOLD within {} g: pressing with {force}, margin {margin}; {tightened}{warm}",
@@ -218,6 +219,22 @@ impl HoldLines<'_> {
         newtons
             .and_then(|all| mean(&all))
             .map_or(String::new(), |mean| format!(" ({mean:.1} N)"))
+    }
+}
+
+/// What is held, as far as it is known.
+fn held_words(thing: &HeldThing) -> String {
+    let gap = thing.gap_mm.map(|mm| format!("pads {mm:.0} mm apart"));
+    let stiffness = match thing.stiffness {
+        Stiffness::Unknown => None,
+        known => Some(known.name().to_owned()),
+    };
+    let load = thing.load_g.map(|g| format!("load {g} g"));
+    let all: Vec<String> = [gap, stiffness, load].into_iter().flatten().collect();
+    if all.is_empty() {
+        String::new()
+    } else {
+        format!("; held: {}", all.join(", "))
     }
 }
 

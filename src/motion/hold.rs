@@ -1,12 +1,13 @@
 //! A hold on a hand that the user armed: close until the fingers press with *at least*, then keep what is held with the least force that
 //! holds, and never with more than *at most*. The hand itself enforces *at most* by its force threshold, also if this program dies.
 
-use crate::hand::gap::Gap;
+use crate::hand::gap::{Gap, held_gap};
 use crate::hand::grip::{Grip, GripEstimator, GripState, Tightened};
-use crate::hand::overshoot::{MeasuredOn, OvershootMap, Stages};
+use crate::hand::overshoot::{MeasuredOn, OvershootMap, Stages, Stiffness};
+use crate::hand::statistics::{count, mean, median, spread};
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Finger, Force, ForceReading, Group, Groups, HandSample,
-    Moment, PerDof, PerFinger, Setpoints, Speed, Target,
+    Moment, PerDof, PerFinger, Setpoints, Speed, Target, heat,
 };
 use crate::link::PollRates;
 use crate::motion::hold_finger::{FingerHold, FingerReading, ForceRange, TipReading};
@@ -48,7 +49,7 @@ const TAKE_DELAY: Duration = Duration::from_millis(150);
 const GONE_SHARE: f64 = 0.2;
 const GONE_AFTER: Duration = Duration::from_millis(400);
 /// Temperature from which the hold is reduced, °C.
-const WARM: u8 = crate::hand::heat::WARM;
+const WARM: u8 = heat::WARM;
 /// Normal force from which a fingertip touches something, N.
 const TOUCH_N: f32 = 0.15;
 /// Grams-force per newton.
@@ -189,6 +190,18 @@ pub enum HoldPhase {
     CannotHold,
 }
 
+/// What is held, as far as the fingers show it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct HeldThing {
+    /// Distance of the pads of thumb and index, mm, by the model; `None` unless those two alone hold it.
+    pub gap_mm: Option<f32>,
+    /// Class of its stiffness.
+    pub stiffness: Stiffness,
+    /// Sum of the tangential forces, g: its weight, if the hand is upright and still. `None` while the load changes, or if a fingertip
+    /// of a finger that holds is not read.
+    pub load_g: Option<i16>,
+}
+
 /// A hold for display.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct HoldView {
@@ -206,6 +219,8 @@ pub struct HoldView {
     pub last: Option<Tightened>,
     /// A drive is warm.
     pub is_warm: bool,
+    /// What is held; `None` before it is.
+    pub thing: Option<HeldThing>,
 }
 
 impl HoldView {
@@ -219,6 +234,7 @@ impl HoldView {
             tightened: 0,
             last: None,
             is_warm: false,
+            thing: None,
         }
     }
 
@@ -240,13 +256,12 @@ struct Zero {
 
 impl Zero {
     fn mean(&self) -> Option<f64> {
-        crate::hand::statistics::mean(&self.readings)
+        mean(&self.readings)
     }
 
     /// Amplitude of the noise, g.
     fn noise_g(&self) -> f64 {
-        let count = crate::hand::statistics::count(&self.readings).max(2.0);
-        let variance = crate::hand::statistics::spread(&self.readings) / (count - 1.0);
+        let variance = spread(&self.readings) / (count(&self.readings) - 1.0).max(1.0);
         (2.0 * variance.sqrt()).clamp(2.0, 30.0)
     }
 }
@@ -299,6 +314,7 @@ pub struct HoldRun {
     events: VecDeque<Tightened>,
     force_g: PerFinger<Option<i16>>,
     is_warm: bool,
+    thing: Option<HeldThing>,
     end: Option<Ended<HoldEnd>>,
 }
 
@@ -328,6 +344,7 @@ impl HoldRun {
             events: VecDeque::new(),
             force_g: PerFinger::splat(None),
             is_warm: false,
+            thing: None,
             end: None,
         }
     }
@@ -419,6 +436,7 @@ impl Program for HoldRun {
             tightened: self.tightened,
             last: self.last,
             is_warm: self.is_warm,
+            thing: self.thing,
         }
     }
 
@@ -776,6 +794,7 @@ impl HoldRun {
                 self.events.push_back(tightened);
             }
         }
+        self.thing = Some(self.held_thing(angles, seen.now));
         if self.is_lost(seen.now) {
             return Some(self.finish(HoldEnd::Lost));
         }
@@ -788,6 +807,23 @@ impl HoldRun {
         let is_gone = force_g < least && tip_n.is_none_or(|n| n < TOUCH_N);
         let since = &mut self.gone_since[finger];
         *since = is_gone.then(|| since.unwrap_or(seen.now));
+    }
+
+    fn held_thing(&self, angles: &PerDof<AngleReading>, now: Moment) -> HeldThing {
+        let holding = || self.fingers.as_array().iter().flatten();
+        let stiffness: Vec<f64> = holding()
+            .filter_map(FingerHold::measured_stiffness)
+            .collect();
+        let is_quiet = holding().all(|finger| finger.is_quiet(now));
+        let loads: Option<Vec<f64>> = holding().map(FingerHold::tangential_g).collect();
+        let load = loads
+            .filter(|_| is_quiet)
+            .map(|loads| loads.iter().sum::<f64>());
+        HeldThing {
+            gap_mm: held_gap(&self.start.grip.grip(), angles).map(|gap| gap.mm),
+            stiffness: Stiffness::of(median(&stiffness)),
+            load_g: load.map(whole),
+        }
     }
 
     /// True once every finger that held presses on nothing.

@@ -130,6 +130,8 @@ pub(crate) struct FingerHold {
     target: f64,
     /// g per unit of angle.
     stiffness: f64,
+    /// The close or a step showed it.
+    is_stiffness_known: bool,
     wanted_g: f64,
     cause: TightenCause,
     forces: VecDeque<f64>,
@@ -161,6 +163,7 @@ impl FingerHold {
             noise_g,
             target: angle.into(),
             stiffness: HARD_G,
+            is_stiffness_known: false,
             wanted_g: range.least_g,
             cause: TightenCause::TooLittle,
             forces: VecDeque::new(),
@@ -182,6 +185,7 @@ impl FingerHold {
     /// Uses the stiffness that the close showed, g per unit of angle.
     pub(crate) fn know_stiffness(&mut self, g_per_angle: f64) {
         self.stiffness = g_per_angle.clamp(*STIFFNESS_G.start(), *STIFFNESS_G.end());
+        self.is_stiffness_known = true;
     }
 
     /// Force that it presses with, g; `None` before the first reading.
@@ -193,6 +197,23 @@ impl FingerHold {
     /// Units of angle by which it may follow an object that gives way: those that lead to *at most*, and some more.
     pub(crate) fn travel_max(&self) -> f64 {
         FOLLOW + 1.5 * (self.range.most_g - self.range.least_g) / self.stiffness
+    }
+
+    /// Stiffness of the contact, g per unit of angle; `None` before the close or a step showed it.
+    pub(crate) fn measured_stiffness(&self) -> Option<f64> {
+        self.is_stiffness_known.then_some(self.stiffness)
+    }
+
+    /// Tangential force on the fingertip, g; `None` before it was read.
+    pub(crate) fn tangential_g(&self) -> Option<f64> {
+        let recent = self.tips.iter().rev().take(FORCES);
+        let loads: Vec<f64> = recent.map(|tip| tip.tangential_g).collect();
+        median(&loads)
+    }
+
+    /// True if no load changed for a while.
+    pub(crate) fn is_quiet(&self, now: Moment) -> bool {
+        now.since(self.quiet_since) >= QUIET
     }
 
     /// Ratio of tangential to normal force up to which the object is expected to hold.
@@ -249,9 +270,7 @@ impl FingerHold {
 
     /// Force that the current load needs.
     fn steady_g(&self) -> f64 {
-        let recent = self.tips.iter().rev().take(FORCES);
-        let loads: Vec<f64> = recent.map(|tip| tip.tangential_g).collect();
-        median(&loads).unwrap_or_default() / (self.friction() * (1.0 - MARGIN))
+        self.tangential_g().unwrap_or_default() / (self.friction() * (1.0 - MARGIN))
     }
 
     /// Force that the load needs when a step acts, if it rises on.
@@ -313,7 +332,7 @@ impl FingerHold {
             expected_g,
             reading,
         };
-        let is_quiet = reading.at.since(self.quiet_since) >= QUIET;
+        let is_quiet = self.is_quiet(reading.at);
         if is_quiet {
             self.relax_wish(reading);
         }

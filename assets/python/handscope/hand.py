@@ -302,6 +302,11 @@ class Hand:
         """Closes thumb and index to a gap, as `handscope grip` does."""
         return _last("grip", *self._command("grip", gap=gap_mm, **options))
 
+    def hold(self, for_s: float, **options: Any) -> Mapping[str, Any]:
+        """Holds an object between two forces for this time, as `handscope hold` does, with its options:
+        `hand.hold(10, pose="Power grasp", at_least=150, at_most=400)`. The hand keeps what it holds."""
+        return _last("hold", *self._command("hold", **{"for": for_s, **options}))
+
     def _command(self, name: str, **options: Any) -> Tuple[List[Any], Optional[str]]:
         """Lets a command move the hand in this script's place, over the shared hand: what it told, and why it failed, if so."""
         self._may_move()

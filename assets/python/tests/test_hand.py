@@ -145,6 +145,8 @@ class Moves(unittest.TestCase):
                 (handscope.Refused, "rated for 2000 g", lambda: hand.close_until(2500)),
                 (ValueError, "thumb_bend", lambda: hand.move(thumb=3)),
                 (handscope.HandscopeError, "3 to 120", lambda: hand.grip_to(1)),
+                (handscope.HandscopeError, "no room for a hold", lambda: hand.hold(5, at_least=200, at_most=210)),
+                (handscope.HandscopeError, "no pose 'Cube'", lambda: hand.hold(5, pose="Cube")),
             ):
                 with self.assertRaisesRegex(error, words):
                     act()

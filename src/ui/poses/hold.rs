@@ -32,7 +32,7 @@ pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         forces_ui(ui, pane);
         if pane.hand().running.holds() {
             let end = Button::text(look, hold::END).weight(Weight::Strong);
-            end.on_click(ui, pane, Action::Hold(HoldAction::End));
+            ui.horizontal(|ui| end.on_click(ui, pane, Action::Hold(HoldAction::End)));
         } else {
             starts_ui(ui, pane);
         }

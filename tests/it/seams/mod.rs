@@ -95,13 +95,11 @@ impl Try {
                 | Column::FaultOrHeat => &[Start::Window(Window::led)],
             },
             // The index of a grip has no farther to go than a drive may rest beside its target: it may have arrived.
-            Row::Trial if self.column == Column::JointFrozen => {
-                &[
-                    Start::Process(Place::trial),
-                    Start::Process(Place::tune),
-                    Start::Process(Place::hold),
-                ]
-            }
+            Row::Trial if self.column == Column::JointFrozen => &[
+                Start::Process(Place::trial),
+                Start::Process(Place::tune),
+                Start::Process(Place::hold),
+            ],
             Row::Trial => &[
                 Start::Process(Place::trial),
                 Start::Process(Place::tune),
