@@ -29,6 +29,16 @@ mod grip_model;
 mod grip_table;
 mod hand;
 mod hands;
+#[expect(clippy::cast_precision_loss, reason = "counts of holds")]
+mod hold;
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::unwrap_used,
+    reason = "counts of holds; the simulated hand answers, or the bench has no meaning"
+)]
+mod hold_table;
 mod idle;
 #[cfg(unix)]
 mod line;
@@ -92,7 +102,7 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 19] = [
+const PARTS: [Part; 20] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
@@ -102,6 +112,7 @@ const PARTS: [Part; 19] = [
     ("ui", frames::run),
     ("hand", hand::run),
     ("grip", grip::run),
+    ("hold", hold::run),
     ("png", pictures::run),
     ("start", start::run),
     ("memory", memory::run),

@@ -18,6 +18,8 @@ mod exports;
 mod follow;
 #[cfg(unix)]
 mod grip;
+#[cfg(unix)]
+mod hold;
 mod inputs;
 #[cfg(unix)]
 mod interop;

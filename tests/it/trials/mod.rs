@@ -2,6 +2,7 @@
 
 mod checkup;
 mod hidden;
+mod hold;
 mod other_hand;
 mod scale;
 mod search;

@@ -1,0 +1,102 @@
+//! `hold` at a terminal: only with `--arm`, refused where it makes no sense, and its outcome.
+
+use crate::cli::refuses_unarmed;
+use crate::setup::busy::unless_busy;
+use crate::setup::process::{run, sim_on_tcp, start};
+use nix::sys::signal::Signal;
+use serde_json::Value;
+use std::path::Path;
+
+/// Near the open hand, so that the slow close is short.
+const BALL: &str = "stiffness = 10.0
+mass_g = 60.0
+friction = 0.6
+contact = { little = 900, ring = 900, middle = 900, index = 900, thumb_bend = 900 }
+";
+
+fn ball(folder: &Path) -> String {
+    let path = folder.join("ball.toml");
+    std::fs::write(&path, BALL).unwrap();
+    format!("sim:?scenario=free&object={}", path.display())
+}
+
+#[test]
+fn unarmed_it_moves_nothing() {
+    unless_busy(|| {
+        let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+        refuses_unarmed(&hand, &["hold", "--hand", &hand, "--gap", "30"]);
+    });
+}
+
+#[test]
+fn forces_and_poses_that_make_no_sense_are_wrong_usage() {
+    for (more, words) in [
+        (
+            &["--at-least", "300", "--at-most", "200"][..],
+            "no room for a hold",
+        ),
+        (&["--at-least", "20"], "choose at least 40 g or more"),
+        (&["--at-most", "2500"], "at most 100 to 2000 g"),
+        (&["--at-most", "9000"], "outside the manual's range"),
+        (&["--at-most", "-5"], "outside the manual's range"),
+        (&["--at-least", "nan"], "outside the manual's range"),
+        (&["--pose", "Handshake"], "there is no pose 'Handshake'"),
+        (&["--gap", "2"], "a pinch opens from 3 to 120 mm, not 2"),
+        (&["--pose", "Fist", "--gap", "30"], "cannot be used with"),
+    ] {
+        let ended = run(&[&["hold", "--hand", "sim:", "--arm"], more].concat());
+        assert_eq!(ended.code, Some(2), "{more:?} {}", ended.err);
+        assert!(ended.err.contains(words), "{more:?} {}", ended.err);
+    }
+}
+
+#[test]
+fn newtons_of_a_hand_that_was_not_measured_move_nothing() {
+    let line = ["hold", "--hand", "sim:", "--newtons", "--at-least", "2"];
+    let ended = run(&[&line[..], &["--at-most", "4", "--arm"]].concat());
+    assert_eq!(ended.code, Some(1), "{}", ended.err);
+    assert!(ended.err.contains("nothing was moved"), "{}", ended.err);
+    assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+}
+
+#[test]
+fn it_ends_held_or_ended_by_the_user_or_with_nothing() {
+    unless_busy(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let ball = ball(folder.path());
+        let curled = ["hold", "--hand", &ball, "--pose", "Curled", "--arm"];
+        let timed = start(&[&curled[..], &["--for", "2", "--json"]].concat());
+        let mut endless = start(&curled);
+        let empty = start(&["hold", "--hand", "sim:?scenario=free", "--arm", "--json"]);
+
+        let empty = empty.end();
+        assert_eq!(empty.code, Some(1), "{}", empty.err);
+        assert!(empty.err.contains("holds nothing"), "{}", empty.err);
+        assert_eq!(empty.lines().pop().unwrap()["hold"]["end"], "nothing");
+
+        endless.until(|line| line.starts_with("holding with"));
+        endless.signal(Signal::SIGINT);
+        let endless = endless.end();
+        assert_eq!(endless.code, Some(0), "{}", endless.err);
+        assert!(endless.out.contains("ended by the user"), "{}", endless.out);
+
+        let timed = timed.end().ok();
+        let lines = timed.lines();
+        let holding = lines
+            .iter()
+            .filter(|line| line["holding"]["phase"] == "holding");
+        assert!(holding.count() >= 2, "{}", timed.out);
+        let told: Value = lines.last().unwrap()["hold"].clone();
+        assert_eq!(
+            (&told["end"], &told["state"]),
+            (&"held".into(), &"holding".into())
+        );
+        assert!(told["seconds_held"].as_f64().unwrap() >= 2.0, "{told}");
+        let forces = told["last"]["force_g"].as_object().unwrap();
+        for (finger, force_g) in forces {
+            let force_g = force_g.as_i64().unwrap();
+            assert!((120..=400).contains(&force_g), "{finger} {told}");
+        }
+        assert_eq!(forces.len(), 5, "{told}");
+    });
+}

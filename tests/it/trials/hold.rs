@@ -1,0 +1,29 @@
+//! Holds of random objects by random bodies, small: `cargo bench -- hold` has the table.
+
+#[path = "../../bench/hold_table.rs"]
+mod hold_table;
+
+use crate::setup::soak;
+use handscope::motion::hold::HoldEnd;
+use hold_table::{Outcome, holds};
+
+/// Peaks above *at most*, g: what a drive at speed 25 may run on, on the hardest objects.
+const PEAK_MAX_G: f64 = 150.0;
+
+#[test]
+fn objects_are_held_between_the_two_forces() {
+    let table = holds(0..soak::times_at_least(60, 240));
+    let told = table.line();
+    eprintln!("{told}");
+    let seen = table.outcomes.len();
+    assert!(30 * table.count(Outcome::is_missed) <= seen, "{told}");
+    assert_eq!(table.count(|own| own.is_broken), 0, "{told}");
+    for own in &table.outcomes {
+        assert!(own.over_g <= PEAK_MAX_G, "{own:?}");
+        if own.plan.is_quiet && own.plan.is_possible() {
+            assert_eq!(own.end, HoldEnd::Held, "{own:?}");
+            assert_eq!(own.reversals, 0, "{own:?}");
+        }
+    }
+    assert!(table.count(|own| own.plan.is_quiet) * 8 >= seen, "{told}");
+}
