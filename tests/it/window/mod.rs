@@ -9,6 +9,7 @@ mod exhibit;
 mod faults;
 mod grip_size;
 mod hands;
+mod hold;
 mod inputs;
 mod joints;
 mod keys;

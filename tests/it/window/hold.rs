@@ -1,0 +1,112 @@
+//! A hold between two forces in the Live view: its forces, its start, what it says, and how it ends.
+
+use crate::setup::window::{Bench, LARGE};
+use handscope::app::action::Action;
+use handscope::hand::{Dof, PerDof};
+use handscope::history::MarkKind;
+use handscope::motion::hold::HoldPhase;
+use handscope::poses::Preset;
+use handscope::sim::SimConfig;
+use handscope::sim::object::{Loads, Object, Obstacle, PullLoad, listed};
+
+/// An object near all open fingers, lifted once it is held and pulled then.
+fn pulled() -> Object {
+    let contacts = PerDof::from_fn(|dof| match dof {
+        Dof::ThumbRotate => None,
+        _ => Some(Obstacle::at(920.0, 10.0)),
+    });
+    Object {
+        mass_g: 200.0,
+        loads: Loads {
+            lift_after_s: Some(1.0),
+            pulls: listed(&[PullLoad {
+                at_s: 1.0,
+                force_g: 400.0,
+                direction_deg: 270.0,
+                rise_ms: 300.0,
+                lasts_ms: 1000.0,
+            }]),
+            ..Loads::NONE
+        },
+        ..Object::touched_at(contacts)
+    }
+}
+
+/// Armed, with the popup of Hold open.
+fn opened() -> Bench {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.wait(1000);
+    bench.hand(|hand, _| hand.set_object(&pulled()));
+    bench.click("Arm the hand");
+    bench.run(300);
+    bench.click("Hold");
+    bench.run(100);
+    bench
+}
+
+#[test]
+fn unarmed_no_hold_can_be_started_and_its_forces_send_nothing() {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.wait(1000);
+    bench.click("Hold");
+    bench.run(100);
+    let writes = bench.writes().len();
+    bench.click("Close all fingers");
+    bench.run(300);
+    assert!(bench.state().hand().running.hold().is_none());
+    assert_eq!(bench.writes().len(), writes, "nothing is sent");
+}
+
+#[test]
+fn a_pulled_object_is_held_tighter_and_each_time_is_a_mark() {
+    let mut bench = opened();
+    bench.click("Close all fingers");
+    let phase = |bench: &Bench| {
+        bench
+            .state()
+            .hand()
+            .running
+            .hold()
+            .map(|run| run.view.phase)
+    };
+    bench.until(20_000, |bench| phase(bench) == Some(HoldPhase::Holding));
+    bench.wait(4000);
+    let view = bench.state().hand().running.hold().unwrap().view;
+    assert!(view.tightened > 0, "{view:?}");
+    let history = &bench.state().hand().measured.history;
+    let is_tightened = |kind: &MarkKind| matches!(kind, MarkKind::Tightened(_));
+    assert!(
+        history
+            .marks(0.0, f64::MAX)
+            .any(|mark| is_tightened(&mark.kind))
+    );
+    assert!(bench.hand(|hand, _| hand.held().lost).is_none());
+    bench.click("End the hold");
+    bench.run(1000);
+    assert!(!bench.state().hand().running.holds());
+    assert!(bench.state().hand().connection.status.armed.is_none());
+    let pressed = bench.hand(|hand, _| hand.true_loads());
+    assert!(pressed.as_array().iter().all(|g| *g > 50.0), "{pressed:?}");
+    assert!(bench.shows("Hold ended: the hand keeps what it holds"));
+}
+
+#[test]
+fn moving_a_joint_takes_the_hand_over_from_a_hold() {
+    let mut bench = opened();
+    bench.click("Close all fingers");
+    bench.run(2000);
+    assert!(bench.state().hand().running.holds());
+    bench.act(Action::Preset(Preset::Open));
+    bench.run(300);
+    assert!(!bench.state().hand().running.holds());
+    assert!(
+        bench.state().hand().connection.is_armed(),
+        "the user moves it now"
+    );
+    bench.wait(3000);
+    let angles = bench.hand(|hand, _| hand.true_angles());
+    assert!(
+        angles.as_array().iter().all(|angle| *angle > 950.0),
+        "{angles:?}"
+    );
+}
