@@ -10,6 +10,10 @@ use crate::motion::hold::HoldForces;
 use crate::record::Record;
 use std::time::Duration;
 
+/// Forces of a hold before the user sets others, g.
+const HOLD_AT_LEAST: i16 = 150;
+const HOLD_AT_MOST: i16 = 400;
+
 /// The user's settings of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct JointControl {
@@ -55,7 +59,7 @@ pub struct Controls {
     /// The stored gesture that was started last, unless it failed.
     pub gesture: Option<Gesture>,
     /// Forces of a hold, if the user set any.
-    pub(crate) hold_forces: Option<HoldForces>,
+    hold_forces: Option<HoldForces>,
     /// Hold-to-run key.
     pub(crate) held: HeldKey,
     /// Sliders that show the commanded target; the others show the actual angle.
@@ -67,6 +71,18 @@ pub struct Controls {
 }
 
 impl Controls {
+    /// Forces of the next hold.
+    pub fn hold_forces(&self) -> HoldForces {
+        let [least, most] = [HOLD_AT_LEAST, HOLD_AT_MOST].map(Force::nearest);
+        let usual = HoldForces::nearest(least, most);
+        self.hold_forces.unwrap_or(usual)
+    }
+
+    /// Sets the forces of the next hold.
+    pub(crate) const fn set_hold_forces(&mut self, forces: HoldForces) {
+        self.hold_forces = Some(forces);
+    }
+
     /// Settings for the next connection with this hand: no key is held, and no slider was moved.
     pub(crate) fn at_next_connection(self) -> Self {
         Self {

@@ -163,7 +163,7 @@ fn joint_line((dof, joint): (Dof, &JointPoints)) -> String {
 }
 
 /// What a measurement came to.
-struct Measured {
+struct MeasuredJoint {
     end: Ended<ScaleEnd>,
     points: Vec<ScalePoint>,
     stop: Option<Stop>,
@@ -186,7 +186,7 @@ async fn measure(
                 own.day,
                 joint = joint.name()
             ));
-            Measured {
+            MeasuredJoint {
                 end: Ok(ScaleEnd::Done),
                 points: own.points.clone(),
                 stop: None,
@@ -224,7 +224,7 @@ async fn press(
     args: &ScaleArgs,
     (joint, points): (Dof, Vec<ScalePoint>),
     file: Option<&Path>,
-) -> anyhow::Result<Measured> {
+) -> anyhow::Result<MeasuredJoint> {
     if !points.is_empty() {
         let count = points.len();
         notify(&format!("{count} of {LOADS} loads are measured already"));
@@ -248,7 +248,7 @@ async fn press(
     };
     let driven = calibrate(&hand.link, hand.armed, start, inputs, report).await;
     hand.release(driven.stop).await;
-    Ok(Measured {
+    Ok(MeasuredJoint {
         end: driven.end,
         points: driven.program.points().to_vec(),
         stop: driven.stop,

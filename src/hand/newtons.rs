@@ -99,7 +99,7 @@ impl ForceScale {
     /// # Errors
     /// The points contradict each other, or there are fewer.
     pub fn fit(points: &[ScalePoint]) -> Result<Self, Contradiction> {
-        let line = Line::through(points.iter());
+        let line = FittedLine::through(points.iter());
         if points.len() < LOADS {
             let points = points.len();
             return Err(Contradiction::TooFew { points });
@@ -135,14 +135,14 @@ impl ForceScale {
 
 /// A least-squares line through the origin.
 #[derive(Debug, Clone, Copy)]
-struct Line {
+struct FittedLine {
     /// Grams of the scale for a gram of the hand.
     factor: f64,
     /// Sum of the squares of the hand's grams.
     squares: f64,
 }
 
-impl Line {
+impl FittedLine {
     fn through<'a>(points: impl Iterator<Item = &'a ScalePoint> + Clone) -> Self {
         let squares: f64 = points.clone().map(|own| own.hand_g.powi(2)).sum();
         let products: f64 = points.map(|own| own.hand_g * own.scale_g).sum();
@@ -172,7 +172,7 @@ fn farthest(points: &[ScalePoint]) -> Result<(f64, Contradiction), Contradiction
     let noise = FORCE_NOISE_G * median(&ratios).unwrap_or(1.0);
     let others = |load| points.iter().filter(move |own| own.load != load);
     let distances = points.iter().map(|own| {
-        let line = Line::through(others(own.load));
+        let line = FittedLine::through(others(own.load));
         let misfit = Contradiction::Point {
             load: own.load,
             scale_g: own.scale_g,
@@ -312,7 +312,7 @@ mod tests {
     }
 
     fn off(points: &[ScalePoint], factor: f64) -> f64 {
-        (Line::through(points.iter()).factor / factor - 1.0).abs()
+        (FittedLine::through(points.iter()).factor / factor - 1.0).abs()
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::hand::{
     Moment, PerDof, PerFinger, Setpoints, Speed, Target, heat,
 };
 use crate::link::PollRates;
-use crate::motion::hold_finger::{FingerHold, FingerReading, ForceRange, TipReading};
+use crate::motion::hold_finger::{FingerHold, FingerReading, ForceRange, TipForces};
 use crate::motion::program::{Ended, Order, Program, Seen};
 use crate::poses::way::{Targets, pinch_way, way};
 use crate::record::Abort;
@@ -267,7 +267,7 @@ impl Zero {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Step {
+enum HoldStage {
     Measuring,
     Closing,
     /// Fingers whose drive counts the zero of its sensor stopped too early, and press on.
@@ -277,25 +277,19 @@ enum Step {
     Holding,
 }
 
-/// A part of the close.
-#[derive(Debug, Clone, Copy)]
-struct Leg {
-    targets: Targets,
-}
-
 /// The program of a hold.
 #[derive(Debug)]
 pub struct HoldRun {
     start: HoldStart,
     epoch: ArmEpoch,
-    step: Step,
+    step: HoldStage,
     begun: Moment,
     /// Time at which the last targets were given.
     sent: Moment,
     zeros: PerDof<Zero>,
     /// Channels of each fingertip while it touched nothing.
     free_tips: PerFinger<Option<[u32; 8]>>,
-    legs: Option<VecDeque<Leg>>,
+    legs: Option<VecDeque<Targets>>,
     /// Last angle of each joint, and since when.
     still: PerDof<Option<(i16, Moment)>>,
     /// FORCE_SET as given.
@@ -324,7 +318,7 @@ impl HoldRun {
         Self {
             start,
             epoch,
-            step: Step::Measuring,
+            step: HoldStage::Measuring,
             begun: now,
             sent: now,
             zeros: PerDof::from_fn(|_| Zero::default()),
@@ -387,7 +381,7 @@ impl Program for HoldRun {
                 self.feel(sample, finger);
             }
         }
-        if self.step == Step::Measuring && fresh.contains(Group::Force) {
+        if self.step == HoldStage::Measuring && fresh.contains(Group::Force) {
             self.measure_zero(sample);
         }
         self.force_g = PerFinger::from_fn(|finger| {
@@ -404,14 +398,15 @@ impl Program for HoldRun {
         }
         let Some(angles) = seen.angles().map(|angles| angles.value) else {
             let is_late = seen.now.since(self.sent) > SPARE + ZERO_TIMEOUT;
-            return (is_late && self.step != Step::Holding).then(|| self.finish(HoldEnd::Late));
+            return (is_late && self.step != HoldStage::Holding)
+                .then(|| self.finish(HoldEnd::Late));
         };
         match self.step {
-            Step::Measuring => self.begin(seen, &angles),
-            Step::Closing => self.close(seen, &angles),
-            Step::Pressing => self.press(seen, &angles),
-            Step::Taking => self.take(seen, &angles),
-            Step::Holding => self.regulate(seen, &angles, fresh),
+            HoldStage::Measuring => self.begin(seen, &angles),
+            HoldStage::Closing => self.close(seen, &angles),
+            HoldStage::Pressing => self.press(seen, &angles),
+            HoldStage::Taking => self.take(seen, &angles),
+            HoldStage::Holding => self.regulate(seen, &angles, fresh),
         }
     }
 
@@ -424,11 +419,11 @@ impl Program for HoldRun {
         let margin = holding().filter_map(FingerHold::margin).reduce(f64::min);
         HoldView {
             phase: match self.step {
-                Step::Measuring => HoldPhase::Measuring,
-                Step::Closing | Step::Pressing => HoldPhase::Closing,
-                Step::Taking => HoldPhase::Holding,
-                Step::Holding if holding().any(FingerHold::is_short) => HoldPhase::CannotHold,
-                Step::Holding => HoldPhase::Holding,
+                HoldStage::Measuring => HoldPhase::Measuring,
+                HoldStage::Closing | HoldStage::Pressing => HoldPhase::Closing,
+                HoldStage::Taking => HoldPhase::Holding,
+                HoldStage::Holding if holding().any(FingerHold::is_short) => HoldPhase::CannotHold,
+                HoldStage::Holding => HoldPhase::Holding,
             },
             forces: self.start.forces,
             force_g: self.force_g,
@@ -506,7 +501,7 @@ impl HoldRun {
         }
         let free = self.free_tips[finger];
         if let Some(hold) = &mut self.fingers[finger] {
-            hold.feel(TipReading {
+            hold.feel(TipForces {
                 at: tip.received,
                 normal_g: f64::from(normal_n) * G_PER_N,
                 tangential_g: f64::from(tangential_n) * G_PER_N,
@@ -574,22 +569,15 @@ impl HoldRun {
         };
         let locked = self.start.locked;
         let free = |targets: Targets| PerDof::from_fn(|dof| targets[dof].filter(|_| !locked[dof]));
-        self.legs = Some(
-            targets
-                .into_iter()
-                .map(|targets| Leg {
-                    targets: free(targets),
-                })
-                .collect(),
-        );
-        self.step = Step::Closing;
+        self.legs = Some(targets.into_iter().map(free).collect());
+        self.step = HoldStage::Closing;
         self.send_leg(seen.now, angles)
     }
 
     fn send_leg(&mut self, now: Moment, angles: &PerDof<AngleReading>) -> Option<Order> {
         let leg = self.legs.as_ref()?.front().copied()?;
         let mut setpoints = Setpoints::none(self.epoch);
-        for (dof, to) in leg.targets.iter() {
+        for (dof, to) in leg.iter() {
             let Some(to) = *to else {
                 continue;
             };
@@ -629,14 +617,14 @@ impl HoldRun {
     fn close(&mut self, seen: &Seen<'_>, angles: &PerDof<AngleReading>) -> Option<Order> {
         let leg = self.legs.as_ref().and_then(|legs| legs.front()).copied()?;
         self.watch_contacts(seen.sample, angles);
-        let moves = |dof: Dof| leg.targets[dof].is_some();
+        let moves = |dof: Dof| leg[dof].is_some();
         if self.is_at_rest(seen, moves) {
             self.legs.as_mut().and_then(VecDeque::pop_front);
             if self.legs.as_ref().is_some_and(|legs| !legs.is_empty()) {
                 return self.send_leg(seen.now, angles);
             }
             self.legs = Some(VecDeque::from([leg]));
-            self.step = Step::Pressing;
+            self.step = HoldStage::Pressing;
             return self.press(seen, angles);
         }
         let slowest = Speed::nearest(25).stroke();
@@ -659,14 +647,14 @@ impl HoldRun {
     fn press(&mut self, seen: &Seen<'_>, angles: &PerDof<AngleReading>) -> Option<Order> {
         let leg = self.legs.as_ref().and_then(|legs| legs.front()).copied()?;
         self.watch_contacts(seen.sample, angles);
-        if !self.is_at_rest(seen, |dof| leg.targets[dof].is_some()) {
+        if !self.is_at_rest(seen, |dof| leg[dof].is_some()) {
             return None;
         }
         let mut setpoints = Setpoints::none(self.epoch);
         for finger in Finger::ALL {
             let dof = finger.bend();
             let range = self.range(dof);
-            let (Some(to), Some(force)) = (leg.targets[dof], self.force_g(seen.sample, dof)) else {
+            let (Some(to), Some(force)) = (leg[dof], self.force_g(seen.sample, dof)) else {
                 continue;
             };
             let is_short = i32::from(angles[dof].raw()) > i32::from(to.get()) + 5;
@@ -728,7 +716,7 @@ impl HoldRun {
         if setpoints.is_empty() {
             return Some(self.finish(HoldEnd::Nothing));
         }
-        (self.step, self.sent) = (Step::Taking, seen.now);
+        (self.step, self.sent) = (HoldStage::Taking, seen.now);
         Some(Order::Set(setpoints))
     }
 
@@ -743,7 +731,7 @@ impl HoldRun {
             self.threshold_g[dof] = self.range(dof).most_g + self.shift_g[dof];
             setpoints.force[dof] = Some(Force::nearest(rounded(self.threshold_g[dof])));
         }
-        (self.step, self.held_since) = (Step::Holding, Some(seen.now));
+        (self.step, self.held_since) = (HoldStage::Holding, Some(seen.now));
         Some(Order::Set(setpoints))
     }
 

@@ -80,7 +80,7 @@ pub(crate) struct ForceRange {
 
 /// A reading of the fingertip.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TipReading {
+pub(crate) struct TipForces {
     pub(crate) at: Moment,
     /// Normal and tangential force, g.
     pub(crate) normal_g: f64,
@@ -135,7 +135,7 @@ pub(crate) struct FingerHold {
     wanted_g: f64,
     cause: TightenCause,
     forces: VecDeque<f64>,
-    tips: VecDeque<TipReading>,
+    tips: VecDeque<TipForces>,
     /// Tangential force while nothing happens, g.
     base_g: Option<f64>,
     /// Largest ratio of tangential to normal force at which the object did not slide.
@@ -234,7 +234,7 @@ impl FingerHold {
     }
 
     /// Applies a new reading of the fingertip.
-    pub(crate) fn feel(&mut self, tip: TipReading) {
+    pub(crate) fn feel(&mut self, tip: TipForces) {
         if self.tips.len() >= TIPS {
             self.tips.pop_front();
         }
@@ -327,7 +327,7 @@ impl FingerHold {
             self.learn(step, force_g, reading.angle);
         }
         let expected_g = self.underway.map_or(force_g, |step| step.aim_g);
-        let seen = Seen {
+        let seen = HoldNow {
             force_g,
             expected_g,
             reading,
@@ -379,7 +379,7 @@ impl FingerHold {
         self.wanted_g = (self.wanted_g * (1.0 - share)).max(least.min(self.wanted_g));
     }
 
-    fn tighten(&mut self, seen: Seen) -> Option<HoldStep> {
+    fn tighten(&mut self, seen: HoldNow) -> Option<HoldStep> {
         let missing = self.wanted_g - seen.expected_g;
         let dead = (2.0 * self.noise_g).max(6.0);
         if missing <= dead {
@@ -415,7 +415,7 @@ impl FingerHold {
         self.step(seen, -steps, Some(cause))
     }
 
-    fn relax(&mut self, seen: Seen, is_quiet: bool) -> Option<HoldStep> {
+    fn relax(&mut self, seen: HoldNow, is_quiet: bool) -> Option<HoldStep> {
         let is_allowed = self.underway.is_none() && seen.reading.at >= self.relaxes_from;
         let over = seen.force_g - self.range.most_g;
         let spare = seen.force_g - self.wanted_g;
@@ -430,7 +430,7 @@ impl FingerHold {
         self.step(seen, steps, None)
     }
 
-    fn step(&mut self, seen: Seen, by: f64, cause: Option<TightenCause>) -> Option<HoldStep> {
+    fn step(&mut self, seen: HoldNow, by: f64, cause: Option<TightenCause>) -> Option<HoldStep> {
         // A drive that was stopped rests beside its target.
         let from = match self.underway {
             Some(_) => self.target,
@@ -460,14 +460,14 @@ impl FingerHold {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct HoldNow {
     force_g: f64,
     /// Force once the step under way has acted.
     expected_g: f64,
     reading: FingerReading,
 }
 
-fn ratio(tip: &TipReading) -> Option<f64> {
+fn ratio(tip: &TipForces) -> Option<f64> {
     (tip.normal_g >= RATIO_FROM_G).then(|| tip.tangential_g / tip.normal_g)
 }
 

@@ -136,14 +136,14 @@ pub async fn calibrate(
     .await
 }
 
-/// Mean of readings.
+/// MeanForce of readings.
 #[derive(Debug, Clone, Copy, Default)]
-struct Mean {
+struct MeanForce {
     sum: f64,
     count: f64,
 }
 
-impl Mean {
+impl MeanForce {
     fn push(&mut self, value: f64) {
         self.sum += value;
         self.count += 1.0;
@@ -157,20 +157,20 @@ impl Mean {
 
 /// Force of the joint over its zero, g, and normal force of the fingertip, N.
 #[derive(Debug, Clone, Copy, Default)]
-struct Felt {
-    hand: Mean,
-    tip: Mean,
+struct TipFelt {
+    hand: MeanForce,
+    tip: MeanForce,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Phase {
+enum ScalePhase {
     Opening {
         since: Moment,
         to: Angle,
     },
     Zeroing {
         since: Moment,
-        mean: Mean,
+        mean: MeanForce,
     },
     Pressing {
         since: Moment,
@@ -179,13 +179,13 @@ enum Phase {
     Settling {
         pressed: Moment,
         since: Moment,
-        felt: Felt,
+        felt: TipFelt,
         before: Option<f64>,
     },
     /// Waits for the user, and continues to measure.
     Asking {
         since: Moment,
-        felt: Felt,
+        felt: TipFelt,
     },
 }
 
@@ -196,7 +196,7 @@ pub struct ScaleRun {
     limit: Force,
     epoch: ArmEpoch,
     /// `None` until the position of the hand is known.
-    phase: Option<Phase>,
+    phase: Option<ScalePhase>,
     /// Loads that are not measured, the current one first.
     left: VecDeque<usize>,
     points: Vec<ScalePoint>,
@@ -241,7 +241,8 @@ impl Program for ScaleRun {
         let finger = Finger::ALL.into_iter().find(|own| own.bend() == self.dof);
         if let Some(finger) = finger.filter(|own| fresh.contains(Group::Tactile(*own)))
             && let Some(newtons) = sample.tactile[finger].and_then(|own| own.value.normal())
-            && let Some(Phase::Settling { felt, .. } | Phase::Asking { felt, .. }) = &mut self.phase
+            && let Some(ScalePhase::Settling { felt, .. } | ScalePhase::Asking { felt, .. }) =
+                &mut self.phase
         {
             felt.tip.push(newtons.into());
         }
@@ -252,8 +253,8 @@ impl Program for ScaleRun {
         let (_, at) = self.pose?;
         match self.phase {
             None => self.open(now),
-            Some(Phase::Opening { since, to }) => self.tick_opening(since, to, now),
-            Some(Phase::Zeroing { since, mean }) => {
+            Some(ScalePhase::Opening { since, to }) => self.tick_opening(since, to, now),
+            Some(ScalePhase::Zeroing { since, mean }) => {
                 let zero = mean.value().filter(|_| now.since(since) >= MEAN_DURATION);
                 let Some(zero_g) = zero else {
                     return self.late(since, SPARE, now);
@@ -264,20 +265,20 @@ impl Program for ScaleRun {
                 }
                 self.press(now)
             }
-            Some(Phase::Pressing { since }) => {
+            Some(ScalePhase::Pressing { since }) => {
                 if !self.rests(since, now) {
                     return self.late(since, SPEED.stroke() + SPARE, now);
                 }
-                self.phase = Some(Phase::Settling {
+                self.phase = Some(ScalePhase::Settling {
                     pressed: since,
                     since: now,
-                    felt: Felt::default(),
+                    felt: TipFelt::default(),
                     before: None,
                 });
                 None
             }
-            Some(Phase::Settling { pressed, .. }) => self.tick_settling(pressed, at, now),
-            Some(Phase::Asking { since, .. }) => {
+            Some(ScalePhase::Settling { pressed, .. }) => self.tick_settling(pressed, at, now),
+            Some(ScalePhase::Asking { since, .. }) => {
                 let is_late = now.since(since) > ANSWER_TIMEOUT;
                 is_late.then(|| self.finish(ScaleEnd::NoAnswer, now))?
             }
@@ -338,7 +339,7 @@ impl ScaleRun {
             ScaleInput::Finish => return self.finish(ScaleEnd::Incomplete, now),
             ScaleInput::Reading(_) | ScaleInput::Again | ScaleInput::Skip => {}
         }
-        let Some(Phase::Asking { felt, .. }) = self.phase else {
+        let Some(ScalePhase::Asking { felt, .. }) = self.phase else {
             self.events.push_back(ScaleEvent::NotAsked);
             return None;
         };
@@ -356,7 +357,7 @@ impl ScaleRun {
         self.open(now)
     }
 
-    fn accept(&mut self, scale_g: f64, felt: Felt) {
+    fn accept(&mut self, scale_g: f64, felt: TipFelt) {
         let Some((load, hand_g)) = self.left.pop_front().zip(felt.hand.value()) else {
             return;
         };
@@ -399,12 +400,14 @@ impl ScaleRun {
     fn read_force(&mut self, raw: f64) {
         let over = raw - self.zero_g;
         match &mut self.phase {
-            Some(Phase::Zeroing { mean, .. }) => mean.push(raw),
-            Some(Phase::Pressing { .. }) if over >= CONTACT_G => {
+            Some(ScalePhase::Zeroing { mean, .. }) => mean.push(raw),
+            Some(ScalePhase::Pressing { .. }) if over >= CONTACT_G => {
                 self.contact = self.contact.or(self.pose.map(|(_, at)| at));
             }
-            Some(Phase::Settling { felt, .. } | Phase::Asking { felt, .. }) => felt.hand.push(over),
-            Some(Phase::Opening { .. } | Phase::Pressing { .. }) | None => {}
+            Some(ScalePhase::Settling { felt, .. } | ScalePhase::Asking { felt, .. }) => {
+                felt.hand.push(over)
+            }
+            Some(ScalePhase::Opening { .. } | ScalePhase::Pressing { .. }) | None => {}
         }
     }
 
@@ -426,15 +429,15 @@ impl ScaleRun {
             self.end = Some(Ok(end));
             return Some(Order::Disarm);
         }
-        self.phase = Some(Phase::Zeroing {
+        self.phase = Some(ScalePhase::Zeroing {
             since: now,
-            mean: Mean::default(),
+            mean: MeanForce::default(),
         });
         None
     }
 
     fn tick_settling(&mut self, pressed: Moment, at: i16, now: Moment) -> Option<Order> {
-        let Some(Phase::Settling {
+        let Some(ScalePhase::Settling {
             since,
             felt,
             before,
@@ -459,23 +462,23 @@ impl ScaleRun {
                 return self.finish(ScaleEnd::NoContact, now);
             }
             // It may still take up its backlash.
-            self.phase = Some(Phase::Pressing { since: pressed });
+            self.phase = Some(ScalePhase::Pressing { since: pressed });
             return None;
         }
         let is_steady = before.is_some_and(|before| (before - hand_g).abs() <= STEADY_G);
         if is_steady {
             let load = *self.left.front()?;
             self.events.push_back(ScaleEvent::Asked { load, hand_g });
-            self.phase = Some(Phase::Asking { since: now, felt });
+            self.phase = Some(ScalePhase::Asking { since: now, felt });
             return None;
         }
         if pressed_for > SPEED.stroke() + STEADY_TIMEOUT {
             return self.finish(ScaleEnd::Unsteady, now);
         }
-        self.phase = Some(Phase::Settling {
+        self.phase = Some(ScalePhase::Settling {
             pressed,
             since: now,
-            felt: Felt::default(),
+            felt: TipFelt::default(),
             before: Some(hand_g),
         });
         None
@@ -485,7 +488,7 @@ impl ScaleRun {
     fn open(&mut self, now: Moment) -> Option<Order> {
         let lifted = self.contact.filter(|_| self.ending.is_none());
         let to = lifted.map_or(Angle::MAX, |at| Angle::nearest(at.saturating_add(LIFT)));
-        self.phase = Some(Phase::Opening { since: now, to });
+        self.phase = Some(ScalePhase::Opening { since: now, to });
         Some(self.go(to, Speed::GENTLE, self.limit))
     }
 
@@ -494,7 +497,7 @@ impl ScaleRun {
         let threshold = self.threshold_g()?;
         #[expect(clippy::cast_possible_truncation, reason = "a float cast saturates")]
         let threshold = Force::nearest(threshold.round() as i64);
-        self.phase = Some(Phase::Pressing { since: now });
+        self.phase = Some(ScalePhase::Pressing { since: now });
         Some(self.go(Angle::MIN, SPEED, threshold))
     }
 
@@ -538,7 +541,7 @@ impl ScaleRun {
             return None;
         }
         match self.phase {
-            Some(Phase::Opening { .. }) => Some(self.stop(ScaleEnd::Late)),
+            Some(ScalePhase::Opening { .. }) => Some(self.stop(ScaleEnd::Late)),
             _ => self.finish(ScaleEnd::Late, now),
         }
     }

@@ -6,7 +6,7 @@ use crate::sim::body::Body;
 use crate::sim::body_params::BodyParams;
 use crate::sim::drive::{DriveGoal, DriveSettings, position_of};
 use crate::sim::extremes;
-use crate::sim::held::{Held, HeldState};
+use crate::sim::held::{HeldObject, HeldState};
 use crate::sim::live::{self, element};
 use crate::sim::memory::{AccessError, GAP, Memory};
 use crate::sim::number;
@@ -148,7 +148,7 @@ pub struct SimHand {
     /// It replays a recording: no body, no script, and writes change nothing.
     follows_recording: bool,
     /// The object between the fingers.
-    held: Held,
+    held: HeldObject,
 }
 
 impl SimHand {
@@ -185,7 +185,7 @@ impl SimHand {
             frozen_angles: PerDof::splat(None),
             began_at: PerDof::splat(0.0),
             follows_recording: false,
-            held: Held::new(&object, config.seed ^ HELD_SEED),
+            held: HeldObject::new(&object, config.seed ^ HELD_SEED),
         };
         hand.target_actual();
         hand

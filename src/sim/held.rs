@@ -5,7 +5,7 @@
 
 use crate::hand::{Finger, PerFinger};
 use crate::sim::number;
-use crate::sim::object::{Object, PullLoad, Turn};
+use crate::sim::object::{HandTurn, Object, PullLoad};
 use glam::DVec2;
 
 /// Length of a step, s.
@@ -36,7 +36,7 @@ const RANDOM_LASTS_MS: f64 = 200.0;
 /// Share of the normal force that the most tapered object keeps.
 const TAPERED_LEAST: f64 = 0.3;
 /// Weight before the first turn.
-const UPRIGHT: Turn = Turn {
+const UPRIGHT: HandTurn = HandTurn {
     at_s: 0.0,
     direction_deg: 270.0,
     share: 1.0,
@@ -85,14 +85,14 @@ pub struct HeldState {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Phase {
+enum ObjectPhase {
     Stands { pressed_ms: u64 },
     Lifted { for_ms: u64 },
     Gone { loss: ObjectLoss, for_ms: u64 },
 }
 
 #[derive(Debug, Clone, Copy, Default)]
-struct Pad {
+struct PadContact {
     contact: HeldFinger,
     friction: f64,
     /// Deflection of the bristle, mm.
@@ -109,7 +109,7 @@ struct Bristle {
     drag_s_per_mm: f64,
 }
 
-impl Pad {
+impl PadContact {
     /// Moves with the object for one step and returns the load on this pad.
     fn carry(&mut self, normal_g: f64, velocity: DVec2, bristle: Bristle) -> DVec2 {
         self.contact.normal_g = normal_g;
@@ -150,10 +150,10 @@ impl Pad {
 
 /// The object, and what the fingertips feel of it.
 #[derive(Debug, Clone)]
-pub struct Held {
+pub struct HeldObject {
     object: Object,
-    phase: Phase,
-    pads: PerFinger<Pad>,
+    phase: ObjectPhase,
+    pads: PerFinger<PadContact>,
     velocity: DVec2,
     slid_mm: f64,
     slides: bool,
@@ -162,13 +162,13 @@ pub struct Held {
     rng: fastrand::Rng,
 }
 
-impl Held {
+impl HeldObject {
     /// Creates an object that stands in its place; `seed` determines friction and random pulls.
     pub fn new(object: &Object, seed: u64) -> Self {
         Self {
             object: *object,
-            phase: Phase::Stands { pressed_ms: 0 },
-            pads: PerFinger::splat(Pad::default()),
+            phase: ObjectPhase::Stands { pressed_ms: 0 },
+            pads: PerFinger::splat(PadContact::default()),
             velocity: DVec2::ZERO,
             slid_mm: 0.0,
             slides: false,
@@ -186,7 +186,7 @@ impl Held {
 
     /// False while the object is out of the hand.
     pub const fn is_present(&self) -> bool {
-        !matches!(self.phase, Phase::Gone { .. })
+        !matches!(self.phase, ObjectPhase::Gone { .. })
     }
 
     /// Share of the normal force that its shape leaves after it slid.
@@ -206,7 +206,7 @@ impl Held {
 
     /// True state; `broken` comes from the joints.
     pub fn state(&self, broken: bool) -> HeldState {
-        let lifted = matches!(self.phase, Phase::Lifted { .. });
+        let lifted = matches!(self.phase, ObjectPhase::Lifted { .. });
         HeldState {
             fingers: self.pads.map(|pad| pad.contact),
             held: lifted && self.lift_share() >= 1.0,
@@ -214,8 +214,8 @@ impl Held {
             slides: self.slides,
             slid_mm: self.slid_mm,
             lost: match self.phase {
-                Phase::Gone { loss, .. } => Some(loss),
-                Phase::Stands { .. } | Phase::Lifted { .. } => None,
+                ObjectPhase::Gone { loss, .. } => Some(loss),
+                ObjectPhase::Stands { .. } | ObjectPhase::Lifted { .. } => None,
             },
             broken,
             external_g: self.external_g,
@@ -227,7 +227,7 @@ impl Held {
     pub fn step(&mut self, normal_g: &PerFinger<f64>, is_open: bool, is_closing: bool) {
         let loads = self.object.loads;
         match self.phase {
-            Phase::Stands { pressed_ms } => {
+            ObjectPhase::Stands { pressed_ms } => {
                 for (finger, pad) in self.pads.iter_mut() {
                     pad.contact.normal_g = normal_g[finger];
                 }
@@ -237,15 +237,15 @@ impl Held {
                 } else {
                     0
                 };
-                self.phase = Phase::Stands { pressed_ms };
+                self.phase = ObjectPhase::Stands { pressed_ms };
                 let is_due = |after: f64| pressed_ms > 0 && number::seconds(pressed_ms) >= after;
                 if loads.lift_after_s.is_some_and(is_due) {
                     self.lift();
                 }
             }
-            Phase::Lifted { for_ms } => {
+            ObjectPhase::Lifted { for_ms } => {
                 let for_ms = for_ms + 1;
-                self.phase = Phase::Lifted { for_ms };
+                self.phase = ObjectPhase::Lifted { for_ms };
                 let now_s = number::seconds(for_ms);
                 if loads.taken_away_at_s.is_some_and(|at_s| now_s >= at_s) {
                     return self.lose(ObjectLoss::TakenAway, for_ms);
@@ -258,9 +258,9 @@ impl Held {
                     self.lose(ObjectLoss::Dropped, for_ms);
                 }
             }
-            Phase::Gone { loss, for_ms } => {
+            ObjectPhase::Gone { loss, for_ms } => {
                 let for_ms = for_ms + 1;
-                self.phase = Phase::Gone { loss, for_ms };
+                self.phase = ObjectPhase::Gone { loss, for_ms };
                 let is_due = |at_s: f64| {
                     number::seconds(for_ms - 1) < at_s && number::seconds(for_ms) >= at_s
                 };
@@ -272,17 +272,17 @@ impl Held {
     }
 
     fn stand(&mut self) {
-        self.phase = Phase::Stands { pressed_ms: 0 };
+        self.phase = ObjectPhase::Stands { pressed_ms: 0 };
         self.clear();
     }
 
     fn lose(&mut self, loss: ObjectLoss, for_ms: u64) {
-        self.phase = Phase::Gone { loss, for_ms };
+        self.phase = ObjectPhase::Gone { loss, for_ms };
         self.clear();
     }
 
     fn clear(&mut self) {
-        self.pads = PerFinger::splat(Pad::default());
+        self.pads = PerFinger::splat(PadContact::default());
         self.velocity = DVec2::ZERO;
         self.slid_mm = 0.0;
         self.slides = false;
@@ -291,7 +291,7 @@ impl Held {
     }
 
     fn lift(&mut self) {
-        self.phase = Phase::Lifted { for_ms: 0 };
+        self.phase = ObjectPhase::Lifted { for_ms: 0 };
         let friction = self.object.friction;
         for (_, pad) in self.pads.iter_mut() {
             let scatter = friction.scatter * number::normal(&mut self.rng);
@@ -301,8 +301,8 @@ impl Held {
 
     fn lift_share(&self) -> f64 {
         match self.phase {
-            Phase::Lifted { for_ms } => (number::seconds(for_ms) / LIFT_S).min(1.0),
-            Phase::Stands { .. } | Phase::Gone { .. } => 0.0,
+            ObjectPhase::Lifted { for_ms } => (number::seconds(for_ms) / LIFT_S).min(1.0),
+            ObjectPhase::Stands { .. } | ObjectPhase::Gone { .. } => 0.0,
         }
     }
 
@@ -356,7 +356,7 @@ impl Held {
         for (finger, pad) in self.pads.iter_mut() {
             carried_g += pad.carry(normal_g[finger], self.velocity, bristle);
         }
-        let touch = |pad: &&Pad| pad.contact.normal_g >= TOUCHES_G;
+        let touch = |pad: &&PadContact| pad.contact.normal_g >= TOUCHES_G;
         let mut touching = self.pads.as_array().iter().filter(touch);
         self.slides = pads > 0.0 && touching.all(|pad| pad.contact.slides);
         if self.slides {
@@ -367,13 +367,13 @@ impl Held {
 }
 
 /// Weight at this time, between the turn before and the next.
-fn weight_at<'a>(turns: impl Iterator<Item = &'a Turn>, now_s: f64) -> Turn {
+fn weight_at<'a>(turns: impl Iterator<Item = &'a HandTurn>, now_s: f64) -> HandTurn {
     let mut before = UPRIGHT;
     for next in turns {
         if next.at_s > now_s {
             let way = (now_s - before.at_s) / (next.at_s - before.at_s).max(STEP_S);
             let between = |from: f64, to: f64| from + (to - from) * way;
-            return Turn {
+            return HandTurn {
                 at_s: now_s,
                 direction_deg: between(before.direction_deg, next.direction_deg),
                 share: between(before.share, next.share),
@@ -437,7 +437,7 @@ mod tests {
         object
     }
 
-    fn run(held: &mut Held, normal_g: [f64; 5], ms: u64) -> HeldState {
+    fn run(held: &mut HeldObject, normal_g: [f64; 5], ms: u64) -> HeldState {
         for _ in 0..ms {
             held.step(&PerFinger::new(normal_g), false, false);
         }
@@ -445,7 +445,7 @@ mod tests {
     }
 
     fn after(object: &Object, normal_g: [f64; 5], ms: u64) -> HeldState {
-        run(&mut Held::new(object, 1), normal_g, ms)
+        run(&mut HeldObject::new(object, 1), normal_g, ms)
     }
 
     fn carried(state: &HeldState) -> DVec2 {
@@ -464,7 +464,7 @@ mod tests {
                 for mass_g in [1.0, 20.0, 300.0] {
                     let mut object = pulled(120.0, 50.0);
                     object.mass_g = mass_g;
-                    let turn = Turn {
+                    let turn = HandTurn {
                         at_s: 0.5,
                         direction_deg,
                         share: 0.7,
@@ -487,13 +487,13 @@ mod tests {
     #[test]
     fn a_turned_hand_turns_the_load() {
         let mut object = block();
-        let turn = |at_s, direction_deg| Turn {
+        let turn = |at_s, direction_deg| HandTurn {
             at_s,
             direction_deg,
             share: 1.0,
         };
         object.loads.turns = listed(&[turn(1.0, 270.0), turn(2.0, 360.0)]);
-        let mut held = Held::new(&object, 1);
+        let mut held = HeldObject::new(&object, 1);
         let normal_g = [0.0, 0.0, 0.0, 600.0, 600.0];
         for (ms, degrees) in [(1000, 270.0), (500, 315.0), (700, 360.0)] {
             let state = run(&mut held, normal_g, ms);
@@ -506,7 +506,7 @@ mod tests {
     fn nothing_holds_without_normal_force_and_the_table_carries_until_the_lift() {
         let mut object = block();
         object.loads.lift_after_s = Some(1.5);
-        let mut held = Held::new(&object, 1);
+        let mut held = HeldObject::new(&object, 1);
         let state = run(&mut held, [0.0, 0.0, 0.0, 800.0, 0.0], 5000);
         assert!(
             !state.lifted && state.lost.is_none(),
@@ -535,7 +535,7 @@ mod tests {
 
     #[test]
     fn the_finger_with_less_friction_slips_first_and_the_others_take_over() {
-        let mut held = Held::new(&block(), 1);
+        let mut held = HeldObject::new(&block(), 1);
         let normal_g = [0.0, 0.0, 100.0, 500.0, 500.0];
         let mut slipped = false;
         for _ in 0..AFTER_LIFT_MS {
@@ -567,7 +567,7 @@ mod tests {
     #[test]
     fn a_slide_ends_with_more_normal_force_and_not_by_itself() {
         let start = |normal_g: [f64; 5]| {
-            let mut held = Held::new(&pulled(305.0, 1000.0), 1);
+            let mut held = HeldObject::new(&pulled(305.0, 1000.0), 1);
             let mut state = held.state(false);
             while !(state.slides && state.slid_mm > 1.0) {
                 state = run(&mut held, [0.0, 0.0, 0.0, 500.0, 500.0], 1);
@@ -590,7 +590,7 @@ mod tests {
         let mut object = block();
         object.loads.taken_away_at_s = Some(1.0);
         object.loads.put_back_at_s = Some(2.0);
-        let mut held = Held::new(&object, 1);
+        let mut held = HeldObject::new(&object, 1);
         let pinch = [0.0, 0.0, 0.0, 600.0, 600.0];
         assert!(run(&mut held, pinch, 900).held);
         assert_eq!(run(&mut held, pinch, 200).lost, Some(ObjectLoss::TakenAway));
@@ -609,7 +609,7 @@ mod tests {
             rise_ms: [10.0, 200.0],
         });
         let loads = |seed: u64| -> Vec<DVec2> {
-            let mut held = Held::new(&object, seed);
+            let mut held = HeldObject::new(&object, seed);
             let normal_g = [0.0, 0.0, 0.0, 2000.0, 2000.0];
             let weight = vector(200.0, 270.0);
             (0..9000)
@@ -626,7 +626,7 @@ mod tests {
 
     #[test]
     fn friction_scatters_from_pad_to_pad_and_from_grip_to_grip() {
-        let mut held = Held::new(&NamedObject::Egg.object(), 1);
+        let mut held = HeldObject::new(&NamedObject::Egg.object(), 1);
         held.lift();
         let first = held.pads.map(|pad| pad.friction);
         held.lift();

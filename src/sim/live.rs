@@ -3,7 +3,7 @@
 use crate::hand::register::{ANGLE_ACT, CURRENT, ERROR, FORCE_ACT, POS_ACT, STATUS, TEMP};
 use crate::hand::{Dof, Finger};
 use crate::sim::body::Body;
-use crate::sim::held::Held;
+use crate::sim::held::HeldObject;
 use crate::sim::memory::Memory;
 use crate::sim::number;
 use crate::sim::touch::Press;
@@ -32,7 +32,7 @@ pub(crate) fn publish_drives(memory: &mut Memory, body: &Body) {
 }
 
 /// Load on a fingertip and its distance from the object.
-pub(crate) fn press(body: &Body, held: &Held, finger: Finger) -> Press {
+pub(crate) fn press(body: &Body, held: &HeldObject, finger: Finger) -> Press {
     let contact = held.finger(finger);
     Press {
         force_g: body.fingertip_g(finger),

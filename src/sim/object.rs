@@ -104,7 +104,7 @@ pub struct Friction {
 
 /// Weight direction at a time; it turns evenly from one to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
+pub struct HandTurn {
     /// Time after the lift, s.
     pub at_s: f64,
     /// Direction of the weight in the plane of the pads, degrees.
@@ -146,7 +146,7 @@ pub struct Loads {
     /// Time from a grip by two fingers to the lift, s; `None` = it stays on its table, which carries every load.
     pub lift_after_s: Option<f64>,
     /// Turns of the hand, in order.
-    pub turns: [Option<Turn>; LOADS_MAX],
+    pub turns: [Option<HandTurn>; LOADS_MAX],
     pub pulls: [Option<PullLoad>; LOADS_MAX],
     pub random_pulls: Option<RandomPulls>,
     /// Time at which it is taken out of the hand, s.
@@ -266,7 +266,7 @@ impl Object {
 
     /// The ball of the scenario `grasp`: a jerk makes it slide a little in each grasp, and the hand turns with it.
     fn pulled_ball() -> Self {
-        let turn = |at_s, direction_deg| Turn {
+        let turn = |at_s, direction_deg| HandTurn {
             at_s,
             direction_deg,
             share: 1.0,

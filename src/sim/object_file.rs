@@ -2,8 +2,8 @@
 
 use crate::hand::{Dof, PerDof};
 use crate::sim::object::{
-    Friction, Harder, LIFT_AFTER_S, LOADS_MAX, Loads, NamedObject, Object, Obstacle, PullLoad,
-    RandomPulls, Turn, listed,
+    Friction, HandTurn, Harder, LIFT_AFTER_S, LOADS_MAX, Loads, NamedObject, Object, Obstacle,
+    PullLoad, RandomPulls, listed,
 };
 use crate::sim::scenario::Scenario;
 use crate::store::toml_file::load;
@@ -326,9 +326,9 @@ fn obstacle(source: FileText<'_>, row: &ObjectRow) -> Result<Obstacle, FileError
 fn turns(
     source: FileText<'_>,
     rows: &[Spanned<TurnRow>],
-) -> Result<[Option<Turn>; LOADS_MAX], FileError> {
+) -> Result<[Option<HandTurn>; LOADS_MAX], FileError> {
     few(source, rows, "turn")?;
-    let mut turns: Vec<Turn> = Vec::with_capacity(rows.len());
+    let mut turns: Vec<HandTurn> = Vec::with_capacity(rows.len());
     for row in rows {
         let row = row.get_ref();
         let at_s = fits(source, &row.at_s, &AT)?;
@@ -339,7 +339,7 @@ fn turns(
             };
             return Err(source.blame(row.at_s.span(), AT.name, cause));
         }
-        turns.push(Turn {
+        turns.push(HandTurn {
             at_s,
             direction_deg: fits(source, &row.direction_deg, &DIRECTION)?,
             share: match &row.share {
@@ -462,12 +462,12 @@ pub fn print(object: &Object) -> String {
 
 fn put_loads(text: &mut String, loads: &Loads) {
     *text += "\n# The hand turns evenly from one of these directions of the weight to the next.\n";
-    let example = Turn {
+    let example = HandTurn {
         at_s: 3.0,
         direction_deg: 360.0,
         share: 1.0,
     };
-    let turns: Vec<Turn> = loads.turns.iter().flatten().copied().collect();
+    let turns: Vec<HandTurn> = loads.turns.iter().flatten().copied().collect();
     for (sign, turn) in shown(&turns, example) {
         *text += &format!("{sign}[[turn]]\n");
         put_load(text, sign, &AT, turn.at_s);
@@ -547,7 +547,7 @@ mod tests {
 
     fn full() -> Object {
         let mut object = NamedObject::Sponge.object();
-        let turn = |at_s, direction_deg| Turn {
+        let turn = |at_s, direction_deg| HandTurn {
             at_s,
             direction_deg,
             share: 0.5,

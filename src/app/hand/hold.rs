@@ -2,24 +2,17 @@
 
 use crate::app::env::Env;
 use crate::app::env::running::Running;
-use crate::app::hand::Hand;
-use crate::app::hand::running::MotionRun;
 use crate::app::trials::work::ends;
 use crate::hand::grip::Tightened;
-use crate::hand::overshoot::OvershootMap;
-use crate::hand::{Angle, Force, Moment, PerDof, Setpoints};
+use crate::hand::{Moment, Setpoints};
+use crate::link::LinkHandle;
 use crate::motion::drive::{Armed, drive};
 use crate::motion::hold::{
     HoldClose, HoldEnd, HoldForces, HoldPhase, HoldRun, HoldStart, HoldView,
 };
 use crate::motion::program::{Ended, Progress};
-use crate::poses::way::Targets;
 use crate::record::Abort;
 use tokio::sync::oneshot;
-
-/// Forces of a hold before the user sets others, g.
-const AT_LEAST: i16 = 150;
-const AT_MOST: i16 = 400;
 
 /// A user action on a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,6 +49,26 @@ pub(crate) struct HoldNews {
 }
 
 impl HoldMotion {
+    /// Starts a hold.
+    pub(crate) fn begin(link: LinkHandle, armed: Armed, start: HoldStart, env: &Env) -> Self {
+        let view = HoldView::first(start.forces);
+        let program = HoldRun::new(armed.epoch, start, env.clock.now());
+        let (ender, ended) = oneshot::channel();
+        let task = Running::start(env, |steps| async move {
+            let report = |progress| {
+                steps.send(progress);
+                true
+            };
+            drive(&link, armed, program, ends(ended), report).await.end
+        });
+        Self {
+            view,
+            end: None,
+            ender: Some(ender),
+            task: Some(task),
+        }
+    }
+
     /// True while it may send setpoints.
     pub const fn is_running(&self) -> bool {
         self.end.is_none()
@@ -103,62 +116,4 @@ impl HoldMotion {
         }
         news
     }
-}
-
-impl Hand {
-    /// Forces of the next hold.
-    pub fn hold_forces(&self) -> HoldForces {
-        self.controls.hold_forces.unwrap_or_else(default_forces)
-    }
-
-    /// Starts a hold, if the hand is armed. True if it was started.
-    pub(crate) fn hold(&mut self, close: HoldClose, env: &Env) -> bool {
-        let Some(epoch) = self.own_epoch() else {
-            return false;
-        };
-        self.take_over();
-        let all: Targets = PerDof::splat(Some(Angle::MAX));
-        self.controls.override_limits(&all);
-        let forces = self.hold_forces();
-        let start = HoldStart {
-            close,
-            forces,
-            duration: None,
-            reading_per_g: PerDof::splat(1.0),
-            locked: self.controls.locked(),
-            overshoot: OvershootMap::clone(&self.overshoot.map),
-            grip: self.readings.grip.clone(),
-        };
-        let Some(open) = &mut self.connection.open else {
-            return false;
-        };
-        let armed = Armed {
-            epoch,
-            lease: open.lend_lease(),
-            seen: self.readings.sample,
-            clock: env.clock,
-        };
-        let link = open.link.clone();
-        let program = HoldRun::new(epoch, start, env.clock.now());
-        let (ender, ended) = oneshot::channel();
-        let task = Running::start(env, |steps| async move {
-            let report = |progress| {
-                steps.send(progress);
-                true
-            };
-            drive(&link, armed, program, ends(ended), report).await.end
-        });
-        self.running.0 = Some(MotionRun::Hold(HoldMotion {
-            view: HoldView::first(forces),
-            end: None,
-            ender: Some(ender),
-            task: Some(task),
-        }));
-        true
-    }
-}
-
-fn default_forces() -> HoldForces {
-    let [least, most] = [AT_LEAST, AT_MOST].map(Force::nearest);
-    HoldForces::nearest(least, most)
 }

@@ -4,6 +4,7 @@ pub(crate) mod exhibit;
 mod hand_actions;
 mod hand_tick;
 mod hands;
+mod hold;
 mod inputs;
 mod jobs;
 mod leading;
@@ -228,7 +229,7 @@ impl App {
             Action::Pinch(gap) => pinch::pinch(state, gap, env),
             Action::MeasureBlock(size_mm) => pinch::measure_block(state, size_mm),
             Action::ForgetBlocks => pinch::forget_blocks(state),
-            Action::Hold(action) => pinch::hold(state.hand_mut(), action, env),
+            Action::Hold(action) => hold::hold(state.hand_mut(), action, env),
             Action::Gesture(gesture) => hands::with_shown(state, env, |hand, settings, ctx| {
                 hand.gesture(gesture, settings.gesture_route, ctx);
             }),

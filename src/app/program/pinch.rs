@@ -1,36 +1,19 @@
 //! Grips by size with the shown hand, and the blocks that calibrate its sizes.
 
 use crate::app::env::Env;
-use crate::app::hand::hold::HoldAction;
-use crate::app::hand::{Hand, grip};
+use crate::app::hand::grip;
 use crate::app::notices::NoticeKind;
 use crate::app::state::State;
 use crate::hand::gap::{Block, Gap, SizeBlocks};
 use crate::poses::library::EntryId;
 use crate::poses::player::{Cue, PlayMode, PlayPlan};
 use crate::poses::starter::starter;
-use crate::record::Abort;
 use std::time::Duration;
 
 /// The shipped pose with which the hand opens for a pinch.
 const PINCH: &str = "Pinch";
 /// Time limit for each leg of the opening, at the slowest useful speed.
 const OPEN_TIMEOUT: Duration = Duration::from_secs(30);
-
-/// Carries out an action on a hold.
-pub(super) fn hold(hand: &mut Hand, action: HoldAction, env: &Env) {
-    match action {
-        HoldAction::Forces(forces) => hand.controls.hold_forces = Some(forces),
-        HoldAction::Start(close) => {
-            let _started = hand.hold(close, env);
-        }
-        HoldAction::End => {
-            if let Some(run) = hand.running.hold_mut() {
-                run.end(Abort::Person);
-            }
-        }
-    }
-}
 
 /// Moves to a gap. If thumb and index could collide on the path, the hand only opens: the user starts the next step.
 pub(super) fn pinch(state: &mut State, gap: Gap, env: &Env) {

@@ -42,7 +42,7 @@ pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// Draws both forces: one slider with two handles, and a field for each.
 fn forces_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let (look, forces) = (pane.look, pane.hand().hold_forces());
+    let (look, forces) = (pane.look, pane.hand().controls.hold_forces());
     let [least, most] = [forces.at_least(), forces.at_most()].map(|force| f32::from(force.get()));
     let running = pane.hand().running.holds();
     let moved = ui
