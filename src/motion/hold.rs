@@ -1,6 +1,7 @@
 //! A hold on a hand that the user armed: close until the fingers press with *at least*, then keep what is held with the least force that
 //! holds, and never with more than *at most*. The hand itself enforces *at most* by its force threshold, also if this program dies.
 
+use crate::hand::feedback::tactile::spot_mm;
 use crate::hand::gap::{Gap, held_gap};
 use crate::hand::grip::{Grip, GripEstimator, GripState, Tightened};
 use crate::hand::overshoot::{MeasuredOn, OvershootMap, Stages, Stiffness};
@@ -54,8 +55,6 @@ const WARM: u8 = heat::WARM;
 const TOUCH_N: f32 = 0.15;
 /// Grams-force per newton.
 const G_PER_N: f64 = 101.97;
-/// Rise of all channels from which the place of a contact is known, counts.
-const SPOT_COUNTS: f64 = 20_000.0;
 
 /// Forces between which an object is held, g of this hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -505,7 +504,7 @@ impl HoldRun {
                 at: tip.received,
                 normal_g: f64::from(normal_n) * G_PER_N,
                 tangential_g: f64::from(tangential_n) * G_PER_N,
-                spot_mm: free.and_then(|free| tip.value.spot_mm(&free, SPOT_COUNTS)),
+                spot_mm: free.and_then(|free| spot_mm(&tip.value.raw, &free)),
             });
         }
     }

@@ -17,6 +17,21 @@ pub const PAD_CENTRES_MM: [(f64, f64); 7] = [
     (0.1, 9.1),
 ];
 
+/// Rise of all channels together from which the place of a contact is known, counts.
+const SPOT_COUNTS: f64 = 20_000.0;
+
+/// Place of the contact in mm, from the channels and those of the free fingertip: the mean of the pad centres, each weighted by its
+/// rise. `None` if the channels rose too little.
+pub fn spot_mm(raw: &[u32; 8], free: &[u32; 8]) -> Option<(f64, f64)> {
+    let rises = raw.iter().zip(free);
+    let rises = rises.map(|(raw, free)| (f64::from(*raw) - f64::from(*free)).max(0.0));
+    let (mut all, mut x, mut y) = (0.0, 0.0, 0.0);
+    for (rise, pad) in rises.zip(PAD_CENTRES_MM) {
+        (all, x, y) = (all + rise, x + rise * pad.0, y + rise * pad.1);
+    }
+    (all >= SPOT_COUNTS).then(|| (x / all, y / all))
+}
+
 /// One fingertip's block, decoded (manual 2.6.21, table).
 ///
 /// Manual: the last bytes and the signs are not explained. Raw values are unsigned counts; the
@@ -113,22 +128,6 @@ impl TactileBlock {
     /// Tangential force, N; `None` if it is not a finite number.
     pub fn tangential(&self) -> Option<f32> {
         self.tangential_n.is_finite().then_some(self.tangential_n)
-    }
-
-    /// Place of the contact in mm, relative to the channels of the free fingertip: the mean of the pad centres, each weighted by its
-    /// rise. `None` if no channel rose by `least` counts.
-    pub fn spot_mm(&self, free: &[u32; 8], least: f64) -> Option<(f64, f64)> {
-        let rises = self
-            .raw
-            .iter()
-            .zip(free)
-            .map(|(raw, free)| f64::from(*raw) - f64::from(*free));
-        let rises = rises.map(|rise| rise.max(0.0));
-        let (mut all, mut x, mut y) = (0.0, 0.0, 0.0);
-        for (rise, pad) in rises.zip(PAD_CENTRES_MM) {
-            (all, x, y) = (all + rise, x + rise * pad.0, y + rise * pad.1);
-        }
-        (all >= least).then(|| (x / all, y / all))
     }
 
     /// True if the check word equals the 16-bit sum of the first 54 bytes. Shown only; data is never dropped for it.

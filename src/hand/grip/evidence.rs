@@ -36,6 +36,8 @@ pub(super) struct JointEvidence {
 pub(super) struct TipEvidence {
     /// Normal force, N.
     pub(super) normal_n: f32,
+    /// Its channels.
+    pub(super) raw: [u32; 8],
     /// Reading for the slip detector; `None` if it is not new.
     pub(super) news: Option<HeldMoment>,
 }
@@ -92,6 +94,7 @@ impl FingerEvidence {
             joints,
             tip: normal.map(|(tip, normal_n)| TipEvidence {
                 normal_n,
+                raw: tip.value.raw,
                 news: held(&tip).filter(|_| reading.fresh.contains(Group::Tactile(finger))),
             }),
             angle_at: angle.received,
@@ -125,5 +128,6 @@ fn held(tip: &Timed<TactileBlock>) -> Option<HeldMoment> {
         t: tip.received.secs(),
         ratio: tangential / normal.max(f64::EPSILON),
         direction: tip.value.direction_deg().map(f64::from),
+        spot_mm: None,
     })
 }

@@ -2,11 +2,12 @@
 
 use crate::hand::dof::{Dof, PerDof};
 use crate::hand::feedback::status::Status;
+use crate::hand::feedback::tactile::spot_mm;
 use crate::hand::grip::contact::{Contact, Felt};
 use crate::hand::grip::evidence::{FingerEvidence, JOINTS_MAX, JointEvidence, TipEvidence};
 use crate::hand::grip::free::{FreeClose, FreeForce};
 use crate::hand::grip::motion::JointMotion;
-use crate::hand::grip::slip::{HELD_N, SlipDetector};
+use crate::hand::grip::slip::{HELD_N, HeldMoment, SlipDetector};
 use crate::hand::grip::state::{GripEstimate, GripState};
 use crate::hand::grip::thresholds::GripThresholds;
 use crate::hand::moment::Moment;
@@ -60,6 +61,8 @@ pub(super) struct FingerEstimator {
     zero_g: PerDof<Option<f32>>,
     touches: bool,
     slip: SlipDetector,
+    /// Channels of the fingertip when it touched nothing last.
+    free_channels: Option<[u32; 8]>,
     held: Option<HeldAt>,
     way: Option<FreeWay>,
     /// Completed free closes, for the hand's estimator to collect.
@@ -74,6 +77,7 @@ impl FingerEstimator {
             zero_g: PerDof::splat(None),
             touches: false,
             slip: SlipDetector::new(thresholds),
+            free_channels: None,
             held: None,
             way: None,
             learned: ArrayVec::new(),
@@ -173,8 +177,13 @@ impl FingerEstimator {
         };
         if f64::from(tip.normal_n) < HELD_N {
             self.slip = SlipDetector::new(thresholds);
+            self.free_channels = Some(tip.raw);
         } else if let Some(moment) = tip.news {
-            self.slip.push(moment);
+            let free = self.free_channels;
+            self.slip.push(HeldMoment {
+                spot_mm: free.and_then(|free| spot_mm(&tip.raw, &free)),
+                ..moment
+            });
         }
     }
 

@@ -19,6 +19,11 @@ const CREEPS: f64 = 0.02;
 const LEVEL_COUNT: usize = 5;
 /// Share of the rise that suffices where the tangential force turns as well.
 const TURNED_SHARE: f64 = 0.75;
+/// A rising ratio is a slip from here on: the friction of smooth objects. Below, the object only became heavier, unless its contact
+/// moved on the fingertip by so many mm within so many seconds.
+const NEAR_FRICTION: f64 = 0.3;
+const SPOT_MM: f64 = 0.5;
+const SPOT_S: f64 = 1.0;
 /// Capacity of the history: one second of a sensor that is read 500 times a second.
 const READINGS_MAX: usize = 512;
 
@@ -31,6 +36,8 @@ pub struct HeldMoment {
     pub ratio: f64,
     /// Direction of the tangential force, degrees; `None` if not known.
     pub direction: Option<f64>,
+    /// Place of the contact on the fingertip, mm; `None` if not known.
+    pub spot_mm: Option<(f64, f64)>,
 }
 
 /// Difference between a reading and those before it.
@@ -95,7 +102,8 @@ impl SlipDetector {
         if jump.is_some() {
             self.jumped = Some(now.t);
         }
-        let rise = jump.or(crept);
+        let is_slip = now.ratio >= NEAR_FRICTION || self.slides(&now);
+        let rise = jump.or(crept).filter(|_| is_slip);
         let first = self.pending.take();
         self.pending = rise;
         let both = first.zip(rise);
@@ -103,6 +111,14 @@ impl SlipDetector {
             self.last = Some(now.t);
         }
         both
+    }
+
+    /// True if the place of the contact moved.
+    fn slides(&self, now: &HeldMoment) -> bool {
+        let recent = self.held.iter().filter(|moment| moment.t >= now.t - SPOT_S);
+        let mut places = recent.filter_map(|moment| moment.spot_mm);
+        now.spot_mm
+            .is_some_and(|(x, y)| places.any(|before| (x - before.0).hypot(y - before.1) > SPOT_MM))
     }
 
     /// Rise of a reading over those just before it. Readings of a slip in progress are left out of the reference.
@@ -181,6 +197,7 @@ mod tests {
                 t: *t,
                 ratio: ratio(*t),
                 direction: Some(direction(*t).rem_euclid(360.0)),
+                spot_mm: None,
             };
             detector.push(moment).is_some()
         });
@@ -206,6 +223,22 @@ mod tests {
             let last = seen.last().copied().unwrap_or_default();
             assert!(last < 2.0 + seconds + 0.8, "it holds again: {seen:?}");
         }
+    }
+
+    #[test]
+    fn a_heavier_object_is_no_slip_unless_its_contact_moves() {
+        let told = [false, true].map(|moves| {
+            let mut detector = SlipDetector::new(&GripThresholds::default());
+            let moments = (0..90).map(|n| f64::from(n) / 30.0);
+            let mut moments = moments.map(|t| HeldMoment {
+                t,
+                ratio: 0.02 + 0.2 * ((t - 1.5) / 0.3).clamp(0.0, 1.0),
+                direction: Some(10.0),
+                spot_mm: Some((0.0, if moves { 4.0 * (t - 1.5).max(0.0) } else { 0.0 })),
+            });
+            moments.any(|moment| detector.push(moment).is_some())
+        });
+        assert_eq!(told, [false, true]);
     }
 
     #[test]

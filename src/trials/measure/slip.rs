@@ -82,6 +82,7 @@ fn moments(curves: &JointCurves, from: f64, to: f64) -> Vec<HeldMoment> {
                 t: normal.t,
                 ratio: tangential / normal.v,
                 direction: near(&curves.direction, normal.t),
+                spot_mm: None,
             })
         })
         .collect()
