@@ -215,12 +215,12 @@ fn loads(chance: &mut fastrand::Rng, normal_g: f64, friction: f64) -> Loads {
     };
     match event {
         0..=3 => pull(1.6 * friction, PULL_OUT_MS),
-        4..=5 => pull(0.06, 300.0),
+        4..=5 => pull(0.03, 300.0),
         6 => loads.taken_away_at_s = Some(2.0),
         7 => {
             loads.random_pulls = Some(RandomPulls {
                 every_s: 0.8,
-                force_g: [0.0, 0.06 * normal_g],
+                force_g: [0.0, 0.03 * normal_g],
                 rise_ms: [50.0, 500.0],
             })
         }
@@ -261,7 +261,7 @@ impl Plan {
         let sticking = 0.4 + 0.5 * chance.f64();
         Self {
             object: Object {
-                mass_g: (normal_g * (0.02 + 0.18 * chance.f64())).max(1.0),
+                mass_g: (normal_g * (0.02 + 0.08 * chance.f64())).max(1.0),
                 friction: Friction {
                     sticking,
                     sliding_ratio: 0.7 + 0.25 * chance.f64(),
