@@ -4,6 +4,7 @@ mod booth;
 mod drive;
 mod exhibit;
 mod grip;
+mod hold;
 mod move_to;
 mod play;
 mod series;
