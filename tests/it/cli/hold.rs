@@ -47,6 +47,9 @@ fn forces_and_poses_that_make_no_sense_are_wrong_usage() {
         let ended = run(&[&["hold", "--hand", "sim:", "--arm"], more].concat());
         assert_eq!(ended.code, Some(2), "{more:?} {}", ended.err);
         assert!(ended.err.contains(words), "{more:?} {}", ended.err);
+        // The parser of the arguments adds where to find help.
+        let is_sentence = ended.err.lines().count() == 1;
+        assert!(is_sentence || ended.err.starts_with("error:"), "{more:?}");
     }
 }
 
@@ -74,7 +77,7 @@ fn it_ends_held_or_ended_by_the_user_or_with_nothing() {
         assert!(empty.err.contains("holds nothing"), "{}", empty.err);
         assert_eq!(empty.lines().pop().unwrap()["hold"]["end"], "nothing");
 
-        endless.until(|line| line.starts_with("holding with"));
+        endless.until(|line| line.contains(" g, margin"));
         endless.signal(Signal::SIGINT);
         let endless = endless.end();
         assert_eq!(endless.code, Some(0), "{}", endless.err);
@@ -92,10 +95,10 @@ fn it_ends_held_or_ended_by_the_user_or_with_nothing() {
             (&"held".into(), &"holding".into())
         );
         assert!(told["seconds_held"].as_f64().unwrap() >= 2.0, "{told}");
-        let forces = told["last"]["force_g"].as_object().unwrap();
-        for (finger, force_g) in forces {
+        let forces = told["last"]["force_g"].as_array().unwrap();
+        for force_g in forces {
             let force_g = force_g.as_i64().unwrap();
-            assert!((120..=400).contains(&force_g), "{finger} {told}");
+            assert!((120..=400).contains(&force_g), "{told}");
         }
         assert_eq!(forces.len(), 5, "{told}");
     });
