@@ -768,7 +768,7 @@ impl HoldRun {
                 angle: at.get(),
                 is_warm: is_warm(seen.sample, dof),
             });
-            let Some(step) = step.filter(|step| !is_gone && !(is_far && step.cause.is_some()))
+            let Some(step) = step.filter(|step| !(is_gone || is_far && step.cause.is_some()))
             else {
                 continue;
             };
