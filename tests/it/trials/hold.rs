@@ -3,7 +3,6 @@
 #[path = "../../bench/hold_table.rs"]
 mod hold_table;
 
-use crate::setup::soak;
 use handscope::motion::hold::HoldEnd;
 use hold_table::{Outcome, holds};
 
@@ -12,7 +11,7 @@ const PEAK_MAX_G: f64 = 150.0;
 
 #[test]
 fn objects_are_held_between_the_two_forces() {
-    let table = holds(0..soak::times_at_least(60, 240));
+    let table = holds(0..60);
     let told = table.line();
     eprintln!("{told}");
     let seen = table.outcomes.len();
