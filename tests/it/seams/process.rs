@@ -550,7 +550,7 @@ fn holder_of(program: u32) -> Pid {
         };
         let read = |what| std::fs::read_to_string(format!("/proc/{id}/{what}"));
         let is_child = read("status").is_ok_and(|status| status.contains(&parent));
-        if is_child && read("cmdline").is_ok_and(|line| line.contains("\0hold\0")) {
+        if is_child && read("cmdline").is_ok_and(|line| line.contains("\0guard\0")) {
             return Pid::from_raw(id);
         }
     }
