@@ -419,8 +419,7 @@ impl Program for HoldRun {
         HoldView {
             phase: match self.step {
                 HoldStage::Measuring => HoldPhase::Measuring,
-                HoldStage::Closing | HoldStage::Pressing => HoldPhase::Closing,
-                HoldStage::Taking => HoldPhase::Holding,
+                HoldStage::Closing | HoldStage::Pressing | HoldStage::Taking => HoldPhase::Closing,
                 HoldStage::Holding if holding().any(FingerHold::is_short) => HoldPhase::CannotHold,
                 HoldStage::Holding => HoldPhase::Holding,
             },

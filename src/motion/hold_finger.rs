@@ -145,6 +145,8 @@ pub(crate) struct FingerHold {
     underway: Option<Underway>,
     quiet_since: Moment,
     relaxed: Option<Moment>,
+    /// Time of the last step that opened.
+    eased: Option<Moment>,
     relaxes_from: Moment,
     is_short: bool,
     /// Force at which steps had no effect: its threshold or its stroke stops the drive.
@@ -174,6 +176,7 @@ impl FingerHold {
             underway: None,
             quiet_since: now,
             relaxed: None,
+            eased: None,
             relaxes_from: now,
             is_short: false,
             blocked: None,
@@ -426,7 +429,11 @@ impl FingerHold {
         let steps = ((spare - dead) / self.stiffness * RELAX_PART)
             .floor()
             .min(STEP_MAX);
-        (is_quiet && is_allowed && steps >= 1.0).then_some(())?;
+        // The force settles more slowly than a step takes.
+        let settled = |at: Moment| seen.reading.at.since(at) >= RELAX_INTERVAL;
+        let is_settled = self.eased.is_none_or(settled);
+        (is_quiet && is_allowed && is_settled && steps >= 1.0).then_some(())?;
+        self.eased = Some(seen.reading.at);
         self.step(seen, steps, None)
     }
 

@@ -74,7 +74,7 @@ pub enum DriveError {
         /// Endpoint of the hand.
         endpoint: Endpoint,
         /// Trouble reported by the link.
-        trouble: LinkTrouble,
+        trouble: Box<LinkTrouble>,
     },
     /// A recording could not be opened, or not in time.
     #[error("{} was not opened within {within_s} s", path.display())]
@@ -239,7 +239,7 @@ impl Driver {
             {
                 return Err(DriveError::NoHand {
                     endpoint: self.endpoint.clone(),
-                    trouble,
+                    trouble: Box::new(trouble),
                 });
             }
             if self.now().since(begun) >= ANSWER_TIMEOUT {

@@ -81,8 +81,8 @@ pub(crate) use texts;
 mod tests {
     use crate::ui::style::phrase::Text;
     use crate::ui::text::{
-        cards, checkup, device, exhibit, inputs, main, notices, panels, poses, recordings, scan,
-        traffic, tune, window,
+        cards, checkup, device, exhibit, hold, inputs, main, notices, panels, poses, recordings,
+        scan, traffic, tune, window,
     };
 
     fn all() -> impl Iterator<Item = Text> {
@@ -91,6 +91,7 @@ mod tests {
             checkup::ALL,
             device::ALL,
             exhibit::ALL,
+            hold::ALL,
             tune::search::ALL,
             notices::ALL,
             inputs::ALL,
