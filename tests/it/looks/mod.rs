@@ -131,14 +131,7 @@ const PICTURES: [&str; 11] = [
 ];
 
 /// The pictures of the README.
-const SCREENSHOTS: [&str; 6] = [
-    "live",
-    "touch",
-    "tune",
-    "compare",
-    "device",
-    "live-zh-light",
-];
+const SCREENSHOTS: [&str; 5] = ["live", "touch", "tune", "compare", "live-zh-light"];
 
 const DRESSES: [(Theme, Language, &str); 4] = [
     (Theme::Dark, Language::En, ""),

@@ -9,6 +9,7 @@ use handscope::app::controls::HoldKey;
 use handscope::app::effect::ActionEffect;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::app::files::export::{Export, TrafficForm};
+use handscope::app::hand::hold::HoldAction;
 use handscope::app::hand::list::HandsAction;
 use handscope::app::inputs::InputAction;
 use handscope::app::layout::Layout;
@@ -29,6 +30,7 @@ use handscope::history::{Mark, MarkKind};
 use handscope::inputs::pad::PadMap;
 use handscope::link::PollPriority;
 use handscope::motion::following::FollowLimits;
+use handscope::motion::hold::{HoldClose, HoldForces};
 use handscope::motion::source::SourceKind;
 use handscope::params::place::WhichPlace;
 use handscope::params::rows::{ParamId, Value};
@@ -212,6 +214,12 @@ fn all(things: Things) -> Vec<Action> {
         Action::Lock(Dof::Ring, true),
         Action::Preset(Preset::Close),
         Action::Pinch(Gap::MAX),
+        Action::Hold(HoldAction::Forces(HoldForces::nearest(
+            Force::MIN,
+            Force::RATED,
+        ))),
+        Action::Hold(HoldAction::Start(HoldClose::Pinch(Gap::MIN))),
+        Action::Hold(HoldAction::End),
         Action::MeasureBlock(30.0),
         Action::ForgetBlocks,
         Action::Gesture(Gesture::MIN),
