@@ -9,7 +9,7 @@ use crate::hand::PerDof;
 use crate::hand::gap::{Gap, GripKind, HeldSize, SizeBlocks};
 use crate::hand::{Force, Speed};
 use crate::link::ArmRequest;
-use crate::motion::drive::{STOP_LOST, stop_words};
+use crate::motion::drive::stop_words;
 use crate::motion::grip::{self, GripEnd, GripReport, GripStart};
 use crate::motion::program::Ended;
 use crate::record::Abort;
@@ -136,7 +136,6 @@ fn outcome(args: &GripArgs, report: &GripReport, blocks: &SizeBlocks) -> Result<
             Err(format!("{why}: let one of them move the hand"))
         }
         Err(why @ Abort::Fault { .. }) => Err(format!("{why}: 'handscope doctor' explains it")),
-        Err(Abort::LinkLost) => Err(STOP_LOST.into()),
         Err(why) => Err(why.to_string()),
     }
 }

@@ -14,7 +14,7 @@ use crate::hand::overshoot::{OvershootMap, Stiffness};
 use crate::hand::statistics::mean;
 use crate::hand::{Finger, Force, Moment, PerDof, Speed};
 use crate::link::ArmRequest;
-use crate::motion::drive::{STOP_LOST, stop_words};
+use crate::motion::drive::stop_words;
 use crate::motion::hold::{
     HeldThing, HoldClose, HoldEnd, HoldForces, HoldPhase, HoldRun, HoldStart, HoldView,
 };
@@ -342,7 +342,6 @@ fn outcome(end: Ended<HoldEnd>) -> Result<String, String> {
         ),
         Ok(HoldEnd::Lost) => Err("the object left the hand".into()),
         Ok(HoldEnd::Late) => Err("the hand did not get there in time".into()),
-        Err(Abort::LinkLost) => Err(STOP_LOST.into()),
         Err(why) => Err(why.to_string()),
     }
 }
