@@ -280,7 +280,7 @@ impl Object {
             },
             taper_per_mm: 0.04,
             loads: Loads {
-                lift_after_s: Some(0.2),
+                lift_after_s: Some(0.1),
                 turns: listed(&[turn(0.0, 270.0), turn(0.9, 270.0), turn(1.2, 355.0)]),
                 pulls: listed(&[PullLoad {
                     at_s: 0.9,
