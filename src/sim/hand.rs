@@ -563,8 +563,8 @@ impl SimHand {
     fn step_object(&mut self) {
         let was_present = self.held.is_present();
         let has_room = self.body.has_room();
-        let mut fingers = Finger::ALL.map(Finger::bend).into_iter();
-        let is_closing = fingers.any(|dof| self.body.drives()[dof].is_moving());
+        let mut drives = self.body.drives().iter();
+        let is_closing = drives.any(|(_, drive)| drive.is_moving());
         self.held.step(&self.true_loads(), has_room, is_closing);
         if self.held.is_present() != was_present {
             self.body.set_present(!was_present);

@@ -223,7 +223,7 @@ impl HeldObject {
     }
 
     /// Advances by one millisecond with these normal forces. `is_open` is true if no joint is near the object's place, `is_closing` while
-    /// a finger moves: nobody lifts an object before the grip is complete.
+    /// a joint moves: nobody lifts an object before the grip is complete.
     pub fn step(&mut self, normal_g: &PerFinger<f64>, is_open: bool, is_closing: bool) {
         let loads = self.object.loads;
         match self.phase {
