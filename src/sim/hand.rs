@@ -4,7 +4,7 @@ use crate::hand::register::{ANGLE_ACT, FORCE_SET, HAND_ID, REDU_RATIO, Register,
 use crate::hand::{Dof, Fault, Finger, Group, Moment, PerDof, PerFinger};
 use crate::sim::body::Body;
 use crate::sim::body_params::BodyParams;
-use crate::sim::drive::{DriveGoal, DriveSettings, position_of};
+use crate::sim::drive::{Drive, DriveGoal, DriveSettings, position_of};
 use crate::sim::extremes;
 use crate::sim::held::{HeldObject, HeldState};
 use crate::sim::live::{self, element};
@@ -563,8 +563,8 @@ impl SimHand {
     fn step_object(&mut self) {
         let was_present = self.held.is_present();
         let has_room = self.body.has_room();
-        let mut drives = self.body.drives().iter();
-        let is_closing = drives.any(|(_, drive)| drive.is_moving());
+        let drives = self.body.drives().as_array();
+        let is_closing = drives.iter().any(Drive::is_moving);
         self.held.step(&self.true_loads(), has_room, is_closing);
         if self.held.is_present() != was_present {
             self.body.set_present(!was_present);
