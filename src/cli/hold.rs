@@ -3,7 +3,7 @@
 use crate::app::files::{pose_file, settings_file};
 use crate::checkup::newtons_file;
 use crate::cli::grip::gap;
-use crate::cli::out::{Out, WrongUsage};
+use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::parse::{hand, seconds};
 use crate::cli::session;
 use crate::cli::trial::drive::ArmedHand;
@@ -28,6 +28,8 @@ use clap::Args;
 use serde_json::json;
 use std::time::Duration;
 
+/// Said when the user ends a hold.
+const KEPT: &str = "ended by the user; the hand keeps its position and what it holds";
 /// Interval of the lines that show the hold.
 const LINE_INTERVAL: Duration = Duration::from_secs(1);
 
@@ -114,18 +116,27 @@ pub(crate) async fn run(out: &mut Out, args: &HoldArgs) -> anyhow::Result<()> {
         })
         .await;
     let view = lines.view;
-    let done = outcome(driven.end);
+    let held = driven.program.held_for(clock.now());
+    let done = match driven.end {
+        Err(Abort::Person) if held.is_some() => {
+            // Also with --json: whether the stop was confirmed is said where it is seen.
+            notify(&format!("{KEPT}{}", stop_words(driven.stop)));
+            Ok("")
+        }
+        end => outcome(end),
+    };
     let object = json!({ "hold": {
         "hand": args.hand.to_string(),
         "end": end_name(driven.end),
-        "seconds_held": driven.program.held_for(clock.now()).map(|held| held.as_secs_f64()),
+        "seconds_held": held.map(|held| held.as_secs_f64()),
         "at_least_g": forces.at_least(),
         "at_most_g": forces.at_most(),
         "state": driven.program.grip().grasp.state,
         "last": view,
         "stop": driven.stop,
     }});
-    out.result(args.json, &object, done.as_ref().ok())?;
+    let words = done.as_ref().ok().filter(|words| !words.is_empty());
+    out.result(args.json, &object, words)?;
     out.flush()?;
     match done {
         Ok(_words) => Ok(()),
@@ -333,10 +344,9 @@ fn overshoot(hand: &Endpoint) -> OvershootMap {
 }
 
 /// The outcome in one sentence; `Err` for failures.
-fn outcome(end: Ended<HoldEnd>) -> Result<String, String> {
+fn outcome(end: Ended<HoldEnd>) -> Result<&'static str, String> {
     match end {
-        Ok(HoldEnd::Held) => Ok("held; the hand keeps its position and what it holds".into()),
-        Err(Abort::Person) => Ok("ended by the user; the hand keeps its position and what it holds".into()),
+        Ok(HoldEnd::Held) => Ok("held; the hand keeps its position and what it holds"),
         Ok(HoldEnd::Nothing) => Err(
             "the hand holds nothing: put the object in its place, and name a pose or a gap with --pose or --gap".into(),
         ),

@@ -36,9 +36,9 @@ const STILL: Duration = Duration::from_millis(300);
 const START_DELAY: Duration = Duration::from_millis(500);
 /// Time that a part of the close may take beyond the time its speed implies.
 const SPARE: Duration = Duration::from_secs(4);
-/// Speed of joints that open, and of the thumb's rotation.
+/// Speed of joints that open, and of the thumb's rotation: if feedback freezes, it goes on for half a second.
 const CLEAR_SPEED: i16 = 200;
-const ROTATE_SPEED: i16 = 100;
+const ROTATE_SPEED: i16 = 50;
 /// A close stops at this multiple of *at least*: the grip relaxes a little afterwards.
 const CLOSE_FACTOR: f64 = 1.1;
 /// A finger presses with *at least* from this share of it on.
