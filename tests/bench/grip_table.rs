@@ -261,7 +261,7 @@ impl Plan {
         let sticking = 0.4 + 0.5 * chance.f64();
         Self {
             object: Object {
-                mass_g: (normal_g * (0.02 + 0.08 * chance.f64())).max(1.0),
+                mass_g: (normal_g * (0.02 + 0.05 * chance.f64())).max(1.0),
                 friction: Friction {
                     sticking,
                     sliding_ratio: 0.7 + 0.25 * chance.f64(),
