@@ -81,7 +81,9 @@ fn it_ends_held_or_ended_by_the_user_or_with_nothing() {
         endless.signal(Signal::SIGINT);
         let endless = endless.end();
         assert_eq!(endless.code, Some(0), "{}", endless.err);
-        assert!(endless.out.contains("ended by the user"), "{}", endless.out);
+        let said = &endless.err;
+        assert!(said.contains("ended by the user"), "{said}");
+        assert!(said.contains("feedback shows rest"), "{said}");
 
         let timed = timed.end().ok();
         let lines = timed.lines();
