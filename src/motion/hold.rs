@@ -33,6 +33,7 @@ const ZERO_READINGS: usize = 5;
 const ZERO_TIMEOUT: Duration = Duration::from_secs(3);
 /// A joint rests when its angle has not changed for this time, and not before this time after a command.
 const STILL: Duration = Duration::from_millis(300);
+const STILL_READINGS: u32 = 4;
 const START_DELAY: Duration = Duration::from_millis(500);
 /// Time that a part of the close may take beyond the time its speed implies.
 const SPARE: Duration = Duration::from_secs(4);
@@ -289,8 +290,10 @@ pub struct HoldRun {
     /// Channels of each fingertip while it touched nothing.
     free_tips: PerFinger<Option<[u32; 8]>>,
     legs: Option<VecDeque<Targets>>,
-    /// Last angle of each joint, and since when.
-    still: PerDof<Option<(i16, Moment)>>,
+    /// Last angle of each joint, since when, and the number of readings that show it.
+    still: PerDof<Option<(i16, Moment, u32)>>,
+    /// Time of the newest angles.
+    angles_at: Option<Moment>,
     /// FORCE_SET as given.
     threshold_g: PerDof<f64>,
     /// Part of a threshold that the drive counts although the finger does not press, g.
@@ -324,6 +327,7 @@ impl HoldRun {
             free_tips: PerFinger::splat(None),
             legs: None,
             still: PerDof::splat(None),
+            angles_at: None,
             threshold_g: PerDof::splat(0.0),
             shift_g: PerDof::splat(0.0),
             touched: PerFinger::splat(None),
@@ -448,11 +452,17 @@ impl HoldRun {
         let Some(angles) = sample.angle else {
             return;
         };
+        if self.angles_at.replace(angles.received) == Some(angles.received) {
+            return;
+        }
         for (dof, still) in self.still.iter_mut() {
             let at = angles.value[dof].raw();
-            if still.is_none_or(|(before, _)| at.abs_diff(before) > 1) {
-                *still = Some((at, now));
-            }
+            *still = match *still {
+                Some((before, since, readings)) if at.abs_diff(before) <= 1 => {
+                    Some((before, since, readings + 1))
+                }
+                _ => Some((at, now, 1)),
+            };
         }
     }
 
@@ -509,7 +519,10 @@ impl HoldRun {
     }
 
     fn is_still(&self, dof: Dof, now: Moment) -> bool {
-        self.still[dof].is_some_and(|(_, since)| now.since(since) >= STILL)
+        // A hand that is not read is not known to rest.
+        self.still[dof].is_some_and(|(_, since, readings)| {
+            now.since(since) >= STILL && readings >= STILL_READINGS
+        })
     }
 
     /// True once the joints had time to move and rest.
