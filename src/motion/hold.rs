@@ -14,7 +14,7 @@ use crate::link::PollRates;
 use crate::motion::hold_finger::{FingerHold, FingerReading, ForceRange, TipForces};
 use crate::motion::program::{Ended, Order, Program, Seen};
 use crate::poses::way::{Targets, pinch_way, way};
-use crate::record::Abort;
+use crate::record::{Abort, Rest};
 use serde::Serialize;
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -529,7 +529,10 @@ impl HoldRun {
     fn is_at_rest(&self, seen: &Seen<'_>, moves: impl Fn(Dof) -> bool) -> bool {
         let begins = START_DELAY + seen.status.slow_allowance();
         let mut moving = Dof::ALL.into_iter().filter(|dof| moves(*dof));
-        seen.now.since(self.sent) >= begins && moving.all(|dof| self.is_still(dof, seen.now))
+        // Replies that come late show an old pose again; the link knows of them.
+        let is_moving = seen.status.rest == Rest::Moving;
+        let is_due = seen.now.since(self.sent) >= begins && !is_moving;
+        is_due && moving.all(|dof| self.is_still(dof, seen.now))
     }
 
     fn holds(&self, sample: &HandSample, finger: Finger) -> bool {
