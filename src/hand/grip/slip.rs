@@ -21,7 +21,7 @@ const LEVEL_COUNT: usize = 5;
 const TURNED_SHARE: f64 = 0.75;
 /// A rising ratio is a slip from here on: the friction of smooth objects. Below, the object only became heavier, unless its contact
 /// moved on the fingertip by so many mm within so many seconds.
-const NEAR_FRICTION: f64 = 0.3;
+const NEAR_FRICTION: f64 = 0.35;
 const SPOT_MM: f64 = 0.5;
 const SPOT_S: f64 = 1.0;
 /// Capacity of the history: one second of a sensor that is read 500 times a second.

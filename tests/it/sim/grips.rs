@@ -27,8 +27,7 @@ fn the_state_of_a_grip_is_the_objects_own() {
     assert!(GripTable::wrong(&table.grasps) <= 0.02, "{told}");
     assert!(table.losses_in_time() >= 0.98, "{told}");
     assert!(table.slides_told * 10 >= table.slides * 9, "{told}");
-    // A finger that presses lightly may be near its friction, and hold.
-    assert!(table.calm_slips * 33 <= table.calm, "{told}");
+    assert!(table.calm_slips * 50 <= table.calm, "{told}");
 }
 
 #[test]
