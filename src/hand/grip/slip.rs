@@ -102,11 +102,11 @@ impl SlipDetector {
         if jump.is_some() {
             self.jumped = Some(now.t);
         }
-        let is_slip = now.ratio >= NEAR_FRICTION || self.slides(&now);
-        let rise = jump.or(crept).filter(|_| is_slip);
+        let rise = jump.or(crept);
         let first = self.pending.take();
         self.pending = rise;
-        let both = first.zip(rise);
+        let is_slip = now.ratio >= NEAR_FRICTION || self.slides(&now);
+        let both = first.zip(rise).filter(|_| is_slip);
         if both.is_some() {
             self.last = Some(now.t);
         }
