@@ -3,7 +3,8 @@
 
 use crate::hand::feedback::tactile::spot_mm;
 use crate::hand::gap::{Gap, held_gap};
-use crate::hand::grip::{Grip, GripEstimator, GripState, Tightened};
+use crate::hand::grip::{Grip, GripEstimator, Tightened};
+use crate::hand::newtons::N_PER_G;
 use crate::hand::overshoot::{MeasuredOn, OvershootMap, Stages, Stiffness};
 use crate::hand::statistics::{count, mean, median, spread};
 use crate::hand::{
@@ -46,7 +47,7 @@ const CLOSE_FACTOR: f64 = 1.1;
 const NEARLY: f64 = 0.9;
 /// Delay from the targets of the held position to the thresholds at *at most*: a drive that still had the target of the close would
 /// press on.
-const TAKE_DELAY: Duration = Duration::from_millis(150);
+const THRESHOLD_DELAY: Duration = Duration::from_millis(150);
 /// A finger that presses with less than this share of *at least* for this time has lost the object.
 const GONE_SHARE: f64 = 0.2;
 const GONE_AFTER: Duration = Duration::from_millis(400);
@@ -54,8 +55,6 @@ const GONE_AFTER: Duration = Duration::from_millis(400);
 const WARM: u8 = heat::WARM;
 /// Normal force from which a fingertip touches something, N.
 const TOUCH_N: f32 = 0.15;
-/// Grams-force per newton.
-const G_PER_N: f64 = 101.97;
 
 /// Forces between which an object is held, g of this hand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -273,7 +272,7 @@ enum HoldStage {
     /// Fingers whose drive counts the zero of its sensor stopped too early, and press on.
     Pressing,
     /// The held position is the target; the thresholds follow.
-    Taking,
+    TakingOver,
     Holding,
 }
 
@@ -408,7 +407,7 @@ impl Program for HoldRun {
             HoldStage::Measuring => self.begin(seen, &angles),
             HoldStage::Closing => self.close(seen, &angles),
             HoldStage::Pressing => self.press(seen, &angles),
-            HoldStage::Taking => self.take(seen, &angles),
+            HoldStage::TakingOver => self.raise_thresholds(seen),
             HoldStage::Holding => self.regulate(seen, &angles, fresh),
         }
     }
@@ -423,7 +422,9 @@ impl Program for HoldRun {
         HoldView {
             phase: match self.step {
                 HoldStage::Measuring => HoldPhase::Measuring,
-                HoldStage::Closing | HoldStage::Pressing | HoldStage::Taking => HoldPhase::Closing,
+                HoldStage::Closing | HoldStage::Pressing | HoldStage::TakingOver => {
+                    HoldPhase::Closing
+                }
                 HoldStage::Holding if holding().any(FingerHold::is_short) => HoldPhase::CannotHold,
                 HoldStage::Holding => HoldPhase::Holding,
             },
@@ -475,7 +476,7 @@ impl HoldRun {
             // A finger that presses already shows its zero by what its fingertip feels.
             let pressed_g = tip_n
                 .filter(|n| *n > TOUCH_N)
-                .map_or(0.0, |n| f64::from(n) * G_PER_N);
+                .map_or(0.0, |n| f64::from(n) / N_PER_G);
             if let Some(force) = forces.value[dof].documented() {
                 zero.readings.push(f64::from(force) - pressed_g);
             }
@@ -511,8 +512,8 @@ impl HoldRun {
         if let Some(hold) = &mut self.fingers[finger] {
             hold.feel(TipForces {
                 at: tip.received,
-                normal_g: f64::from(normal_n) * G_PER_N,
-                tangential_g: f64::from(tangential_n) * G_PER_N,
+                normal_g: f64::from(normal_n) / N_PER_G,
+                tangential_g: f64::from(tangential_n) / N_PER_G,
                 spot_mm: free.and_then(|free| spot_mm(&tip.value.raw, &free)),
             });
         }
@@ -536,11 +537,7 @@ impl HoldRun {
     }
 
     fn holds(&self, sample: &HandSample, finger: Finger) -> bool {
-        let state = self.start.grip.grip().fingers[finger].state;
-        let is_held = matches!(
-            state,
-            GripState::Holding | GripState::Slipping | GripState::TooHard
-        );
+        let is_held = self.start.grip.grip().fingers[finger].state.is_held();
         let force = self.force_g(sample, finger.bend());
         let presses = |force: f64| force >= self.range(finger.bend()).least_g / 2.0;
         (is_held || force.is_some_and(presses)) && !self.start.locked[finger.bend()]
@@ -564,10 +561,7 @@ impl HoldRun {
             let zero = self.zeros[dof].mean().unwrap_or_default();
             self.shift_g[dof] = zero.min(0.0);
         }
-        let is_held = matches!(
-            self.start.grip.grip().grasp.state,
-            GripState::Holding | GripState::Slipping | GripState::TooHard
-        );
+        let is_held = self.start.grip.grip().grasp.state.is_held();
         let targets = match self.start.close {
             _ if is_held => return self.take_over(seen, angles),
             HoldClose::TakeOver => return Some(self.finish(HoldEnd::Nothing)),
@@ -730,13 +724,13 @@ impl HoldRun {
         if setpoints.is_empty() {
             return Some(self.finish(HoldEnd::Nothing));
         }
-        (self.step, self.sent) = (HoldStage::Taking, seen.now);
+        (self.step, self.sent) = (HoldStage::TakingOver, seen.now);
         Some(Order::Set(setpoints))
     }
 
     /// Raises the thresholds to *at most* once the held position is the target.
-    fn take(&mut self, seen: &Seen<'_>, _angles: &PerDof<AngleReading>) -> Option<Order> {
-        if seen.now.since(self.sent) < TAKE_DELAY {
+    fn raise_thresholds(&mut self, seen: &Seen<'_>) -> Option<Order> {
+        if seen.now.since(self.sent) < THRESHOLD_DELAY {
             return None;
         }
         let mut setpoints = Setpoints::none(self.epoch);

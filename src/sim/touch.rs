@@ -1,5 +1,6 @@
 //! Fingertip blocks: eight channels, force and proximity of a contact (manual 2.6.21). Moves nothing.
 
+use crate::hand::feedback::tactile::PAD_CENTRES_MM;
 use crate::hand::{Finger, PerFinger, TactileBlock};
 use crate::sim::body_params::{BodyParams, FingertipBody};
 use crate::sim::number;
@@ -23,18 +24,6 @@ const PROXIMITY_RANGE: f64 = 130.0;
 const PROXIMITY_NOISE: f64 = 120.0;
 /// Measuring interval of the sensor board, ms: 50 Hz.
 pub const SENSOR_MS: u64 = 20;
-/// Pad centres in mm, x right, y to the tip. The eighth channel has no position: it is assumed to be the reference.
-// Manual: 2.6.21 gives no layout; these come from the sensor maker's model, pad i = channel i - 1.
-const PADS: [(f64, f64); 7] = [
-    (-4.6, 1.2),
-    (0.0, 4.0),
-    (4.5, 0.8),
-    (0.0, -3.2),
-    (-3.5, -9.1),
-    (3.5, -9.1),
-    (0.1, 9.1),
-];
-
 /// Load on one fingertip, and its distance from the object.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Press {
@@ -99,7 +88,7 @@ impl TouchSensors {
         let touches = newtons > CONTACT_N;
         let normal = if touches { newtons } else { 0.0 };
         let spot = tip.spot(press, t_s);
-        let gains = PADS.map(|pad| normal * COUNTS_PER_N * nearness(pad, spot));
+        let gains = PAD_CENTRES_MM.map(|pad| normal * COUNTS_PER_N * nearness(pad, spot));
         let mut raw = [0; 8];
         let whole = gains.iter().chain([&0.0]);
         for (((raw, rest), noise), gain) in raw.iter_mut().zip(tip.rest).zip(tip.noise).zip(whole) {

@@ -2,7 +2,7 @@
 
 use crate::hand::dof::{Dof, Finger, PerDof};
 use crate::hand::feedback::reading::AngleReading;
-use crate::hand::grip::{Grip, GripState};
+use crate::hand::grip::Grip;
 use crate::hand::kinematics::{Segment, SegmentFrames, Side};
 use crate::hand::units::{Angle, Speed};
 use glam::Vec3;
@@ -244,14 +244,8 @@ fn ball([(one, one_looks), (two, two_looks)]: &[Pad; 2]) -> Option<f32> {
 
 /// Gap while thumb and index, and no other finger, hold an object; `None` otherwise, or where an angle is not known.
 pub fn held_gap(grip: &Grip, angles: &PerDof<AngleReading>) -> Option<PinchGap> {
-    let holds = |state| {
-        matches!(
-            state,
-            GripState::Holding | GripState::Slipping | GripState::TooHard
-        )
-    };
     let is_pinch = grip.fingers.iter().all(|(finger, estimate)| {
-        holds(estimate.state) == matches!(finger, Finger::Thumb | Finger::Index)
+        estimate.state.is_held() == matches!(finger, Finger::Thumb | Finger::Index)
     });
     let counts = angles.map(|angle| angle.documented().map(f32::from));
     pinch_gap(&counts.all()?).filter(|_| is_pinch)
@@ -297,6 +291,7 @@ fn nearest_speed(speed: f32) -> Speed {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hand::grip::GripState;
     use crate::hand::kinematics::RANGE;
     use glam::Mat3;
 

@@ -41,6 +41,11 @@ impl GripState {
         Self::TooHard,
     ];
 
+    /// True for the states in which an object is pressed at rest.
+    pub const fn is_held(self) -> bool {
+        matches!(self, Self::Holding | Self::Slipping | Self::TooHard)
+    }
+
     /// Stable number for numeric tables: 0 (unknown) to 7 (too hard), in the order of [`Self::ALL`].
     pub const fn number(self) -> u8 {
         self as u8

@@ -4,7 +4,6 @@ use crate::app::action::Action;
 use crate::app::hand::hold::HoldAction;
 use crate::hand::Force;
 use crate::hand::gap::Gap;
-use crate::hand::grip::GripState;
 use crate::motion::hold::{HoldClose, HoldForces, HoldPhase};
 use crate::poses::starter::starter;
 use crate::ui::hand::figures;
@@ -123,10 +122,7 @@ fn slider_ui(ui: &mut Ui, look: Look, [least, most]: [f32; 2]) -> Option<[f32; 2
 fn starts_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let state = figures::grip(pane).grasp.state;
-    let holds = matches!(
-        state,
-        GripState::Holding | GripState::Slipping | GripState::TooHard
-    );
+    let holds = state.is_held();
     ui.horizontal(|ui| {
         let nothing = (!holds).then(|| look.tr(hold::END_NOTHING));
         let take = Button::text(look, hold::TAKE).disabled(pane.unready().or(nothing));
