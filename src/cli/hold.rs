@@ -51,6 +51,7 @@ pub(crate) struct HoldArgs {
         long,
         value_name = "FORCE",
         default_value = "150",
+        value_parser = force,
         allow_negative_numbers = true
     )]
     pub(crate) at_least: f64,
@@ -59,6 +60,7 @@ pub(crate) struct HoldArgs {
         long,
         value_name = "FORCE",
         default_value = "400",
+        value_parser = force,
         allow_negative_numbers = true
     )]
     pub(crate) at_most: f64,
@@ -71,6 +73,16 @@ pub(crate) struct HoldArgs {
     /// Print JSON objects, one a line
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+fn force(text: &str) -> Result<f64, String> {
+    let force = text
+        .parse()
+        .ok()
+        .filter(|force: &f64| force.is_finite() && *force >= 0.0);
+    force.ok_or_else(|| {
+        format!("'{text}' is not a force: write a number of g, or of N with --newtons")
+    })
 }
 
 /// Holds. Fails if nothing was held, the object was lost, or it ended early.
@@ -250,23 +262,18 @@ fn held_words(thing: &HeldThing) -> String {
 }
 
 fn forces(args: &HoldArgs) -> anyhow::Result<HoldForces> {
+    let (unit, per_g) = if args.newtons {
+        ("N", N_PER_G)
+    } else {
+        ("g", 1.0)
+    };
     let grams = |option: &str, value: f64| {
-        let grams = if args.newtons { value / N_PER_G } else { value };
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "checked by the range of a force"
-        )]
-        let whole = grams.round().clamp(-1e6, 1e6) as i64;
-        let force = if value.is_finite() {
-            Force::new(whole).ok()
-        } else {
-            None
-        };
-        force.ok_or_else(|| {
-            let unit = if args.newtons { "N" } else { "g" };
+        #[expect(clippy::cast_possible_truncation, reason = "the range is checked next")]
+        let whole = (value / per_g).round() as i64;
+        Force::new(whole).map_err(|_out| {
+            let most = (f64::from(Force::MAX.get()) * per_g).floor();
             WrongUsage::error(format!(
-                "--{option} {value} {unit} is outside the manual's range: at most {}",
-                if args.newtons { "29 N" } else { "3000 g" }
+                "--{option} {value} {unit} is more than a threshold can be: at most {most} {unit}"
             ))
         })
     };
