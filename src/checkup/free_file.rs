@@ -1,19 +1,15 @@
 //! Force readings of one hand's joints in free motion, in a file per hand: written by its check-up and by each close that touched
 //! nothing, and read wherever a grip is detected.
 
+use crate::checkup::hand_file;
 use crate::hand::grip::FreeForce;
-use crate::store::{read_text, replace};
 use crate::transport::Endpoint;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Maximum size of the file, bytes.
-const FILE_MAX: u64 = 64 << 10;
-
 /// The file of the hand at an endpoint, beside the settings; `None` for the built-in hand, which differs on each start.
 pub fn file_of(settings: &Path, hand: &Endpoint) -> Option<PathBuf> {
-    let folder = settings.with_file_name("free-force");
-    (!hand.is_sim()).then(|| folder.join(format!("{}.json", hand.file_stem())))
+    hand_file::file_of(settings, "free-force", hand)
 }
 
 /// Reads the stored values; the default if there is no file.
@@ -21,9 +17,7 @@ pub fn file_of(settings: &Path, hand: &Endpoint) -> Option<PathBuf> {
 /// # Errors
 /// An I/O error, or the file does not parse.
 pub fn read(file: &Path) -> io::Result<FreeForce> {
-    let text = read_text(file, FILE_MAX)?;
-    let kept = text.map(|text| serde_json::from_str(&text)).transpose();
-    Ok(kept?.unwrap_or_default())
+    hand_file::read(file)
 }
 
 /// Replaces the stored values.
@@ -31,7 +25,7 @@ pub fn read(file: &Path) -> io::Result<FreeForce> {
 /// # Errors
 /// The I/O error.
 pub fn keep(file: &Path, free: &FreeForce) -> io::Result<()> {
-    replace(file, (serde_json::to_string(free)? + "\n").as_bytes())
+    hand_file::keep(file, free)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 
 pub mod check;
 pub mod free_file;
+pub mod hand_file;
 pub mod kept;
 mod measure;
 pub mod newtons_file;

@@ -1,20 +1,16 @@
 //! Newtons of one hand's joints, in a file per hand: written by the calibration with a kitchen scale, and read wherever forces are
 //! shown.
 
+use crate::checkup::hand_file;
 use crate::hand::newtons::{JointPoints, NewtonsMap, ScalePoint};
 use crate::hand::{Dof, Force};
-use crate::store::{read_text, replace};
 use crate::transport::Endpoint;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Maximum size of the file, bytes.
-const FILE_MAX: u64 = 64 << 10;
-
 /// The file of the hand at an endpoint, beside the settings; `None` for the built-in hand, which differs on each start.
 pub fn file_of(settings: &Path, hand: &Endpoint) -> Option<PathBuf> {
-    let folder = settings.with_file_name("newtons");
-    (!hand.is_sim()).then(|| folder.join(format!("{}.json", hand.file_stem())))
+    hand_file::file_of(settings, "newtons", hand)
 }
 
 /// Reads the stored points; the default if there is no file.
@@ -22,9 +18,7 @@ pub fn file_of(settings: &Path, hand: &Endpoint) -> Option<PathBuf> {
 /// # Errors
 /// An I/O error, or the file does not parse.
 pub fn read(file: &Path) -> io::Result<NewtonsMap> {
-    let text = read_text(file, FILE_MAX)?;
-    let known = text.map(|text| serde_json::from_str(&text)).transpose();
-    Ok(known?.unwrap_or_default())
+    hand_file::read(file)
 }
 
 /// Replaces the stored points.
@@ -32,7 +26,7 @@ pub fn read(file: &Path) -> io::Result<NewtonsMap> {
 /// # Errors
 /// The I/O error.
 pub fn keep(file: &Path, newtons: &NewtonsMap) -> io::Result<()> {
-    replace(file, (serde_json::to_string(newtons)? + "\n").as_bytes())
+    hand_file::keep(file, newtons)
 }
 
 /// Replaces the points of one joint; without points, removes it.
