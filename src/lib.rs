@@ -23,7 +23,7 @@
 //! | 4 | [`checkup`] | the check-up of an empty hand: its steps, measurements, limits, and comparison with earlier ones |
 //! | 4 | [`share`] | one hand for several programs: gateway, DDS, live viewers |
 //! | 4 | [`exhibit`] | a hand that visitors may touch: its file, PIN, heat, plan, and the day's report |
-//! | 5 | [`motion`] | everything that moves an armed hand over time: one loop, `drive`, runs every `Program` (move, grip, sequence, follow, exhibition, trials, search, check-up), and the sources that a hand can follow |
+//! | 5 | [`motion`] | everything that moves an armed hand over time: one loop, `drive`, runs every `Program` (move, grip, hold, sequence, follow, exhibition, trials, search, check-up), the grasp files of holds that worked, and the sources that a hand can follow |
 //! | 5 | [`tasks`] | the other operations of several steps, for window and command line, which ask the user through one question: read, apply, save, change address, reset, calibrate |
 //! | 6 | [`app`] | state and actions of the program, without drawing |
 //! | 7 | [`draw`] | pictures computed point by point: the hand as a figure, plot lines, the rasteriser |

@@ -359,6 +359,16 @@ impl HoldRun {
     pub fn grip(&self) -> Grip {
         self.start.grip.grip()
     }
+
+    /// True once it closed by itself, rather than taking over what the hand held.
+    pub const fn has_closed(&self) -> bool {
+        self.legs.is_some()
+    }
+
+    /// Stiffness of each contact, g per unit of angle; `None` where the close and the steps did not show it.
+    pub fn stiffness_g(&self) -> PerFinger<Option<f64>> {
+        PerFinger::from_fn(|finger| self.fingers[finger].as_ref()?.measured_stiffness())
+    }
 }
 
 impl Program for HoldRun {
@@ -484,7 +494,7 @@ impl HoldRun {
     }
 
     /// Force of a joint above its zero, g.
-    fn force_g(&self, sample: &HandSample, dof: Dof) -> Option<f64> {
+    pub fn force_g(&self, sample: &HandSample, dof: Dof) -> Option<f64> {
         let force = ForceReading::documented(sample.force?.value[dof])?;
         let angle = sample.angle?.value[dof].documented()?;
         let free = self

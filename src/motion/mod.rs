@@ -9,6 +9,7 @@ pub mod follow;
 pub mod following;
 #[cfg(test)]
 mod following_tests;
+pub mod grasp;
 pub mod grip;
 pub mod hold;
 mod hold_finger;
