@@ -2,6 +2,7 @@
 
 use crate::app::files::{pose_file, settings_file};
 use crate::checkup::newtons_file;
+use crate::cli::grasp::{self, ChosenGrasp, GraspPlace, Trust, grasp_place, note};
 use crate::cli::grip::gap;
 use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::parse::{hand, seconds};
@@ -15,17 +16,22 @@ use crate::hand::statistics::mean;
 use crate::hand::{Finger, Force, Moment, PerDof, Speed};
 use crate::link::ArmRequest;
 use crate::motion::drive::stop_words;
+use crate::motion::grasp::doubt::Doubt;
+use crate::motion::grasp::run::{ConfirmStep, Confirming, GraspRun, GraspStart, GraspView};
+use crate::motion::grasp::seen::About;
 use crate::motion::hold::{
-    HeldThing, HoldClose, HoldEnd, HoldForces, HoldPhase, HoldRun, HoldStart, HoldView,
+    HeldThing, HoldClose, HoldEnd, HoldForces, HoldPhase, HoldStart, HoldView,
 };
 use crate::motion::program::{Ended, Progress};
 use crate::poses::starter::starter;
 use crate::record::Abort;
+use crate::store::calendar::{day, since_1970};
 use crate::transport::Endpoint;
 use crate::trials::overshoot_file;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use serde_json::json;
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Said when the user ends a hold.
@@ -70,6 +76,23 @@ pub(crate) struct HoldArgs {
     /// Seconds to hold; without it, until Ctrl-C
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) duration: Option<Duration>,
+    /// Save the hold as a grasp if it works: a name for the pose library, or a new file *.grasp.toml
+    #[arg(long, value_name = "NAME", value_parser = grasp_place)]
+    pub(crate) save: Option<GraspPlace>,
+    /// Note in the grasp file
+    #[arg(long, value_name = "TEXT", requires = "save", value_parser = note)]
+    pub(crate) note: Option<String>,
+    /// Results of 'handscope tune --out' with this hand and object, whose claim the grasp file repeats
+    #[arg(long, value_name = "FOLDER", requires = "save")]
+    pub(crate) tuned: Option<PathBuf>,
+    /// Hold as this grasp: a name of the pose library, or a file *.grasp.toml. Another hand confirms it first
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_parser = grasp_place,
+        conflicts_with_all = ["pose", "gap", "at_least", "at_most", "newtons"]
+    )]
+    pub(crate) grasp: Option<GraspPlace>,
     /// Print JSON objects, one a line
     #[arg(long)]
     pub(crate) json: bool,
@@ -87,33 +110,17 @@ fn force(text: &str) -> Result<f64, String> {
 
 /// Holds. Fails if nothing was held, the object was lost, or it ended early.
 pub(crate) async fn run(out: &mut Out, args: &HoldArgs) -> anyhow::Result<()> {
-    let forces = forces(args)?;
-    let close = close(args)?;
     let newtons = newtons(&args.hand)?;
-    let reading_per_g = reading_per_g(args, &newtons)?;
+    let mut asked = AskedHold::of(args, newtons)?;
     if !args.arm {
-        bail!(
-            "nothing was moved: this closes the hand at {} on an object and holds it with {} to {} g; when nothing but the object is in the way, add --arm",
-            args.hand,
-            forces.at_least().get(),
-            forces.at_most().get()
-        );
+        bail!("{}", asked.unarmed(args));
     }
     let limits = ArmRequest {
         speed: PerDof::splat(Speed::nearest(25)),
-        force: PerDof::splat(forces.at_least()),
+        force: PerDof::splat(asked.forces.at_least()),
     };
     let mut hand = ArmedHand::ready(&args.hand, limits).await?;
-    let start = HoldStart {
-        close,
-        forces,
-        duration: args.duration,
-        reading_per_g,
-        locked: PerDof::splat(false),
-        overshoot: overshoot(&args.hand),
-        grip: session::grip_estimator(&args.hand),
-    };
-    let program = HoldRun::new(hand.armed.epoch, start, hand.armed.clock.now());
+    let program = GraspRun::new(hand.armed.epoch, asked.start(args), hand.armed.clock.now());
     let clock = hand.armed.clock;
     let mut lines = HoldLines {
         args,
@@ -129,6 +136,10 @@ pub(crate) async fn run(out: &mut Out, args: &HoldArgs) -> anyhow::Result<()> {
         .await;
     let view = lines.view;
     let held = driven.program.held_for(clock.now());
+    if let (Some(chosen), Some(agreement)) = (&mut asked.chosen, driven.program.agreement()) {
+        chosen.keep(&args.hand, agreement);
+    }
+    let saved = asked.save(&driven.program, clock.now());
     let done = match driven.end {
         Err(Abort::Person) if held.is_some() => {
             // Also with --json: whether the stop was confirmed is said where it is seen.
@@ -141,18 +152,113 @@ pub(crate) async fn run(out: &mut Out, args: &HoldArgs) -> anyhow::Result<()> {
         "hand": args.hand.to_string(),
         "end": end_name(driven.end),
         "seconds_held": held.map(|held| held.as_secs_f64()),
-        "at_least_g": forces.at_least(),
-        "at_most_g": forces.at_most(),
+        "at_least_g": asked.forces.at_least(),
+        "at_most_g": asked.forces.at_most(),
         "state": driven.program.grip().grasp.state,
         "last": view,
         "stop": driven.stop,
+        "grasp": asked.chosen.as_ref().map(|chosen| &chosen.grasp.name),
+        "trust": asked.chosen.as_ref().map(|chosen| chosen.trust),
+        "agreement": driven.program.agreement(),
+        "doubt": doubt(driven.end).map(|doubt| doubt.to_string()),
+        "saved": saved.as_ref().ok().and_then(|saved| saved.as_ref()?.to_str()),
+        "not_saved": saved.as_ref().err().map(|why| format!("{why:#}")),
     }});
     let words = done.as_ref().ok().filter(|words| !words.is_empty());
     out.result(args.json, &object, words)?;
+    if let (Ok(Some(path)), false) = (&saved, args.json) {
+        out.line(&format!("saved in {}", path.display()))?;
+    }
     out.flush()?;
-    match done {
-        Ok(_words) => Ok(()),
-        Err(why) => bail!("{why}{}", stop_words(driven.stop)),
+    match (done, saved) {
+        (Ok(_words), Ok(_path)) => Ok(()),
+        (Ok(_words), Err(why)) => bail!("the grasp is not saved: {why:#}"),
+        (Err(why), _) => bail!("{why}{}", stop_words(driven.stop)),
+    }
+}
+
+/// A hold as the user asked for it.
+struct AskedHold {
+    close: HoldClose,
+    forces: HoldForces,
+    reading_per_g: PerDof<f64>,
+    /// The grasp that it repeats.
+    chosen: Option<ChosenGrasp>,
+    /// The grasp that it becomes if it works, and its file.
+    about: Option<(About, PathBuf)>,
+}
+
+impl AskedHold {
+    fn of(args: &HoldArgs, newtons: PerDof<Option<f64>>) -> anyhow::Result<Self> {
+        let place = args.grasp.as_ref();
+        let chosen = place.map(|place| ChosenGrasp::read(place, &args.hand, newtons));
+        let chosen = chosen.transpose()?;
+        let (close, forces, reading_per_g) = match &chosen {
+            Some(own) => (own.grasp.close.way, own.grasp.forces, own.reading_per_g),
+            None => (close(args)?, forces(args)?, reading_per_g(args, &newtons)?),
+        };
+        let repeated = chosen.as_ref().and_then(|own| own.grasp.close.pose.clone());
+        let about = args.save.as_ref().map(|place| {
+            let claim = args.tuned.as_ref();
+            let claim = claim.map(|folder| grasp::claim(folder, &args.hand));
+            let about = About {
+                name: place.name(),
+                note: args.note.clone().unwrap_or_default(),
+                day: day(since_1970()),
+                hand: args.hand.clone(),
+                pose: repeated.or_else(|| args.pose.clone()),
+                newtons,
+                claim: claim.transpose()?,
+            };
+            anyhow::Ok((about, place.free()?))
+        });
+        Ok(Self {
+            close,
+            forces,
+            reading_per_g,
+            chosen,
+            about: about.transpose()?,
+        })
+    }
+
+    fn unarmed(&self, args: &HoldArgs) -> String {
+        let five = match &self.chosen {
+            Some(own) if own.trust == Trust::NotConfirmed => {
+                format!(" after five closes that confirm '{}'", own.grasp.name)
+            }
+            _ => String::new(),
+        };
+        format!(
+            "nothing was moved: this closes the hand at {} on an object and holds it with {} to {} g{five}; when nothing but the object is in the way, add --arm",
+            args.hand,
+            self.forces.at_least().get(),
+            self.forces.at_most().get()
+        )
+    }
+
+    fn start(&self, args: &HoldArgs) -> GraspStart {
+        GraspStart {
+            hold: HoldStart {
+                close: self.close,
+                forces: self.forces,
+                duration: args.duration,
+                reading_per_g: self.reading_per_g,
+                locked: PerDof::splat(false),
+                overshoot: overshoot(&args.hand),
+                grip: session::grip_estimator(&args.hand),
+            },
+            unconfirmed: self.chosen.as_ref().and_then(ChosenGrasp::unconfirmed),
+        }
+    }
+
+    /// Saves the hold if the user asked for it. Returns the file.
+    fn save(&self, run: &GraspRun, now: Moment) -> anyhow::Result<Option<PathBuf>> {
+        let Some((about, path)) = &self.about else {
+            return Ok(None);
+        };
+        let grasp = run.grasp(about.clone(), now)?;
+        grasp::save(path, &grasp)?;
+        Ok(Some(path.clone()))
     }
 }
 
@@ -160,10 +266,10 @@ pub(crate) async fn run(out: &mut Out, args: &HoldArgs) -> anyhow::Result<()> {
 struct HoldLines<'a> {
     args: &'a HoldArgs,
     newtons: PerDof<Option<f64>>,
-    shown: Option<HoldPhase>,
+    shown: Option<(HoldPhase, Option<Confirming>)>,
     /// Time of the next line.
     due: Moment,
-    view: Option<HoldView>,
+    view: Option<GraspView>,
 }
 
 impl HoldLines<'_> {
@@ -171,7 +277,7 @@ impl HoldLines<'_> {
         &mut self,
         out: &mut Out,
         now: Moment,
-        progress: Progress<HoldView, Tightened>,
+        progress: Progress<GraspView, Tightened>,
     ) -> anyhow::Result<()> {
         match progress {
             Progress::Event(tightened) if self.args.json => {
@@ -179,14 +285,16 @@ impl HoldLines<'_> {
             }
             Progress::View(view) => {
                 self.view = Some(view);
-                let is_due = now >= self.due || self.shown != Some(view.phase);
+                let part = (view.hold.phase, view.confirming);
+                let is_due = now >= self.due || self.shown != Some(part);
                 if is_due {
                     self.due = now.plus(LINE_INTERVAL);
-                    self.shown = Some(view.phase);
+                    self.shown = Some(part);
                     if self.args.json {
                         out.stream_object(&json!({ "holding": view }))?;
                     } else {
-                        out.stream_line(&self.line(&view))?;
+                        let confirming = view.confirming.map_or(String::new(), confirm_words);
+                        out.stream_line(&format!("{confirming}{}", self.line(&view.hold)))?;
                     }
                 }
             }
@@ -243,6 +351,18 @@ impl HoldLines<'_> {
             .and_then(|all| mean(&all))
             .map_or(String::new(), |mean| format!(" ({mean:.1} N)"))
     }
+}
+
+/// The close under way, and what the user does in it.
+fn confirm_words(confirming: Confirming) -> String {
+    let Confirming { close, of, step } = confirming;
+    let step = match step {
+        ConfirmStep::Close => "the object lies in its place",
+        ConfirmStep::Lift => "LIFT the object and use it",
+        ConfirmStep::PutDown => "use it, then PUT IT DOWN: the hand opens when the load is gone",
+        ConfirmStep::Open => "opening; put the object back in its place",
+    };
+    format!("confirming {close} of {of}: {step}; ")
 }
 
 /// What is held, as far as it is known.
@@ -350,25 +470,37 @@ fn overshoot(hand: &Endpoint) -> OvershootMap {
         .unwrap_or_default()
 }
 
-/// The outcome in one sentence; `Err` for failures.
-fn outcome(end: Ended<HoldEnd>) -> Result<&'static str, String> {
+/// The doubt that ended a confirmation.
+const fn doubt(end: Ended<Result<HoldEnd, Doubt>>) -> Option<Doubt> {
     match end {
-        Ok(HoldEnd::Held) => Ok("held; the hand keeps its position and what it holds"),
-        Ok(HoldEnd::Nothing) => Err(
+        Ok(Err(doubt)) => Some(doubt),
+        _ => None,
+    }
+}
+
+/// The outcome in one sentence; `Err` for failures.
+fn outcome(end: Ended<Result<HoldEnd, Doubt>>) -> Result<&'static str, String> {
+    match end {
+        Ok(Ok(HoldEnd::Held)) => Ok("held; the hand keeps its position and what it holds"),
+        Ok(Ok(HoldEnd::Nothing)) => Err(
             "the hand holds nothing: put the object in its place, and name a pose or a gap with --pose or --gap".into(),
         ),
-        Ok(HoldEnd::Lost) => Err("the object left the hand".into()),
-        Ok(HoldEnd::Late) => Err("the hand did not get there in time".into()),
+        Ok(Ok(HoldEnd::Lost)) => Err("the object left the hand".into()),
+        Ok(Ok(HoldEnd::Late)) => Err("the hand did not get there in time".into()),
+        Ok(Err(doubt)) => Err(format!(
+            "the grasp is not trusted on this hand: {doubt}; the hand keeps its position"
+        )),
         Err(why) => Err(why.to_string()),
     }
 }
 
-const fn end_name(end: Ended<HoldEnd>) -> &'static str {
+const fn end_name(end: Ended<Result<HoldEnd, Doubt>>) -> &'static str {
     match end {
-        Ok(HoldEnd::Held) => "held",
-        Ok(HoldEnd::Nothing) => "nothing",
-        Ok(HoldEnd::Lost) => "lost",
-        Ok(HoldEnd::Late) => "late",
+        Ok(Ok(HoldEnd::Held)) => "held",
+        Ok(Ok(HoldEnd::Nothing)) => "nothing",
+        Ok(Ok(HoldEnd::Lost)) => "lost",
+        Ok(Ok(HoldEnd::Late)) => "late",
+        Ok(Err(_)) => "not_confirmed",
         Err(why) => session::early_end(why),
     }
 }

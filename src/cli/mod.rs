@@ -4,6 +4,7 @@ mod about;
 mod args;
 mod check;
 mod doctor;
+mod grasp;
 mod grip;
 mod guard;
 mod hold;
