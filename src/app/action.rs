@@ -188,7 +188,9 @@ impl Action {
             Self::Recall(id) => UserAct::Pose(poses.pose(*id)?.name.as_str().into()),
             Self::Pinch(gap) => UserAct::Pose(format!("pinch {:.0} mm", gap.mm()).into()),
             Self::Play(play) => UserAct::Play(*play),
-            Self::Hold(HoldAction::Start(_)) => UserAct::Pose("hold".into()),
+            Self::Hold(HoldAction::Start(_) | HoldAction::Repeat(_)) => {
+                UserAct::Pose("hold".into())
+            }
             Self::Stop
             | Self::Arm
             | Self::HoldToRun(_)

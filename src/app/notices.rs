@@ -6,6 +6,7 @@ use crate::hand::gap::BlockError;
 use crate::hand::grip::GripState;
 use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, Owner, RequestError};
+use crate::motion::grasp::doubt::Doubt;
 use crate::motion::hold::HoldEnd;
 use crate::motion::program::Ended;
 use crate::record::Abort;
@@ -128,6 +129,8 @@ pub enum NoticeKind {
     NotHolding { grip: GripState },
     /// A hold needs more than *at most*.
     CannotHold,
+    /// A grasp of another hand is not trusted on this one.
+    GraspDoubted(Doubt),
     /// A hold ended by itself, or early.
     HoldEnded(Ended<HoldEnd>),
     /// A series of trials has ended.

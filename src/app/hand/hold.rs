@@ -7,22 +7,39 @@ use crate::hand::grip::Tightened;
 use crate::hand::{Moment, Setpoints};
 use crate::link::LinkHandle;
 use crate::motion::drive::{Armed, drive};
-use crate::motion::hold::{
-    HoldClose, HoldEnd, HoldForces, HoldPhase, HoldRun, HoldStart, HoldView,
-};
+use crate::motion::grasp::confirm::Agreement;
+use crate::motion::grasp::doubt::Doubt;
+use crate::motion::grasp::run::{Confirming, GraspRun, GraspStart, GraspView};
+use crate::motion::grasp::saved::Grasp;
+use crate::motion::grasp::seen::{About, NotSaved};
+use crate::motion::hold::{HoldClose, HoldEnd, HoldForces, HoldPhase, HoldView};
 use crate::motion::program::{Ended, Progress};
 use crate::record::Abort;
 use tokio::sync::oneshot;
 
 /// A user action on a hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum HoldAction {
     /// Set its forces. Nothing is sent.
     Forces(HoldForces),
     /// Start it. Needs arming.
     Start(HoldClose),
+    /// Hold as the grasp of this name. Needs arming.
+    Repeat(String),
+    /// Save the hold that ended as a grasp of the pose library, by this name or the next unused one.
+    Save(String),
     /// End it. The hand keeps its position, and so what it holds.
     End,
+}
+
+/// End of a watched hold.
+pub type HoldEnded = Ended<Result<HoldEnd, Doubt>>;
+
+/// A hold that has ended, for saving it.
+#[derive(Debug)]
+struct HoldDone {
+    program: GraspRun,
+    at: Moment,
 }
 
 /// The current or last hold.
@@ -30,10 +47,15 @@ pub enum HoldAction {
 pub struct HoldMotion {
     /// Current progress.
     pub view: HoldView,
+    /// Progress of its confirmation, if it repeats a grasp of another hand.
+    pub confirming: Option<Confirming>,
     /// Its end; `None` while it runs.
-    pub end: Option<Ended<HoldEnd>>,
+    pub end: Option<HoldEnded>,
+    /// The grasp that it repeats.
+    pub(crate) repeats: Option<Grasp>,
     ender: Option<oneshot::Sender<Abort>>,
-    task: Option<Running<Progress<HoldView, Tightened>, Ended<HoldEnd>>>,
+    task: Option<Running<Progress<GraspView, Tightened>, (HoldEnded, HoldDone)>>,
+    done: Option<HoldDone>,
 }
 
 /// News of a hold since the last poll.
@@ -45,24 +67,36 @@ pub(crate) struct HoldNews {
     /// True if *at most* has ceased to suffice.
     pub(crate) cannot_hold: bool,
     /// Its end, once.
-    pub(crate) end: Option<Ended<HoldEnd>>,
+    pub(crate) end: Option<HoldEnded>,
 }
 
 impl HoldMotion {
     /// Starts a hold.
-    pub(crate) fn begin(link: LinkHandle, armed: Armed, start: HoldStart, env: &Env) -> Self {
-        let view = HoldView::first(start.forces);
-        let program = HoldRun::new(armed.epoch, start, env.clock.now());
+    pub(crate) fn begin(
+        link: LinkHandle,
+        armed: Armed,
+        start: GraspStart,
+        repeats: Option<Grasp>,
+        env: &Env,
+    ) -> Self {
+        let view = HoldView::first(start.hold.forces);
+        let program = GraspRun::new(armed.epoch, start, env.clock.now());
+        let clock = env.clock;
         let (ender, ended) = oneshot::channel();
         let task = Running::start(env, |steps| async move {
             let report = |progress| {
                 steps.send(progress);
                 true
             };
-            drive(&link, armed, program, ends(ended), report).await.end
+            let driven = drive(&link, armed, program, ends(ended), report).await;
+            let (program, at) = (driven.program, clock.now());
+            (driven.end, HoldDone { program, at })
         });
         Self {
             view,
+            confirming: None,
+            repeats,
+            done: None,
             end: None,
             ender: Some(ender),
             task: Some(task),
@@ -72,6 +106,34 @@ impl HoldMotion {
     /// True while it may send setpoints.
     pub const fn is_running(&self) -> bool {
         self.end.is_none()
+    }
+
+    /// The grasp of a hold that has ended; `None` while it runs.
+    pub(crate) fn grasp(&self, about: About) -> Option<Result<Grasp, NotSaved>> {
+        let done = self.done.as_ref()?;
+        Some(done.program.grasp(about, done.at))
+    }
+
+    /// Reason why it is not saved as a grasp; `None` if it can be, or while it runs.
+    pub fn not_saved(&self) -> Option<NotSaved> {
+        let done = self.done.as_ref()?;
+        done.program.worked(done.at).err()
+    }
+
+    /// Name of the grasp that it repeats.
+    pub fn repeated_name(&self) -> Option<String> {
+        self.repeats.as_ref().map(|grasp| grasp.name.clone())
+    }
+
+    /// True once it has ended, also if it is not worth saving.
+    pub const fn is_done(&self) -> bool {
+        self.done.is_some()
+    }
+
+    /// The grasp that this hold confirmed, and how its closes agreed.
+    pub(crate) fn confirmed(&self) -> Option<(Grasp, Agreement)> {
+        let agreement = self.done.as_ref()?.program.agreement()?;
+        Some((self.repeats.clone()?, agreement))
     }
 
     /// Ends it early.
@@ -99,17 +161,20 @@ impl HoldMotion {
         let (steps, end) = task.news();
         for (at, step) in steps.into_iter().filter(|_| self.end.is_none()) {
             match step {
-                Progress::View(view) => {
+                Progress::View(GraspView {
+                    hold: view,
+                    confirming,
+                }) => {
                     let short = HoldPhase::CannotHold;
                     news.cannot_hold |= view.phase == short && self.view.phase != short;
-                    self.view = view;
+                    (self.view, self.confirming) = (view, confirming);
                 }
                 Progress::Sent(setpoints) => news.sent.push(setpoints),
                 Progress::Event(tightened) => news.tightened.push((at, tightened)),
             }
         }
-        if let Some(end) = end {
-            self.task = None;
+        if let Some((end, done)) = end {
+            (self.task, self.done, self.confirming) = (None, Some(done), None);
             if self.end.is_none() {
                 (self.end, news.end) = (Some(end), Some(end));
             }

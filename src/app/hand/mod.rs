@@ -2,6 +2,7 @@
 //! other files hold the list of hands, the program that moves one, and what moves it as the user sees it.
 
 mod free_force;
+pub mod grasps;
 pub mod grip;
 pub mod hold;
 pub mod list;
@@ -22,6 +23,7 @@ use crate::app::env::Ctx;
 use crate::app::env::Env;
 use crate::app::env::running::Running;
 use crate::app::hand::free_force::HandFreeForce;
+use crate::app::hand::grasps::HandGrasps;
 use crate::app::hand::newtons::HandNewtons;
 use crate::app::hand::running::SequenceRun;
 use crate::app::hand::running::{AskedSeries, MotionRun, RunningMotion};
@@ -76,6 +78,8 @@ pub struct Hand {
     pub(crate) free_force: HandFreeForce,
     /// Newtons of its joints, where they were measured.
     pub newtons: HandNewtons,
+    /// Grasps of the pose library, and those that the hand confirmed.
+    pub grasps: HandGrasps,
     /// Last check-up.
     pub checkup: HandCheckup,
     /// Open procedure: change of address, reset or calibration.
@@ -226,6 +230,7 @@ impl Hand {
             overshoot: before.overshoot,
             free_force: before.free_force,
             newtons: before.newtons,
+            grasps: before.grasps,
             controls: if is_moved {
                 before.controls.at_next_connection()
             } else {

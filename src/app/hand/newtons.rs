@@ -31,6 +31,11 @@ impl HandNewtons {
         self.per_g[dof]
     }
 
+    /// Newtons of a gram of all joints.
+    pub const fn all_per_g(&self) -> PerDof<Option<f64>> {
+        self.per_g
+    }
+
     /// Switches to this hand if it changed.
     pub(crate) fn tick(&mut self, endpoint: Option<&Endpoint>, ctx: &mut Ctx<'_>) {
         if self.of.as_ref() != endpoint {

@@ -72,6 +72,7 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     let endpoint = hand.connection.endpoint.as_ref();
     hand.overshoot.tick(endpoint, ctx);
     hand.newtons.tick(endpoint, ctx);
+    hand.grasps.tick(endpoint, ctx);
     hand.free_force.tick(endpoint, &mut hand.readings.grip, ctx);
     tick_checkup(hand, ctx);
     tick_procedure(hand, shared.settings, ctx);
@@ -215,8 +216,17 @@ fn tick_hold(hand: &mut Hand, ctx: &mut Ctx<'_>) {
         record_event(hand, ctx.now, EventKind::Hold, "cannot hold".into());
         ctx.notify(NoticeKind::CannotHold);
     }
-    if let Some(end) = news.end.filter(|end| *end != Err(Abort::Person)) {
-        ctx.notify(NoticeKind::HoldEnded(end));
+    let Some(end) = news.end else {
+        return;
+    };
+    if let Some((grasp, agreement)) = hand.running.hold().and_then(HoldMotion::confirmed) {
+        hand.grasps.confirm(grasp, agreement, ctx);
+    }
+    match end {
+        Err(Abort::Person) => {}
+        Ok(Err(doubt)) => ctx.notify(NoticeKind::GraspDoubted(doubt)),
+        Ok(Ok(end)) => ctx.notify(NoticeKind::HoldEnded(Ok(end))),
+        Err(why) => ctx.notify(NoticeKind::HoldEnded(Err(why))),
     }
 }
 

@@ -1,20 +1,29 @@
 //! Holds between two forces with the shown hand.
 
-use crate::app::env::Env;
+use crate::app::env::Ctx;
 use crate::app::hand::Hand;
+use crate::app::hand::grasps::RepeatedGrasp;
 use crate::app::hand::hold::{HoldAction, HoldMotion};
 use crate::app::hand::running::MotionRun;
+use crate::app::notices::NoticeKind;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Angle, PerDof};
 use crate::motion::drive::Armed;
+use crate::motion::grasp::run::GraspStart;
+use crate::motion::grasp::seen::About;
 use crate::motion::hold::{HoldClose, HoldStart};
+use crate::poses::library::{clean, free_name};
+use crate::poses::starter::starter;
 use crate::record::Abort;
+use crate::store::calendar::{day, since_1970};
 
 /// Carries out an action on a hold.
-pub(super) fn hold(hand: &mut Hand, action: HoldAction, env: &Env) {
+pub(super) fn hold(hand: &mut Hand, action: HoldAction, ctx: &mut Ctx<'_>) {
     match action {
         HoldAction::Forces(forces) => hand.controls.set_hold_forces(forces),
-        HoldAction::Start(close) => start(hand, close, env),
+        HoldAction::Start(close) => start(hand, close, None, ctx),
+        HoldAction::Repeat(name) => repeat(hand, &name, ctx),
+        HoldAction::Save(name) => save(hand, &name, ctx),
         HoldAction::End => {
             if let Some(run) = hand.running.hold_mut() {
                 run.end(Abort::Person);
@@ -23,8 +32,54 @@ pub(super) fn hold(hand: &mut Hand, action: HoldAction, env: &Env) {
     }
 }
 
+/// Holds as a grasp of the library; another hand confirms it first.
+fn repeat(hand: &mut Hand, name: &str, ctx: &mut Ctx<'_>) {
+    let newtons = hand.newtons.all_per_g();
+    let found = hand.grasps.all().iter().find(|grasp| grasp.name == name);
+    let Some(repeated) = found.map(|grasp| hand.grasps.repeated(grasp, newtons)) else {
+        return;
+    };
+    match repeated {
+        Ok(repeated) => start(hand, repeated.grasp.close.way, Some(repeated), ctx),
+        Err(doubt) => ctx.notify(NoticeKind::GraspDoubted(doubt)),
+    }
+}
+
+/// Saves the hold that ended.
+fn save(hand: &mut Hand, name: &str, ctx: &mut Ctx<'_>) {
+    let taken = |name: &str| hand.grasps.all().iter().any(|own| own.name == name);
+    let name = free_name(&clean(name), taken);
+    let (run, endpoint) = (hand.running.hold(), hand.connection.endpoint.clone());
+    let Some((run, endpoint)) = run.zip(endpoint).filter(|_| !name.is_empty()) else {
+        return;
+    };
+    let about = About {
+        name,
+        note: String::new(),
+        day: day(since_1970()),
+        hand: endpoint,
+        pose: None,
+        newtons: hand.newtons.all_per_g(),
+        claim: None,
+    };
+    if let Some(Ok(mut grasp)) = run.grasp(about) {
+        grasp.close.pose = pose_of(&grasp.close.way);
+        hand.grasps.save(grasp, ctx);
+    }
+}
+
+/// Name of the shipped pose with these targets.
+fn pose_of(way: &HoldClose) -> Option<String> {
+    let HoldClose::To(targets) = way else {
+        return None;
+    };
+    let mut poses = starter().poses.iter();
+    let pose = poses.find(|pose| pose.targets() == *targets);
+    pose.map(|pose| pose.name.clone())
+}
+
 /// Starts a hold, if the hand is armed.
-fn start(hand: &mut Hand, close: HoldClose, env: &Env) {
+fn start(hand: &mut Hand, close: HoldClose, repeated: Option<RepeatedGrasp>, ctx: &Ctx<'_>) {
     let Some(epoch) = hand.own_epoch() else {
         return;
     };
@@ -32,11 +87,15 @@ fn start(hand: &mut Hand, close: HoldClose, env: &Env) {
     // The user's own speeds and thresholds are restored when the user moves a joint next.
     hand.controls
         .override_limits(&PerDof::splat(Some(Angle::MAX)));
-    let start = HoldStart {
+    let own = (hand.controls.hold_forces(), PerDof::splat(1.0));
+    let (forces, reading_per_g) = repeated.as_ref().map_or(own, |repeated| {
+        (repeated.grasp.forces, repeated.reading_per_g)
+    });
+    let hold = HoldStart {
         close,
-        forces: hand.controls.hold_forces(),
+        forces,
         duration: None,
-        reading_per_g: PerDof::splat(1.0),
+        reading_per_g,
         locked: hand.controls.locked(),
         overshoot: OvershootMap::clone(&hand.overshoot.map),
         grip: hand.readings.grip.clone(),
@@ -48,8 +107,12 @@ fn start(hand: &mut Hand, close: HoldClose, env: &Env) {
         epoch,
         lease: open.lend_lease(),
         seen: hand.readings.sample,
-        clock: env.clock,
+        clock: ctx.env.clock,
     };
-    let run = HoldMotion::begin(open.link.clone(), armed, start, env);
+    let (grasp, unconfirmed) = repeated.map_or((None, None), |repeated| {
+        (Some(repeated.grasp), repeated.unconfirmed)
+    });
+    let start = GraspStart { hold, unconfirmed };
+    let run = HoldMotion::begin(open.link.clone(), armed, start, grasp, ctx.env);
     hand.running.0 = Some(MotionRun::Hold(run));
 }

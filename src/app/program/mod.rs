@@ -229,7 +229,9 @@ impl App {
             Action::Pinch(gap) => pinch::pinch(state, gap, env),
             Action::MeasureBlock(size_mm) => pinch::measure_block(state, size_mm),
             Action::ForgetBlocks => pinch::forget_blocks(state),
-            Action::Hold(action) => hold::hold(state.hand_mut(), action, env),
+            Action::Hold(action) => {
+                hands::with_shown(state, env, |hand, _, ctx| hold::hold(hand, action, ctx));
+            }
             Action::Gesture(gesture) => hands::with_shown(state, env, |hand, settings, ctx| {
                 hand.gesture(gesture, settings.gesture_route, ctx);
             }),

@@ -1,7 +1,8 @@
 //! A hold between two forces: a popup with its forces, the ways in which it begins, and its state.
 
 use crate::app::action::Action;
-use crate::app::hand::hold::HoldAction;
+use crate::app::hand::grasps::GraspState;
+use crate::app::hand::hold::{HoldAction, HoldMotion};
 use crate::hand::Force;
 use crate::hand::gap::Gap;
 use crate::motion::hold::{HoldClose, HoldForces, HoldPhase};
@@ -16,6 +17,8 @@ use egui::{CornerRadius, Id, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 const POPUP: f32 = 420.0;
 /// Highest force on the slider, g; the fields beside it go on to the limit.
 const SLIDER_MOST: f32 = 1000.0;
+/// Height of the list of grasps; it scrolls beyond.
+const GRASPS: f32 = 120.0;
 /// Radius of a handle.
 const HANDLE: f32 = 8.0;
 /// The shipped pose to which all fingers close.
@@ -34,6 +37,7 @@ pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             ui.horizontal(|ui| end.on_click(ui, pane, Action::Hold(HoldAction::End)));
         } else {
             starts_ui(ui, pane);
+            grasps_ui(ui, pane);
         }
         state_ui(ui, pane);
     });
@@ -144,11 +148,67 @@ fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
         return;
     };
     let (words, color) = match run.end {
-        Some(end) => (hold::end(look, end), palette.muted),
+        Some(Ok(Err(doubt))) => (hold::doubted(look, doubt), palette.warn),
+        Some(Ok(Ok(end))) => (hold::end(look, Ok(end)), palette.muted),
+        Some(Err(why)) => (hold::end(look, Err(why)), palette.muted),
         None if run.view.phase == HoldPhase::CannotHold => {
             (hold::state(look, &run.view), palette.warn)
         }
         None => (hold::state(look, &run.view), palette.text),
     };
+    if let Some(confirming) = run.confirming {
+        let words = hold::confirming(look, confirming);
+        Label::new(&words, palette.accent).wrap().ui(ui);
+    }
     Label::new(&words, color).wrap().ui(ui);
+}
+
+/// Draws the saved grasps, each as a button that holds with it, and the button that saves the last hold.
+fn grasps_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let saves = pane.hand().running.hold().is_some_and(HoldMotion::is_done);
+    if saves {
+        let run = pane.hand().running.hold();
+        let why = run.and_then(HoldMotion::not_saved).map(hold::not_saved);
+        let save = Button::text(look, hold::SAVE).disabled(why.map(|why| look.tr(why)));
+        let name = name_of(pane);
+        save.on_click(ui, pane, Action::Hold(HoldAction::Save(name)));
+    }
+    let grasps = pane.hand().grasps.shown(pane.hand().newtons.all_per_g());
+    if grasps.is_empty() {
+        return;
+    }
+    Label::muted(look, hold::GRASPS).ui(ui);
+    let shown = egui::ScrollArea::vertical().max_height(GRASPS);
+    shown.show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            for grasp in grasps {
+                let forces = [grasp.at_least, grasp.at_most].map(Force::get);
+                let [least, most] = &forces;
+                let (tip, doubt) = match grasp.state {
+                    GraspState::Own => (look.fill(hold::GRASP_OWN, &[least, most]), None),
+                    GraspState::Trusted => {
+                        let made = look.fill(hold::GRASP_TRUSTED, &[&grasp.hand, least, most]);
+                        (made, None)
+                    }
+                    GraspState::New => {
+                        let made = look.fill(hold::GRASP_NEW, &[&grasp.hand, least, most]);
+                        (made, None)
+                    }
+                    GraspState::Doubted(why) => (String::new(), Some(hold::doubted(look, why))),
+                };
+                let button = Button::new(&grasp.name, &tip);
+                let button = button.disabled(pane.unready().or(doubt.as_deref()));
+                let action = HoldAction::Repeat(grasp.name.clone());
+                button.on_click(ui, pane, Action::Hold(action));
+            }
+        });
+    });
+}
+
+/// Name for the hold that ended, as the user sees the way in which it closed.
+fn name_of(pane: &Pane<'_>) -> String {
+    let run = pane.hand().running.hold();
+    let repeated = run.and_then(|run| run.repeated_name());
+    repeated.unwrap_or_else(|| pane.look.tr(hold::HOLD).to_owned())
 }

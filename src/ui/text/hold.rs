@@ -1,6 +1,9 @@
 //! Sentences of a hold between two forces.
 
 use crate::hand::grip::{TightenCause, Tightened};
+use crate::motion::grasp::doubt::Doubt;
+use crate::motion::grasp::run::{ConfirmStep, Confirming};
+use crate::motion::grasp::seen::NotSaved;
 use crate::motion::hold::{HoldEnd, HoldPhase, HoldView};
 use crate::motion::program::Ended;
 use crate::record::Abort;
@@ -33,6 +36,37 @@ texts! {
     END_NOTHING: "the hand holds nothing", "手中没有物体";
     END_LOST: "the object left the hand", "物体已脱离";
     END_LATE: "the hand did not get there in time", "未能按时到位";
+    SAVE: "Save this grasp", "保存此抓取", "Saves forces, stiffness, friction and result in the pose library, to hold like this again.", "将力、刚度、摩擦和结果存入姿态库，以便再次这样抓取。";
+    GRASPS: "Saved grasps", "已保存的抓取";
+    GRASP_OWN: "Made on this hand: {} to {} g.", "在此手上保存：{} 至 {} g。";
+    GRASP_TRUSTED: "Made on {}, and confirmed by this hand: {} to {} g there.", "在 {} 上保存，已由此手确认：原手 {} 至 {} g。";
+    GRASP_NEW: "Made on {}: this hand confirms it first, with five closes ({} to {} g there).", "在 {} 上保存：此手先闭合五次加以确认（原手 {} 至 {} g）。";
+    CONFIRMING: "Confirming {} of {}: {}", "确认第 {} 次，共 {} 次：{}";
+    CONFIRM_CLOSE: "closing", "正在闭合";
+    CONFIRM_LIFT: "lift the object and use it", "请提起物体并使用";
+    CONFIRM_DOWN: "use it, then put it down: the hand opens when the load is gone", "使用后请放下物体：负载消失后手会张开";
+    CONFIRM_OPEN: "opening; put the object back in its place", "正在张开；请把物体放回原处";
+    NOT_SAVED_FAILED: "The hold did not end well.", "保持未正常结束。";
+    NOT_SAVED_SHORT: "It held too briefly: hold for 2 s or more.", "保持时间过短：请保持 2 s 以上。";
+    NOT_SAVED_FORCE: "At most did not suffice at times: raise it, and hold again.", "最大力有时不足：请提高后重试。";
+    NOT_SAVED_TAKEN: "The hand held the object already, so how it closes is not known: open it first.", "手已抓住物体，闭合方式未知：请先张开手。";
+    NOT_SAVED_READ: "No finger that holds was read.", "未读到保持的手指。";
+    DOUBTED: "The grasp is not trusted on this hand: {}", "此手不能信任该抓取：{}";
+    DOUBT_THERE: "it has no newtons of the {}; measure the hand that made it with 'handscope scale', and save it anew", "抓取文件中没有{}的牛顿值；请用 handscope scale 测量原手并重新保存";
+    DOUBT_HERE: "the newtons of the {} of this hand are not known; measure them with 'handscope scale'", "此手{}的牛顿值未知；请用 handscope scale 测量";
+    DOUBT_ROOM: "its forces are not possible as the {} of this hand reads them ({} to {} g)", "按此手{}的读数，这些力不可行（{} 至 {} g）";
+    DOUBT_NO_LOAD: "no load came and went in close {}: lift the object, and put it down again", "第 {} 次闭合中负载没有出现并消失：请提起并放下物体";
+    DOUBT_NOT_CLOSED: "in close {} the open hand touched the object", "第 {} 次闭合前张开的手已碰到物体";
+    DOUBT_LOST: "the object left the hand in close {}", "第 {} 次闭合中物体脱离";
+    DOUBT_FORCE: "at most did not suffice in close {}", "第 {} 次闭合中最大力不足";
+    DOUBT_NOT_HELD: "the {} does not hold as on the first hand: place the object as it lay there", "{}没有像原手那样保持：请按原样放置物体";
+    DOUBT_PEAK: "the {} may press with {} g, above at most ({} g on this hand)", "{}可能达到 {} g，超过最大力（此手为 {} g）";
+    DOUBT_STIFF: "the object is {} times as stiff as on the first hand", "物体刚度是原手所测的 {} 倍";
+    DOUBT_NO_STIFF: "the stiffness of the object is known on one of both hands only", "只有一只手测得物体刚度";
+    DOUBT_SLID: "the object slid at a load of {} of the force, and held at {} on the first hand", "负载为力的 {} 时物体打滑，而原手在 {} 时仍能保持";
+    DOUBT_FRICTION: "the closes show a friction of {}, and {} is needed: load the object as it was there", "闭合显示的摩擦为 {}，需要 {}：请按原来的负载使用物体";
+    DOUBT_HEAVIER: "the load was {} N, and {} N on the first hand", "负载为 {} N，原手上为 {} N";
+    DOUBT_UNKNOWN: "it has no load: hold there again, and save it anew", "抓取文件中没有负载：请在原手上重新保持并保存";
 }
 
 /// Cause for which a finger pressed harder.
@@ -72,6 +106,71 @@ pub(crate) fn state(look: Look, view: &HoldView) -> String {
     let warm = view.is_warm.then(|| look.tr(WARM).to_owned());
     let all: Vec<String> = std::iter::once(main).chain(last).chain(warm).collect();
     look.list(&all)
+}
+
+/// Progress of a confirmation.
+pub(crate) fn confirming(look: Look, own: Confirming) -> String {
+    let step = look.tr(match own.step {
+        ConfirmStep::Close => CONFIRM_CLOSE,
+        ConfirmStep::Lift => CONFIRM_LIFT,
+        ConfirmStep::PutDown => CONFIRM_DOWN,
+        ConfirmStep::Open => CONFIRM_OPEN,
+    });
+    look.fill(CONFIRMING, &[&own.close, &own.of, &step])
+}
+
+/// Reason why a hold is not saved.
+pub(crate) const fn not_saved(why: NotSaved) -> Text {
+    match why {
+        NotSaved::Failed => NOT_SAVED_FAILED,
+        NotSaved::Short { .. } => NOT_SAVED_SHORT,
+        NotSaved::CouldNotHold => NOT_SAVED_FORCE,
+        NotSaved::TookOver => NOT_SAVED_TAKEN,
+        NotSaved::NotRead => NOT_SAVED_READ,
+    }
+}
+
+/// Reason why a grasp is not trusted.
+pub(crate) fn doubt(look: Look, doubt: Doubt) -> String {
+    let finger = |finger| look.tr(words::finger(finger));
+    let whole = |value: f64| format!("{value:.0}");
+    let ratio = |value: f64| format!("{value:.2}");
+    let tenths = |value: f64| format!("{value:.1}");
+    match doubt {
+        Doubt::NoNewtonsThere { finger: own } => look.fill(DOUBT_THERE, &[&finger(own)]),
+        Doubt::NoNewtonsHere { finger: own } => look.fill(DOUBT_HERE, &[&finger(own)]),
+        Doubt::NoRoom { finger: own, why } => {
+            look.fill(DOUBT_ROOM, &[&finger(own), &why.at_least, &why.at_most])
+        }
+        Doubt::NoLoad { close } => look.fill(DOUBT_NO_LOAD, &[&close]),
+        Doubt::NotClosed { close } => look.fill(DOUBT_NOT_CLOSED, &[&close]),
+        Doubt::Lost { close } => look.fill(DOUBT_LOST, &[&close]),
+        Doubt::CouldNotHold { close } => look.fill(DOUBT_FORCE, &[&close]),
+        Doubt::NotHeld { finger: own } => look.fill(DOUBT_NOT_HELD, &[&finger(own)]),
+        Doubt::Peak {
+            finger: own,
+            bound_g,
+            at_most_g,
+        } => look.fill(
+            DOUBT_PEAK,
+            &[&finger(own), &whole(bound_g), &whole(at_most_g)],
+        ),
+        Doubt::Stiffness { ratio } => look.fill(DOUBT_STIFF, &[&tenths(ratio)]),
+        Doubt::NoStiffness => look.tr(DOUBT_NO_STIFF).to_owned(),
+        Doubt::Slid { slid, held } => look.fill(DOUBT_SLID, &[&ratio(slid), &ratio(held)]),
+        Doubt::NoFriction { shown, needed } => {
+            look.fill(DOUBT_FRICTION, &[&ratio(shown), &ratio(needed)])
+        }
+        Doubt::Heavier { here_n, there_n } => {
+            look.fill(DOUBT_HEAVIER, &[&tenths(here_n), &tenths(there_n)])
+        }
+        Doubt::LoadUnknown => look.tr(DOUBT_UNKNOWN).to_owned(),
+    }
+}
+
+/// A grasp that is not trusted, as a sentence.
+pub(crate) fn doubted(look: Look, why: Doubt) -> String {
+    look.fill(DOUBTED, &[&doubt(look, why)])
 }
 
 /// The end of a hold.

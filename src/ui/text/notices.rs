@@ -227,6 +227,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::CannotHold => tr(hold::CANNOT_HOLD_NOTICE),
         NoticeKind::HoldEnded(end) => hold::end(look, *end),
+        NoticeKind::GraspDoubted(why) => hold::doubted(look, *why),
         NoticeKind::SeriesEnded { trials, aborted } => match aborted {
             None => look.fill(tune::ENDED, &[trials]),
             Some(why) => look.fill(tune::ENDED_EARLY, &[trials, &tune::abort(look, *why)]),
