@@ -11,6 +11,15 @@ mod frames;
 #[cfg(unix)]
 mod gateway;
 #[expect(clippy::cast_precision_loss, reason = "counts of grasps")]
+mod grasp;
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::indexing_slicing,
+    clippy::unwrap_used,
+    reason = "forces of a hand; the simulated hand answers, or the bench has no meaning"
+)]
+mod grasp_table;
+#[expect(clippy::cast_precision_loss, reason = "counts of grasps")]
 mod grip;
 #[expect(
     clippy::cast_precision_loss,
@@ -102,7 +111,7 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 20] = [
+const PARTS: [Part; 21] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),
@@ -113,6 +122,7 @@ const PARTS: [Part; 20] = [
     ("hand", hand::run),
     ("grip", grip::run),
     ("hold", hold::run),
+    ("grasp", grasp::run),
     ("png", pictures::run),
     ("start", start::run),
     ("memory", memory::run),

@@ -36,12 +36,12 @@ const ROOM_SHARE: f64 = 0.8;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plan {
     seed: u64,
-    object: Object,
-    forces: HoldForces,
+    pub(crate) object: Object,
+    pub(crate) forces: HoldForces,
     /// Number of fingers that touch it.
     fingers: f64,
     /// Largest load along the pads, g.
-    load_g: f64,
+    pub(crate) load_g: f64,
     pub(crate) is_fragile: bool,
     /// Nothing pulls at it.
     pub(crate) is_quiet: bool,

@@ -2,7 +2,7 @@
 
 use crate::cli::refuses_unarmed;
 use crate::setup::busy::unless_busy;
-use crate::setup::process::{run, sim_on_tcp, start};
+use crate::setup::process::{Running, handscope, listen, run, sim_on_tcp, start};
 use nix::sys::signal::Signal;
 use serde_json::Value;
 use std::path::Path;
@@ -107,4 +107,97 @@ fn it_ends_held_or_ended_by_the_user_or_with_nothing() {
         }
         assert_eq!(forces.len(), 5, "{told}");
     });
+}
+
+/// The program of a user whose files are in this folder.
+fn at_home(home: &Path, args: &[&str]) -> Running {
+    let mut command = handscope();
+    command.env("HOME", home).args(args);
+    listen(command)
+}
+
+#[test]
+fn a_hold_that_worked_is_saved_and_repeated_by_the_same_hand_only() {
+    unless_busy(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let home = folder.path();
+        let ball = ball(home);
+        let save = [
+            "hold", "--hand", &ball, "--pose", "Curled", "--arm", "--json",
+        ];
+        let more = ["--for", "3", "--save", "ball", "--note", "red"];
+        let empty = [
+            "hold",
+            "--hand",
+            "sim:?scenario=free",
+            "--arm",
+            "--json",
+            "--save",
+            "air",
+        ];
+        let saves = at_home(home, &[&save[..], &more].concat());
+        let empty = at_home(home, &empty).end();
+        assert_eq!(empty.code, Some(1), "{}", empty.err);
+        let told: Value = empty.lines().last().unwrap()["hold"].clone();
+        assert_eq!(told["not_saved"], "it did not end well", "{told}");
+        assert_eq!(told["saved"], Value::Null);
+
+        let told: Value = saves.end().ok().lines().last().unwrap()["hold"].clone();
+        let file = told["saved"].as_str().unwrap();
+        assert!(file.ends_with("grasps/ball.grasp.toml"), "{file}");
+        let text = std::fs::read_to_string(file).unwrap();
+        for line in [
+            "note = \"red\"",
+            "pose = \"Curled\"",
+            "[finger.thumb]",
+            "at_most_g = 400",
+        ] {
+            assert!(text.contains(line), "{line} {text}");
+        }
+        let again = at_home(home, &[&save[..], &more].concat()).end();
+        assert_eq!(again.code, Some(1), "{}", again.err);
+        assert!(again.err.contains("already exists"), "{}", again.err);
+
+        let repeats = [
+            "hold", "--grasp", "ball", "--arm", "--for", "2", "--json", "--hand",
+        ];
+        let own = at_home(home, &[&repeats[..], &[&ball]].concat());
+        let other = ball.replacen('?', "?seed=7&", 1);
+        let other = at_home(home, &[&repeats[..], &[&other]].concat()).end();
+        assert_eq!(other.code, Some(1), "{}", other.err);
+        assert!(
+            other.err.contains("nothing was moved: 'ball'"),
+            "{}",
+            other.err
+        );
+        assert!(other.err.contains("handscope scale"), "{}", other.err);
+        let told: Value = own.end().ok().lines().last().unwrap()["hold"].clone();
+        assert_eq!(told["trust"], "same_hand", "{told}");
+        assert_eq!(told["end"], "held", "{told}");
+    });
+}
+
+#[test]
+fn a_wrong_grasp_moves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("egg.grasp.toml");
+    std::fs::write(&path, "format = \"handscope-grasp\"\nversion = 1\n").unwrap();
+    let path = path.to_str().unwrap();
+    for (more, code, words) in [
+        (&["--grasp", path][..], 1, "`name`: it is missing: add it"),
+        (&["--grasp", "none"], 1, "no such file"),
+        (&["--grasp", "a/b"], 2, "a name of 1 to 32 characters"),
+        (&["--grasp", path, "--gap", "30"], 2, "cannot be used with"),
+        (&["--note", "red"], 2, "--save"),
+        (
+            &["--save", path],
+            1,
+            "already exists and is not overwritten",
+        ),
+        (&["--save", "new", "--tuned", "/nowhere"], 1, "/nowhere"),
+    ] {
+        let ended = run(&[&["hold", "--hand", "sim:", "--arm"], more].concat());
+        assert_eq!(ended.code, Some(code), "{more:?} {}", ended.err);
+        assert!(ended.err.contains(words), "{more:?} {}", ended.err);
+    }
 }

@@ -3,6 +3,10 @@
 #[path = "../../bench/hold_table.rs"]
 mod hold_table;
 
+#[path = "../../bench/grasp_table.rs"]
+mod grasp_table;
+
+use grasp_table::grasps;
 use handscope::motion::hold::HoldEnd;
 use hold_table::{Outcome, holds};
 
@@ -25,4 +29,16 @@ fn objects_are_held_between_the_two_forces() {
         }
     }
     assert!(table.count(|own| own.plan.is_quiet) * 8 >= seen, "{told}");
+}
+
+#[test]
+fn a_grasp_is_trusted_by_other_hands_only_where_it_works() {
+    let table = grasps(2, 10);
+    let told = table.line();
+    eprintln!("{told}");
+    for own in &table.used {
+        eprintln!("{} {} {}", own.is_same_object, own.works, own.told);
+    }
+    assert!(table.trusted() * 4 >= table.used.len(), "{told}");
+    assert_eq!(table.false_claims(), 0, "{told}");
 }

@@ -2,6 +2,7 @@
 
 use crate::setup::window::{Bench, LARGE};
 use handscope::app::action::Action;
+use handscope::app::hand::hold::HoldAction;
 use handscope::hand::{Dof, PerDof};
 use handscope::history::MarkKind;
 use handscope::motion::hold::HoldPhase;
@@ -109,4 +110,47 @@ fn moving_a_joint_takes_the_hand_over_from_a_hold() {
         angles.as_array().iter().all(|angle| *angle > 950.0),
         "{angles:?}"
     );
+}
+
+#[test]
+fn a_hold_that_worked_is_saved_and_held_with_again() {
+    let mut bench = Bench::keeping(SimConfig::default());
+    bench.wait(1000);
+    bench.hand(|hand, _| hand.set_object(&pulled()));
+    bench.click("Arm the hand");
+    bench.run(300);
+    bench.click("Hold");
+    bench.run(100);
+    assert!(!bench.shows("Save this grasp"));
+    bench.click("Close all fingers");
+    let phase = |bench: &Bench| {
+        bench
+            .state()
+            .hand()
+            .running
+            .hold()
+            .map(|run| run.view.phase)
+    };
+    bench.until(20_000, |bench| phase(bench) == Some(HoldPhase::Holding));
+    bench.wait(6000);
+    bench.click("End the hold");
+    bench.run(1000);
+    bench.click("Save this grasp");
+    bench.until(5000, |bench| !bench.state().hand().grasps.all().is_empty());
+    let grasp = bench.state().hand().grasps.all()[0].clone();
+    assert_eq!(grasp.close.pose.as_deref(), Some("Power grasp"));
+    assert!(grasp.result.tightened > 0, "{grasp:?}");
+    assert!(bench.shows("Saved grasps"));
+
+    bench.hand(|hand, _| hand.set_object(&Object::none()));
+    bench.act(Action::Arm);
+    bench.run(300);
+    bench.act(Action::Preset(Preset::Open));
+    bench.wait(4000);
+    bench.hand(|hand, _| hand.set_object(&pulled()));
+    bench.act(Action::Hold(HoldAction::Repeat(grasp.name)));
+    bench.until(20_000, |bench| phase(bench) == Some(HoldPhase::Holding));
+    let run = bench.state().hand().running.hold().unwrap();
+    assert_eq!(run.confirming, None, "it is the same hand");
+    assert_eq!(run.view.forces, grasp.forces);
 }
