@@ -358,7 +358,7 @@ fn confirm_words(confirming: Confirming) -> String {
     let Confirming { close, of, step } = confirming;
     let step = match step {
         ConfirmStep::Close => "the object lies in its place",
-        ConfirmStep::Lift => "LIFT the object and use it",
+        ConfirmStep::Lift => "LIFT the object and use it, without turning the hand",
         ConfirmStep::PutDown => "use it, then PUT IT DOWN: the hand opens when the load is gone",
         ConfirmStep::Open => "opening; put the object back in its place",
     };

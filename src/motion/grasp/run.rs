@@ -451,7 +451,8 @@ impl Confirmation {
 
     /// True once the load has come, and is gone for a while.
     fn is_put_down(&mut self, watch: &GraspWatch, now: Moment) -> bool {
-        let Some(load_n) = watch.load_now_n() else {
+        let Some(load_n) = watch.load_now_n(now) else {
+            self.down_since = None;
             return false;
         };
         self.least_n = self.least_n.min(load_n);

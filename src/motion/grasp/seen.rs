@@ -16,6 +16,8 @@ use std::time::Duration;
 const RECENT: usize = 3;
 /// Force on all fingertips below which a ratio says nothing, N.
 const RATIO_FROM_N: f64 = 0.6;
+/// Age up to which a reading of a fingertip shows its load now.
+const FRESH: Duration = Duration::from_millis(500);
 /// Shortest hold that can be saved.
 pub(super) const HELD_LEAST: Duration = Duration::from_secs(2);
 
@@ -108,6 +110,8 @@ pub(super) struct GraspWatch {
     fingers: PerFinger<FingerWatch>,
     ratios: VecDeque<f64>,
     loads: VecDeque<f64>,
+    /// Time at which all fingertips that hold were last read.
+    loads_at: Option<Moment>,
     friction: FrictionSeen,
     load_n: Option<f64>,
     was_short: bool,
@@ -119,6 +123,7 @@ impl GraspWatch {
             fingers: PerFinger::from_fn(|_| FingerWatch::default()),
             ratios: VecDeque::new(),
             loads: VecDeque::new(),
+            loads_at: None,
             friction: FrictionSeen::default(),
             load_n: None,
             was_short: false,
@@ -133,7 +138,7 @@ impl GraspWatch {
             self.read_forces(hold, sample, view.force_g.map(|g| g.is_some() && is_held));
         }
         if is_held && fresh.has_tactile() {
-            self.read_tips(sample, view.force_g.map(|g| g.is_some()));
+            self.read_tips(sample, view.force_g.map(|g| g.is_some()), now);
         }
         self.was_short |= view.phase == HoldPhase::CannotHold;
     }
@@ -160,11 +165,12 @@ impl GraspWatch {
         }
     }
 
-    fn read_tips(&mut self, sample: &HandSample, holds: PerFinger<bool>) {
+    fn read_tips(&mut self, sample: &HandSample, holds: PerFinger<bool>, now: Moment) {
         let holding = holds.iter().filter(|(_, holds)| **holds);
         let tips: Option<Vec<(f64, f64)>> = holding
             .map(|(finger, _)| {
-                let tip = sample.tactile[finger]?.value;
+                let tip = sample.tactile[finger].filter(|tip| tip.age(now) <= FRESH)?;
+                let tip = tip.value;
                 Some((f64::from(tip.normal()?), f64::from(tip.tangential()?)))
             })
             .collect();
@@ -173,6 +179,7 @@ impl GraspWatch {
         };
         let normal_n: f64 = tips.iter().map(|tip| tip.0).sum();
         let load_n = filtered(&mut self.loads, tips.iter().map(|tip| tip.1).sum());
+        self.loads_at = Some(now);
         self.load_n = Some(self.load_n.unwrap_or_default().max(load_n));
         if normal_n < RATIO_FROM_N {
             return;
@@ -193,8 +200,9 @@ impl GraspWatch {
         }
     }
 
-    /// Load along the fingertips now, N.
-    pub(super) fn load_now_n(&self) -> Option<f64> {
+    /// Load along the fingertips now, N; `None` if one that holds is not read.
+    pub(super) fn load_now_n(&self, now: Moment) -> Option<f64> {
+        self.loads_at.filter(|at| now.since(*at) <= FRESH)?;
         median(&self.loads.iter().copied().collect::<Vec<f64>>())
     }
 

@@ -43,7 +43,7 @@ texts! {
     GRASP_NEW: "Made on {}: this hand confirms it first, with five closes ({} to {} g there).", "在 {} 上保存：此手先闭合五次加以确认（原手 {} 至 {} g）。";
     CONFIRMING: "Confirming {} of {}: {}", "确认第 {} 次，共 {} 次：{}";
     CONFIRM_CLOSE: "closing", "正在闭合";
-    CONFIRM_LIFT: "lift the object and use it", "请提起物体并使用";
+    CONFIRM_LIFT: "lift the object and use it, without turning the hand", "请提起物体并使用，不要转动手";
     CONFIRM_DOWN: "use it, then put it down: the hand opens when the load is gone", "使用后请放下物体：负载消失后手会张开";
     CONFIRM_OPEN: "opening; put the object back in its place", "正在张开；请把物体放回原处";
     NOT_SAVED_FAILED: "The hold did not end well.", "保持未正常结束。";
