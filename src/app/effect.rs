@@ -164,7 +164,7 @@ impl Action {
             Self::HoldKey(HoldKey::Held)
             | Self::DisarmIdle(_)
             | Self::Capture(_)
-            | Self::Hold(HoldAction::Save(_))
+            | Self::Hold(HoldAction::Save)
             | Self::Recapture(_)
             | Self::Library(_)
             | Self::HideShipped(..)

@@ -26,8 +26,8 @@ pub enum HoldAction {
     Start(HoldClose),
     /// Hold as the grasp of this name. Needs arming.
     Repeat(String),
-    /// Save the hold that ended as a grasp of the pose library, by this name or the next unused one.
-    Save(String),
+    /// Save the hold that ended as a grasp of the pose library, by the name of its pose or the next unused one.
+    Save,
     /// End it. The hand keeps its position, and so what it holds.
     End,
 }
@@ -118,11 +118,6 @@ impl HoldMotion {
     pub fn not_saved(&self) -> Option<NotSaved> {
         let done = self.done.as_ref()?;
         done.program.worked(done.at).err()
-    }
-
-    /// Name of the grasp that it repeats.
-    pub fn repeated_name(&self) -> Option<String> {
-        self.repeats.as_ref().map(|grasp| grasp.name.clone())
     }
 
     /// True once it has ended, also if it is not worth saving.

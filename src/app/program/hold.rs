@@ -12,10 +12,13 @@ use crate::motion::drive::Armed;
 use crate::motion::grasp::run::GraspStart;
 use crate::motion::grasp::seen::About;
 use crate::motion::hold::{HoldClose, HoldStart};
-use crate::poses::library::{clean, free_name};
+use crate::poses::library::free_name;
 use crate::poses::starter::starter;
 use crate::record::Abort;
 use crate::store::calendar::{day, since_1970};
+
+/// Name of a grasp that closes to no pose.
+const PINCH: &str = "Pinch";
 
 /// Carries out an action on a hold.
 pub(super) fn hold(hand: &mut Hand, action: HoldAction, ctx: &mut Ctx<'_>) {
@@ -23,7 +26,7 @@ pub(super) fn hold(hand: &mut Hand, action: HoldAction, ctx: &mut Ctx<'_>) {
         HoldAction::Forces(forces) => hand.controls.set_hold_forces(forces),
         HoldAction::Start(close) => start(hand, close, None, ctx),
         HoldAction::Repeat(name) => repeat(hand, &name, ctx),
-        HoldAction::Save(name) => save(hand, &name, ctx),
+        HoldAction::Save => save(hand, ctx),
         HoldAction::End => {
             if let Some(run) = hand.running.hold_mut() {
                 run.end(Abort::Person);
@@ -46,15 +49,13 @@ fn repeat(hand: &mut Hand, name: &str, ctx: &mut Ctx<'_>) {
 }
 
 /// Saves the hold that ended.
-fn save(hand: &mut Hand, name: &str, ctx: &mut Ctx<'_>) {
-    let taken = |name: &str| hand.grasps.all().iter().any(|own| own.name == name);
-    let name = free_name(&clean(name), taken);
+fn save(hand: &mut Hand, ctx: &Ctx<'_>) {
     let (run, endpoint) = (hand.running.hold(), hand.connection.endpoint.clone());
-    let Some((run, endpoint)) = run.zip(endpoint).filter(|_| !name.is_empty()) else {
+    let Some((run, endpoint)) = run.zip(endpoint) else {
         return;
     };
     let about = About {
-        name,
+        name: String::new(),
         note: String::new(),
         day: day(since_1970()),
         hand: endpoint,
@@ -62,10 +63,15 @@ fn save(hand: &mut Hand, name: &str, ctx: &mut Ctx<'_>) {
         newtons: hand.newtons.all_per_g(),
         claim: None,
     };
-    if let Some(Ok(mut grasp)) = run.grasp(about) {
-        grasp.close.pose = pose_of(&grasp.close.way);
-        hand.grasps.save(grasp, ctx);
-    }
+    let Some(Ok(mut grasp)) = run.grasp(about) else {
+        return;
+    };
+    grasp.close.pose = pose_of(&grasp.close.way);
+    let repeated = run.repeats.as_ref().map(|repeated| repeated.name.clone());
+    let wanted = repeated.or_else(|| grasp.close.pose.clone());
+    let taken = |name: &str| hand.grasps.all().iter().any(|own| own.name == name);
+    grasp.name = free_name(&wanted.unwrap_or_else(|| PINCH.into()), taken);
+    hand.grasps.save(grasp, ctx);
 }
 
 /// Name of the shipped pose with these targets.

@@ -171,8 +171,7 @@ fn grasps_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let run = pane.hand().running.hold();
         let why = run.and_then(HoldMotion::not_saved).map(hold::not_saved);
         let save = Button::text(look, hold::SAVE).disabled(why.map(|why| look.tr(why)));
-        let name = name_of(pane);
-        save.on_click(ui, pane, Action::Hold(HoldAction::Save(name)));
+        save.on_click(ui, pane, Action::Hold(HoldAction::Save));
     }
     let grasps = pane.hand().grasps.shown(pane.hand().newtons.all_per_g());
     if grasps.is_empty() {
@@ -204,11 +203,4 @@ fn grasps_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             }
         });
     });
-}
-
-/// Name for the hold that ended, as the user sees the way in which it closed.
-fn name_of(pane: &Pane<'_>) -> String {
-    let run = pane.hand().running.hold();
-    let repeated = run.and_then(|run| run.repeated_name());
-    repeated.unwrap_or_else(|| pane.look.tr(hold::HOLD).to_owned())
 }

@@ -220,7 +220,7 @@ fn all(things: Things) -> Vec<Action> {
         ))),
         Action::Hold(HoldAction::Start(HoldClose::Pinch(Gap::MIN))),
         Action::Hold(HoldAction::Repeat("egg".into())),
-        Action::Hold(HoldAction::Save("egg".into())),
+        Action::Hold(HoldAction::Save),
         Action::Hold(HoldAction::End),
         Action::MeasureBlock(30.0),
         Action::ForgetBlocks,
