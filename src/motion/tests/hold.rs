@@ -16,7 +16,7 @@ use crate::sim::personality::ForceCompared;
 use crate::sim::{Object, Obstacle, Scenario, SimConfig, SimHand};
 use std::time::Duration;
 
-const EPOCH: ArmEpoch = ArmEpoch(1);
+pub(super) const EPOCH: ArmEpoch = ArmEpoch(1);
 const STEP: Duration = Duration::from_millis(5);
 const AT_LEAST_G: i16 = 150;
 const AT_MOST_G: i16 = 400;
@@ -44,15 +44,15 @@ impl Sent {
 }
 
 /// A simulated hand that is read as a session reads it.
-struct Hand {
-    sim: SimHand,
-    sample: HandSample,
-    now: Moment,
+pub(super) struct Hand {
+    pub(super) sim: SimHand,
+    pub(super) sample: HandSample,
+    pub(super) now: Moment,
     steps: u64,
 }
 
 impl Hand {
-    fn new(config: SimConfig) -> Self {
+    pub(super) fn new(config: SimConfig) -> Self {
         Self {
             sim: SimHand::new(SimConfig {
                 scenario: Scenario::Free,
@@ -65,7 +65,7 @@ impl Hand {
     }
 
     /// One step of time; each reading goes to `reader`.
-    fn step(&mut self, mut reader: impl FnMut(&HandSample, Groups, Moment)) {
+    pub(super) fn step(&mut self, mut reader: impl FnMut(&HandSample, Groups, Moment)) {
         self.now = self.now.plus(STEP);
         self.steps += 1;
         let mut groups = Vec::new();
@@ -236,7 +236,7 @@ fn forces() -> HoldForces {
     HoldForces::new(Force::nearest(AT_LEAST_G), Force::nearest(AT_MOST_G)).unwrap()
 }
 
-fn start() -> HoldStart {
+pub(super) fn start() -> HoldStart {
     let bent = PerDof::new([Some(100), Some(100), Some(100), Some(100), Some(100), None]);
     HoldStart {
         close: HoldClose::To(bent.map(|angle: Option<i16>| angle.map(Angle::nearest))),
@@ -250,7 +250,7 @@ fn start() -> HoldStart {
 }
 
 /// A firm object of 60 g that is lifted 1.5 s after two fingers press it.
-fn ball(stiffness: f64) -> Object {
+pub(super) fn ball(stiffness: f64) -> Object {
     let obstacle = Obstacle::at(TOUCHES_AT, stiffness);
     let contacts = PerDof::from_fn(|dof| (dof != Dof::ThumbRotate).then_some(obstacle));
     Object {

@@ -3,6 +3,7 @@
 mod booth;
 mod drive;
 mod exhibit;
+mod grasp;
 mod grip;
 mod hold;
 mod move_to;
