@@ -36,5 +36,9 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     for (what, value, aim) in rows {
         report.row(&format!("grasp: {what}"), value, "%", aim)?;
     }
+    let false_claims = table.used.iter().filter(|own| own.is_false_claim());
+    for own in false_claims {
+        report.text(&own.told)?;
+    }
     report.text(&table.line())
 }

@@ -33,6 +33,8 @@ const LONGEST: Duration = Duration::from_secs(900);
 /// Other hands for each grasp: the same object on the first ones, another one on the rest.
 pub(crate) const OTHERS: u64 = 20;
 const SAME_OBJECT: u64 = 14;
+/// Load below which an object stands on its table, g.
+const PUT_DOWN_G: f64 = 5.0;
 /// How far a drive at the speed of the close may run past its threshold, g.
 const OVERSHOOT_G: f64 = 64.0;
 
@@ -78,7 +80,7 @@ struct Ran {
     program: GraspRun,
     now: Moment,
     end: Ended<Result<HoldEnd, Doubt>>,
-    /// It was dropped while it was held.
+    /// It was dropped while the hand carried it.
     is_dropped: bool,
     is_broken: bool,
     /// Largest force of a finger above *at most*, g.
@@ -149,7 +151,7 @@ impl Bench {
             armed: Some(EPOCH),
             ..LinkStatus::default()
         };
-        let (mut is_dropped, mut over_g) = (false, f64::NEG_INFINITY);
+        let (mut is_dropped, mut over_g, mut load_g) = (false, f64::NEG_INFINITY, 0.0);
         loop {
             self.now = self.now.plus(STEP);
             self.read();
@@ -157,10 +159,12 @@ impl Bench {
             for (finger, pressing) in truth.fingers.iter() {
                 over_g = over_g.max(pressing.normal_g - most_g[finger.bend()]);
             }
-            // A hand that opens lets go on purpose.
-            let is_held = self.program.held_for(self.now).is_some();
-            let opens = self.program.view(self.now).confirming.is_some();
-            is_dropped |= truth.lost == Some(ObjectLoss::Dropped) && is_held && !opens;
+            // A hand that opens after the object was put down lets go on purpose.
+            is_dropped |= truth.lost == Some(ObjectLoss::Dropped) && load_g > PUT_DOWN_G;
+            load_g = match truth.lost {
+                None => truth.external_g.length(),
+                Some(_) => 0.0,
+            };
             let seen = Seen {
                 status: &status,
                 sample: &self.sample,
@@ -298,11 +302,18 @@ pub(crate) struct Used {
     pub(crate) is_same_object: bool,
     /// `None`: it is trusted.
     pub(crate) doubt: Option<Doubt>,
-    /// The hold afterwards worked, if it is trusted; else what would have happened.
+    /// The hold afterwards worked, or would have without the doubt.
     pub(crate) works: bool,
     /// The confirmation broke it, dropped it, or pressed too hard.
     pub(crate) is_harmed: bool,
     pub(crate) told: String,
+}
+
+impl Used {
+    /// It is trusted, and does not work.
+    pub(crate) const fn is_false_claim(&self) -> bool {
+        self.doubt.is_none() && !self.works
+    }
 }
 
 /// The outcomes of many grasps on many hands.
@@ -324,7 +335,7 @@ impl GraspTable {
 
     /// Trusted grasps that then did not work.
     pub(crate) fn false_claims(&self) -> usize {
-        self.count(|own| own.doubt.is_none() && !own.works)
+        self.count(Used::is_false_claim)
     }
 
     /// One line with all of it.

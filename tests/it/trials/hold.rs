@@ -33,7 +33,7 @@ fn objects_are_held_between_the_two_forces() {
 
 #[test]
 fn a_grasp_is_trusted_by_other_hands_only_where_it_works() {
-    let table = grasps(2, 10);
+    let table = grasps(2, 4);
     let told = table.line();
     eprintln!("{told}");
     for own in &table.used {
