@@ -1,12 +1,12 @@
 //! The user's settings of the joints, changes in and setpoints out, and the hold-to-run key: while it is required, motion passes only as
 //! long as the user holds it; it counts as released when the window loses focus or hangs. Knows no link and no clock.
 
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Force, Gesture, Group, HandSample, Moment, PerDof,
     Setpoints, Speed, Target,
 };
 use crate::link::{ArmRequest, HoldToRun};
-use crate::motion::hold::HoldForces;
 use crate::record::Record;
 use std::time::Duration;
 

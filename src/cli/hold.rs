@@ -10,6 +10,7 @@ use crate::cli::session;
 use crate::cli::trial::drive::ArmedHand;
 use crate::hand::gap::Gap;
 use crate::hand::grip::Tightened;
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::newtons::N_PER_G;
 use crate::hand::overshoot::{OvershootMap, Stiffness};
 use crate::hand::statistics::mean;
@@ -19,9 +20,7 @@ use crate::motion::drive::stop_words;
 use crate::motion::grasp::doubt::Doubt;
 use crate::motion::grasp::run::{ConfirmStep, Confirming, GraspRun, GraspStart, GraspView};
 use crate::motion::grasp::seen::About;
-use crate::motion::hold::{
-    HeldThing, HoldClose, HoldEnd, HoldForces, HoldPhase, HoldStart, HoldView,
-};
+use crate::motion::hold::{HeldThing, HoldClose, HoldEnd, HoldPhase, HoldStart, HoldView};
 use crate::motion::program::{Ended, Progress};
 use crate::poses::starter::starter;
 use crate::record::Abort;
@@ -463,7 +462,8 @@ fn reading_per_g(args: &HoldArgs, newtons: &PerDof<Option<f64>>) -> anyhow::Resu
     Ok(newtons.map(|newtons| newtons.map_or(1.0, |newtons| N_PER_G / newtons)))
 }
 
-fn overshoot(hand: &Endpoint) -> OvershootMap {
+/// Overshoot measured on this hand. An unreadable file counts as missing.
+pub(crate) fn overshoot(hand: &Endpoint) -> OvershootMap {
     let settings = settings_file::default_path();
     let file = settings.and_then(|settings| overshoot_file::file_of(&settings, hand));
     file.and_then(|file| overshoot_file::read(&file).ok())

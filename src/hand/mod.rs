@@ -11,6 +11,7 @@ pub mod feedback;
 pub mod gap;
 pub mod grip;
 pub mod heat;
+pub mod hold_forces;
 pub mod impact;
 pub mod kinematics;
 pub mod moment;

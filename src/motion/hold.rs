@@ -4,6 +4,7 @@
 use crate::hand::feedback::tactile::spot_mm;
 use crate::hand::gap::{Gap, held_gap};
 use crate::hand::grip::{Grip, GripEstimator, Tightened};
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::newtons::N_PER_G;
 use crate::hand::overshoot::{MeasuredOn, OvershootMap, Stages, Stiffness};
 use crate::hand::statistics::{count, mean, median, spread};
@@ -56,78 +57,11 @@ const WARM: u8 = heat::WARM;
 /// Normal force from which a fingertip touches something, N.
 const TOUCH_N: f32 = 0.15;
 
-/// Forces between which an object is held, g of this hand.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct HoldForces {
-    at_least_g: Force,
-    at_most_g: Force,
-}
-
-/// Two forces between which no hold is possible.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "at least {at_least} g and at most {at_most} g leave no room for a hold: choose at least {} g or more, and at most {} to {} g, at least {} g above it",
-    HoldForces::LEAST, HoldForces::LEAST + HoldForces::ROOM, HoldForces::MOST, HoldForces::ROOM
-)]
-pub struct NoRoom {
-    /// *At least*, g.
-    pub at_least: i16,
-    /// *At most*, g.
-    pub at_most: i16,
-}
-
-impl HoldForces {
-    /// Smallest *at least*, g: less is not distinct from the noise of the sensors.
-    pub const LEAST: i16 = 40;
-    /// Largest *at most*, g: the rated grip.
-    pub const MOST: i16 = 2000;
-    /// Smallest difference, g: one step of the drive on a hard object is nearly as much.
-    pub const ROOM: i16 = 60;
-
-    /// Checks the two forces.
-    ///
-    /// # Errors
-    /// [`NoRoom`].
-    pub fn new(at_least: Force, at_most: Force) -> Result<Self, NoRoom> {
-        let (least, most) = (at_least.get(), at_most.get());
-        if least >= Self::LEAST && most <= Self::MOST && most - least >= Self::ROOM {
-            Ok(Self {
-                at_least_g: at_least,
-                at_most_g: at_most,
-            })
-        } else {
-            Err(NoRoom {
-                at_least: least,
-                at_most: most,
-            })
-        }
-    }
-
-    /// The nearest two forces that leave room for a hold.
-    pub fn nearest(at_least: Force, at_most: Force) -> Self {
-        let least = at_least.get().clamp(Self::LEAST, Self::MOST - Self::ROOM);
-        let most = at_most.get().clamp(least + Self::ROOM, Self::MOST);
-        Self {
-            at_least_g: Force::nearest(least),
-            at_most_g: Force::nearest(most),
-        }
-    }
-
-    /// Force that each finger presses with at least.
-    pub const fn at_least(self) -> Force {
-        self.at_least_g
-    }
-
-    /// Force that no finger exceeds.
-    pub const fn at_most(self) -> Force {
-        self.at_most_g
-    }
-
-    fn range(self, reading_per_g: f64) -> ForceRange {
-        ForceRange {
-            least_g: f64::from(self.at_least_g.get()) * reading_per_g,
-            most_g: f64::from(self.at_most_g.get()) * reading_per_g,
-        }
+/// Forces as a sensor reads them.
+fn range(forces: HoldForces, reading_per_g: f64) -> ForceRange {
+    ForceRange {
+        least_g: f64::from(forces.at_least().get()) * reading_per_g,
+        most_g: f64::from(forces.at_most().get()) * reading_per_g,
     }
 }
 
@@ -347,7 +281,7 @@ impl HoldRun {
 
     /// Forces of a joint, as its sensor reads them.
     fn range(&self, dof: Dof) -> ForceRange {
-        self.start.forces.range(self.start.reading_per_g[dof])
+        range(self.start.forces, self.start.reading_per_g[dof])
     }
 
     /// Time for which it has held; `None` if it never did.

@@ -2,13 +2,14 @@
 //! small form, by the tests.
 
 use handscope::hand::grip::GripEstimator;
+use handscope::hand::hold_forces::HoldForces;
 use handscope::hand::overshoot::OvershootMap;
 use handscope::hand::{
     Angle, ArmEpoch, Dof, Finger, Force, Group, HandCommand, HandSample, Moment, PerDof, PerFinger,
     Reply, Setpoints, Target,
 };
 use handscope::link::LinkStatus;
-use handscope::motion::hold::{HoldClose, HoldEnd, HoldForces, HoldRun, HoldStart};
+use handscope::motion::hold::{HoldClose, HoldEnd, HoldRun, HoldStart};
 use handscope::motion::program::{Order, Program, Seen};
 use handscope::record::LinkState;
 use handscope::sim::body_params::random::random;

@@ -175,9 +175,10 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
     use crate::hand::gap::Gap;
+    use crate::hand::hold_forces::HoldForces;
     use crate::hand::{Angle, Force, PerFinger};
     use crate::motion::grasp::saved::{FrictionSeen, GraspClose, GraspResult};
-    use crate::motion::hold::{HoldClose, HoldForces};
+    use crate::motion::hold::HoldClose;
 
     const NEWTONS: f64 = 0.01;
 

@@ -2,12 +2,13 @@
 //! the reader, and must agree with them.
 
 use crate::hand::gap::Gap;
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::units::decimal;
 use crate::hand::{Angle, Dof, Finger, Force, PerDof, PerFinger};
 use crate::motion::grasp::saved::{
     FrictionSeen, Grasp, GraspClaim, GraspClose, GraspFinger, GraspResult, round,
 };
-use crate::motion::hold::{HoldClose, HoldForces};
+use crate::motion::hold::HoldClose;
 use crate::poses::library::{NAME_CHARS_MAX, clean};
 use crate::store::toml_file::{VERSION, load};
 use crate::store::{FileCause, FileError, FileText};

@@ -1,10 +1,11 @@
 //! A grasp as it is saved: a hold that worked, and its conditions. Pure.
 
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::kinematics::{SegmentFrames, Side};
 use crate::hand::statistics::mean;
 use crate::hand::{Angle, Finger, Force, PerDof, PerFinger};
 use crate::motion::grasp::doubt::Doubt;
-use crate::motion::hold::{HoldClose, HoldForces};
+use crate::motion::hold::HoldClose;
 use crate::transport::Endpoint;
 
 /// A hold that worked.

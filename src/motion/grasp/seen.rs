@@ -1,11 +1,12 @@
 //! What a hold shows of its conditions: forces, stiffness, friction and load, as one close or as a grasp to be saved. Pure.
 
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::statistics::median;
 use crate::hand::{Angle, Finger, Group, Groups, HandSample, Moment, PerDof, PerFinger};
 use crate::motion::grasp::saved::{
     FrictionSeen, Grasp, GraspClaim, GraspClose, GraspFinger, GraspResult, round,
 };
-use crate::motion::hold::{HoldClose, HoldEnd, HoldForces, HoldPhase, HoldRun};
+use crate::motion::hold::{HoldClose, HoldEnd, HoldPhase, HoldRun};
 use crate::motion::program::{Ended, Program as _};
 use crate::record::Abort;
 use crate::transport::Endpoint;

@@ -1,6 +1,7 @@
 //! What a hold sends and how it ends, on a simulated hand in virtual time.
 
 use crate::hand::grip::{GripEstimator, TightenCause};
+use crate::hand::hold_forces::{HoldForces, NoRoom};
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::register::{ANGLE_SET, FORCE_SET, SPEED_SET};
 use crate::hand::{
@@ -8,7 +9,7 @@ use crate::hand::{
     PerFinger, Reply, Setpoints, Target,
 };
 use crate::link::LinkStatus;
-use crate::motion::hold::{HoldClose, HoldEnd, HoldForces, HoldPhase, HoldRun, HoldStart, NoRoom};
+use crate::motion::hold::{HoldClose, HoldEnd, HoldPhase, HoldRun, HoldStart};
 use crate::motion::program::{Order, Program, Seen};
 use crate::record::{Abort, LinkState};
 use crate::sim::object::{Friction, Loads, PullLoad, listed};
