@@ -1,14 +1,17 @@
-//! JSON lines with targets for a hand: `{"seq":1,"right":[six of 0..1 or null]}`, 0 bent, 1 open, or `{"seq":1,"grip_mm":30}`
-//! (`handscope help stream`).
+//! JSON lines with targets for a hand: `{"seq":1,"right":[six of 0..1 or null]}`, 0 bent, 1 open, or `{"seq":1,"grip_mm":30}`; with
+//! `"hold":{"at_least_g":150,"at_most_g":400}` they close on an object and hold it (`handscope help stream`).
 //! A line with any error is refused as a whole and counted, never clamped into range. A stop is the exception: it is obeyed
 //! whatever else its line contains ([`crate::inputs::stop`]).
 
 use crate::hand::gap::Gap;
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::kinematics::Side;
-use crate::hand::{Angle, Dof, PerDof};
+use crate::hand::{Angle, Dof, Force, PerDof};
 use crate::inputs::fields::{self, FieldFault, Fields};
 use crate::inputs::scan;
 use crate::inputs::stop::{self, Completeness};
+use crate::link::ArmRequest;
+use serde::Deserialize as _;
 use serde_json::Value;
 use std::fmt;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -27,6 +30,8 @@ pub struct StreamLine {
     pub aims: PerDof<Option<Angle>>,
     /// Target gap, if the line gives one instead of angles; the aims are then its angles.
     pub gap: Option<Gap>,
+    /// Forces of a hold, if the line requests one.
+    pub hold: Option<HoldForces>,
     /// True while the sender's dead-man is held; `None` if it has none.
     pub held: Option<bool>,
     /// The line requests a stop.
@@ -45,17 +50,20 @@ pub enum LineField {
     /// Six values of a side; with a joint, one of them.
     Values(Side, Option<Dof>),
     Gap,
+    /// The forces of a hold, or `false`; with a name, one of the forces.
+    Hold(Option<&'static str>),
     Held,
     Stop,
 }
 
 impl LineField {
-    const ALL: [Self; 7] = [
+    const ALL: [Self; 8] = [
         Self::Version,
         Self::Seq,
         Self::Values(Side::Left, None),
         Self::Values(Side::Right, None),
         Self::Gap,
+        Self::Hold(None),
         Self::Held,
         Self::Stop,
     ];
@@ -68,6 +76,7 @@ impl LineField {
             Self::Values(Side::Left, _) => "left",
             Self::Values(Side::Right, _) => "right",
             Self::Gap => "grip_mm",
+            Self::Hold(_) => "hold",
             Self::Held => "held",
             Self::Stop => "stop",
         }
@@ -92,6 +101,9 @@ impl fmt::Display for LineRefusal {
             f.write_str(field.name())?;
             if let LineField::Values(_, Some(dof)) = field {
                 write!(f, ", {}", dof.name())?;
+            }
+            if let LineField::Hold(Some(force)) = field {
+                write!(f, ", {force}")?;
             }
             f.write_str(": ")?;
         }
@@ -140,6 +152,14 @@ pub enum StreamLineFault {
     /// Both a gap and values are given.
     #[error("grip_mm together with six values: send one of them")]
     Both,
+    /// Forces that leave no room for a hold.
+    #[error(
+        "at_least_g and at_most_g leave no room for a hold: 'handscope help stream' has their ranges"
+    )]
+    Forces,
+    /// A hold that may press harder than the user allowed.
+    #[error("at_most_g is above the force threshold that is set here")]
+    AboveLimit,
     /// The sequence number is not above the previous one.
     #[error("late or duplicate: not above the previous one")]
     Late,
@@ -168,6 +188,8 @@ impl StreamLineFault {
             Self::Range => "range",
             Self::Gap => "gap",
             Self::Both => "both",
+            Self::Forces => "forces",
+            Self::AboveLimit => "above_limit",
             Self::Late => "late",
             Self::OtherSender => "other_sender",
         }
@@ -197,6 +219,7 @@ impl StreamLine {
             seq: read.ok().and_then(|read| read.seq),
             aims: PerDof::splat(None),
             gap: None,
+            hold: None,
             held: (!stops).then_some(false),
             stop: stops,
             mark: 0,
@@ -205,6 +228,19 @@ impl StreamLine {
                 .err()
                 .filter(|odd| odd.fault != StreamLineFault::OtherSide),
         })
+    }
+
+    /// Refuses a hold that may press harder than the user allowed any joint.
+    ///
+    /// # Errors
+    /// [`LineRefusal`]; the line is refused as a whole.
+    pub fn within(self, allowed: &ArmRequest) -> Result<Self, LineRefusal> {
+        let mut most = allowed.force.iter().map(|(_, most)| *most);
+        let is_above = |hold: HoldForces| most.any(|most| hold.at_most() > most);
+        if self.hold.is_some_and(is_above) {
+            return Err(StreamLineFault::AboveLimit.of(LineField::Hold(None)));
+        }
+        Ok(self)
     }
 
     fn read(line: &[u8], side: Side) -> Result<Self, LineRefusal> {
@@ -222,6 +258,7 @@ impl StreamLine {
         let held = flag(&mut fields, LineField::Held)?;
         let seq = take(&mut fields, LineField::Seq, fields::number)?;
         let mm = take(&mut fields, LineField::Gap, fields::number)?;
+        let hold = take(&mut fields, LineField::Hold(None), hold_value)?;
         let left = values(&mut fields, Side::Left)?;
         let right = values(&mut fields, Side::Right)?;
         if mm.is_some() && (left.is_some() || right.is_some()) {
@@ -230,12 +267,20 @@ impl StreamLine {
         let mut hasher = DefaultHasher::new();
         mm.map(f64::to_bits).hash(&mut hasher);
         let gap = mm.map(gap).transpose()?;
+        let needs_no_target = hold.is_some() && left.is_none() && right.is_none();
+        let hold = hold
+            .flatten()
+            .map(|mut both| forces(&mut both))
+            .transpose()?;
+        hold.map(|hold| [hold.at_least(), hold.at_most()])
+            .hash(&mut hasher);
         let values = match side {
             Side::Left => left,
             Side::Right => right,
         };
         let aims = match (gap, values) {
             (Some(gap), _) => gap.angles().map(Some),
+            (None, None) if needs_no_target => PerDof::splat(None),
             (None, None) => return Err(StreamLineFault::OtherSide.into()),
             (None, Some(values)) => {
                 for (_, value) in values.iter() {
@@ -248,6 +293,7 @@ impl StreamLine {
             seq,
             aims,
             gap,
+            hold,
             held,
             stop: false,
             mark: hasher.finish(),
@@ -306,6 +352,32 @@ fn values(fields: &mut Fields, side: Side) -> Result<Option<PerDof<Option<f64>>>
         }
     }
     Ok(Some(values))
+}
+
+/// The forces of a hold, not read yet; `None` for `false`, which ends one.
+fn hold_value(value: &Value) -> Result<Option<Fields>, FieldFault> {
+    match value {
+        Value::Bool(false) => Ok(None),
+        Value::Object(_) => {
+            let fields = Fields::deserialize(value).map_err(|_unread| FieldFault::Type)?;
+            Ok(Some(fields))
+        }
+        _ => Err(FieldFault::Type),
+    }
+}
+
+/// Both forces of a hold.
+fn forces(both: &mut Fields) -> Result<HoldForces, LineRefusal> {
+    let mut grams = |name: &'static str| {
+        let field = LineField::Hold(Some(name));
+        let value = both.take(name).ok().flatten();
+        let whole = value.and_then(|value| fields::whole(&value).ok());
+        let whole = whole.ok_or_else(|| StreamLineFault::Type.of(field))?;
+        Force::new(whole).map_err(|_out| StreamLineFault::Forces.of(LineField::Hold(None)))
+    };
+    let (least, most) = (grams("at_least_g")?, grams("at_most_g")?);
+    HoldForces::new(least, most)
+        .map_err(|_no_room| StreamLineFault::Forces.of(LineField::Hold(None)))
 }
 
 fn aims(values: &PerDof<Option<f64>>, side: Side) -> Result<PerDof<Option<Angle>>, LineRefusal> {
@@ -369,6 +441,73 @@ mod tests {
         assert_eq!((line.seq, line.held, line.stop), (Some(7.0), None, false));
         let stop = parse(r#"{"stop":true}"#).unwrap();
         assert!(stop.stop && stop.aims == PerDof::splat(None));
+    }
+
+    #[test]
+    fn a_hold_has_two_forces_and_closes_to_what_else_the_line_says() {
+        let both = r#""hold":{"at_least_g":150,"at_most_g":400.0,"more":1}"#;
+        let forces = HoldForces::nearest(Force::nearest(150), Force::nearest(400));
+        let alone = parse(&format!("{{{both}}}")).unwrap();
+        assert_eq!(
+            (alone.hold, alone.aims),
+            (Some(forces), PerDof::splat(None))
+        );
+        let to = parse(&format!(r#"{{{both},"right":[0,0,0,0,0,null]}}"#)).unwrap();
+        assert_eq!(
+            (to.hold, to.aims[Dof::Index]),
+            (Some(forces), Some(Angle::MIN))
+        );
+        let pinch = parse(&format!(r#"{{{both},"grip_mm":20}}"#)).unwrap();
+        assert_eq!(
+            (pinch.hold, pinch.gap),
+            (Some(forces), Some(Gap::nearest(20.0)))
+        );
+        let firmer = parse(r#"{"hold":{"at_least_g":150,"at_most_g":500}}"#).unwrap();
+        assert_ne!(firmer.mark, alone.mark);
+        let ends = parse(r#"{"hold":false}"#).unwrap();
+        assert_eq!((ends.hold, ends.aims), (None, PerDof::splat(None)));
+        for (line, told) in [
+            (r#"{"hold":null}"#, "nothing in it is for this hand's side"),
+            (
+                r#"{"hold":{},"left":[1,1,1,1,1,1]}"#,
+                "hold, at_least_g: not of the type",
+            ),
+            (r#"{"hold":true}"#, "hold: not of the type"),
+            (
+                r#"{"hold":{"at_least_g":150}}"#,
+                "hold, at_most_g: not of the type",
+            ),
+            (
+                r#"{"hold":{"at_least_g":"150","at_most_g":400}}"#,
+                "hold, at_least_g: not of",
+            ),
+            (
+                r#"{"hold":{"at_least_g":150,"at_most_g":200}}"#,
+                "hold: at_least_g and at_most_g leave",
+            ),
+            (
+                r#"{"hold":{"at_least_g":150,"at_most_g":9000}}"#,
+                "hold: at_least_g and at_most_g leave",
+            ),
+            (r#"{"hold":false,"hold":false}"#, "hold: there twice"),
+        ] {
+            let why = parse(line).unwrap_err().to_string();
+            assert!(why.starts_with(told), "{line}: {why}");
+        }
+        let other_side = format!(r#"{{{both},"left":[1,1,1,1,1,1]}}"#);
+        assert_eq!(fault(&other_side), Some(StreamLineFault::OtherSide));
+    }
+
+    #[test]
+    fn a_hold_with_more_force_than_any_joint_may_have_is_refused() {
+        let line = parse(r#"{"hold":{"at_least_g":150,"at_most_g":400}}"#).unwrap();
+        let mut allowed = ArmRequest::GENTLE;
+        assert_eq!(line.within(&allowed), Ok(line));
+        allowed.force[Dof::Ring] = Force::nearest(399);
+        let why = line.within(&allowed).unwrap_err();
+        assert_eq!(why.fault, StreamLineFault::AboveLimit);
+        let follows = parse(r#"{"right":[1,1,1,1,1,1]}"#).unwrap();
+        assert_eq!(follows.within(&allowed), Ok(follows));
     }
 
     #[test]

@@ -130,6 +130,7 @@ fn offer(sample: &HandSample, scale: MirrorScale) -> Option<Offer> {
         at: angle.received,
         aims,
         gap: None,
+        hold: None,
         limits: OfferLimits::NONE,
         held: None,
         // A hand at rest legitimately repeats its angles: its answers prove that it is alive.

@@ -1,6 +1,7 @@
 //! Targets that a source offers to a hand, and the channel from a source to its follower.
 
 use crate::hand::gap::Gap;
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Force, Moment, PerDof, Speed};
 use crate::link::{ArmRequest, Clock, LinkHandle, Wake};
@@ -57,6 +58,8 @@ pub struct Offer {
     /// Target gap between the pads of thumb and index: the aims are its angles, and the hand moves there along the path on
     /// which the pads meet.
     pub gap: Option<Gap>,
+    /// Forces of a hold: with targets the hand closes to them until an object stops it, without it takes over what it holds.
+    pub hold: Option<HoldForces>,
     /// Requested speeds and forces.
     pub limits: OfferLimits,
     /// True while the dead-man is held; `None` for a source without one.

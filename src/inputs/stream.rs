@@ -8,7 +8,7 @@ use crate::inputs::lines::{LONGEST, LineCutter, LineEvent};
 use crate::inputs::offer::{Offer, OfferLimits, OfferOutlet, SourceSite, is_fresh};
 use crate::inputs::scan;
 use crate::inputs::stop::{self, Completeness};
-use crate::link::Owner;
+use crate::link::{ArmRequest, Owner};
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
@@ -73,13 +73,14 @@ pub struct StreamSource {
 }
 
 impl StreamSource {
-    /// Listens from now on.
+    /// Listens from now on. `allowed` has the highest force that a hold may request.
     ///
     /// # Errors
     /// The system's error if the address cannot be bound.
     pub fn open(
         place: StreamPlace,
         site: SourceSite,
+        allowed: ArmRequest,
         runtime: &tokio::runtime::Handle,
     ) -> std::io::Result<Self> {
         let _entered = runtime.enter();
@@ -89,6 +90,7 @@ impl StreamSource {
             intake: Intake::new(site.side),
             view: StreamView::default(),
             site,
+            allowed,
             outlet: outlet.clone(),
             views,
             is_news: false,
@@ -152,6 +154,7 @@ type ReadLine = Result<StreamLine, LineRefusal>;
 #[derive(Clone)]
 struct LineDoor {
     side: Side,
+    allowed: ArmRequest,
     stop: Arc<dyn Fn() + Send + Sync>,
 }
 
@@ -160,7 +163,7 @@ impl LineDoor {
         if stop::is_stop(line, Completeness::Whole) {
             (self.stop)();
         }
-        StreamLine::parse(line, self.side)
+        StreamLine::parse(line, self.side)?.within(&self.allowed)
     }
 }
 
@@ -168,6 +171,7 @@ struct StreamListener {
     intake: Intake,
     view: StreamView,
     site: SourceSite,
+    allowed: ArmRequest,
     outlet: OfferOutlet,
     views: watch::Sender<StreamView>,
     is_news: bool,
@@ -177,6 +181,7 @@ impl StreamListener {
     fn door(&self) -> LineDoor {
         LineDoor {
             side: self.site.side,
+            allowed: self.allowed,
             stop: Arc::clone(&self.site.stop),
         }
     }
@@ -242,6 +247,7 @@ impl StreamListener {
             at: now,
             aims: line.aims,
             gap: line.gap,
+            hold: line.hold,
             limits: OfferLimits::NONE,
             held: line.held,
             mark: Some(line.mark),

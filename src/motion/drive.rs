@@ -118,17 +118,18 @@ pub async fn drive<P: Program>(
         arming: None,
         turns: Turns::from(clock.now()),
     };
-    if let Some(rates) = P::RATES {
-        hand.read_at(rates);
-    }
     let mut inputs = pin!(inputs);
     let mut reporter = Reporter {
         report,
         shown: None,
         clock,
     };
-    let mut stop = None;
+    let (mut stop, mut rates) = (None, None);
     while program.ended().is_none() {
+        let requested = program.rates();
+        if std::mem::replace(&mut rates, requested) != requested {
+            hand.read_at(requested.unwrap_or_default());
+        }
         let is_armed = hand.status().armed.is_some();
         let tick = if is_armed { TICK } else { IDLE_TICK };
         let (mut input, record) = tokio::select! {
@@ -190,7 +191,7 @@ pub async fn drive<P: Program>(
         }
     }
     reporter.report(&mut program, None);
-    if P::RATES.is_some() {
+    if rates.is_some() {
         hand.read_at(PollRates::default());
     }
     let end = program.ended().unwrap_or(Err(Abort::TakenOver));

@@ -2,15 +2,23 @@
 //! it moves; this program executes that.
 
 use crate::hand::gap::Gap;
-use crate::hand::{Angle, ArmEpoch, Dof, DriveHeat, Groups, HandSample, Moment, PerDof, Setpoints};
+use crate::hand::grip::GripEstimator;
+use crate::hand::hold_forces::HoldForces;
+use crate::hand::overshoot::OvershootMap;
+use crate::hand::{
+    Angle, ArmEpoch, Dof, DriveHeat, Groups, HandSample, Moment, PerDof, Setpoints, Speed,
+};
 use crate::inputs::offer::HOLD_TIMEOUT;
 use crate::inputs::{Offer, OfferLimits};
-use crate::link::{ArmRequest, Clock, HoldToRun, Lease, LinkHandle};
+use crate::link::{ArmRequest, Clock, HoldToRun, Lease, LinkHandle, PollRates};
 use crate::motion::drive::{ArmedBy, DriveStart, drive};
 use crate::motion::following::{Follow, FollowInput, FollowLimits, FollowPhase};
+use crate::motion::hold::{self, HoldEnd, HoldStart, HoldView};
+use crate::motion::hosted_hold::HostedHold;
 use crate::motion::program::{AfterAbort, Ended, Order, Program, Progress, Seen};
 use crate::record::{Abort, ArmRefusal, Disarmed};
 use futures::stream::poll_fn;
+use serde::Serialize;
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::time::Duration;
@@ -39,8 +47,12 @@ pub struct FollowStart {
     pub lease: Lease,
     /// Limits set by the user; they may change while the program runs.
     pub terms: watch::Receiver<FollowTerms>,
-    /// Speeds and forces to arm with.
+    /// Speeds and forces to arm with; a hold exceeds neither.
     pub arm: ArmRequest,
+    /// Grip estimate from the readings so far.
+    pub grip: GripEstimator,
+    /// Overshoot measured on this hand.
+    pub overshoot: OvershootMap,
     /// Newest readings.
     pub seen: HandSample,
     /// The program's clock.
@@ -60,6 +72,18 @@ pub struct FollowView {
     pub delay_p99: Option<Duration>,
     /// The warmest drive, if one is warm.
     pub heat: Option<DriveHeat>,
+    /// The hold that the source requests; `None` while it requests none.
+    pub hold: Option<FollowHold>,
+}
+
+/// A hold that a source requests, for display.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FollowHold {
+    /// Its state.
+    #[serde(flatten)]
+    pub view: HoldView,
+    /// How it ended; `None` while it runs. It does not begin again before the source requests something else.
+    pub end: Option<HoldEnd>,
 }
 
 /// Follows a source until it falls silent or is closed, which stops the hand and gives control back, or the lease ends.
@@ -83,6 +107,8 @@ pub async fn follow(
         delays: Delays::default(),
         limits: OfferLimits::NONE,
         limited: None,
+        hold: None,
+        restores: PerDof::splat(false),
         end: None,
         start,
     };
@@ -106,6 +132,10 @@ struct FollowProgram {
     limits: OfferLimits,
     /// Limits that were sent to the hand, and the arming under which.
     limited: Option<(ArmEpoch, OfferLimits)>,
+    /// The requested hold, also one that has ended.
+    hold: Option<(HoldForces, HostedHold)>,
+    /// Joints whose next target restores the speed and threshold of following.
+    restores: PerDof<bool>,
     end: Option<Ended<()>>,
 }
 
@@ -115,6 +145,10 @@ impl Program for FollowProgram {
     type View = Option<FollowView>;
     type Event = Infallible;
     const AFTER_ABORT: AfterAbort = AfterAbort::StopAfterLinkLoss;
+
+    fn rates(&self) -> Option<PollRates> {
+        self.hold.as_ref().map(|_| hold::RATES)
+    }
 
     fn input(&mut self, mut offer: Offer, _seen: &Seen<'_>) -> Option<Order> {
         let locked = self.start.terms.borrow().locked;
@@ -138,7 +172,13 @@ impl Program for FollowProgram {
         Some(Order::GiveBack(Disarmed::Silent))
     }
 
-    fn read(&mut self, _sample: &HandSample, _fresh: Groups, _now: Moment) {}
+    fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
+        let read = sample.newest(fresh).unwrap_or_default();
+        self.start.grip.apply(sample, fresh, read);
+        if let Some((_, hold)) = &mut self.hold {
+            hold.read(sample, fresh, now);
+        }
+    }
 
     fn armed(&mut self, _answer: Result<ArmEpoch, ArmRefusal>) -> Option<Order> {
         self.follow.answered();
@@ -165,15 +205,21 @@ impl Program for FollowProgram {
         if order.is_none() && self.follow.phase() == FollowPhase::Following {
             order = seen.status.armed.map(Setpoints::none).map(Order::Set);
         }
+        match self.follow.phase() {
+            FollowPhase::Holding => order = self.hold_on(seen, &terms),
+            // Position and thresholds stay while the source is silent; a close is held as any other motion, and begins anew.
+            FollowPhase::Silent if self.keeps_hold(seen.now) => {}
+            _ => self.hold = None,
+        }
         let order = match order {
-            Some(Order::Set(setpoints)) => self.limit(setpoints),
+            Some(Order::Set(setpoints)) if self.hold.is_none() => self.limit(setpoints),
             Some(Order::GiveBack(why)) => {
                 self.end.get_or_insert(Ok(()));
                 Some(Order::GiveBack(why))
             }
             order => order,
         };
-        self.show(self.seen(&pose, seen.status.heat), seen.now);
+        self.show(self.seen(&pose, seen), seen.now);
         order
     }
 
@@ -191,11 +237,71 @@ impl Program for FollowProgram {
 }
 
 impl FollowProgram {
+    /// True if the hold keeps an object, or has ended.
+    fn keeps_hold(&self, now: Moment) -> bool {
+        let hold = self.hold.as_ref();
+        hold.is_some_and(|(_, hold)| hold.end().is_some() || hold.is_holding(now))
+    }
+
+    /// Advances the requested hold. Other forces begin another hold, with what is held; other targets do not.
+    fn hold_on(&mut self, seen: &Seen<'_>, terms: &FollowTerms) -> Option<Order> {
+        let ((forces, close), epoch) = self.follow.requested_hold().zip(seen.status.armed)?;
+        let is_requested =
+            |(own, hold): &(HoldForces, HostedHold)| *own == forces && hold.epoch() == epoch;
+        if !self.hold.as_ref().is_some_and(is_requested) {
+            let start = HoldStart {
+                close,
+                forces,
+                duration: None,
+                reading_per_g: PerDof::splat(1.0),
+                locked: terms.locked,
+                overshoot: self.start.overshoot.clone(),
+                grip: self.start.grip.clone(),
+            };
+            let hold = HostedHold::new(epoch, start, self.hold_limits(terms), seen.now);
+            self.hold = Some((forces, hold));
+            self.restores = PerDof::splat(true);
+        }
+        let (_, hold) = self.hold.as_mut()?;
+        let sent = hold.tick(seen, &terms.locked);
+        if hold.is_holding(seen.now) || hold.end().is_some() {
+            self.follow.enter();
+        } else if let Some(sent) = &sent {
+            self.follow.steer(&sent.angle);
+        }
+        sent.map(Order::Set)
+    }
+
+    /// Highest speeds and thresholds of a hold: those of the arming, and the maximum rate.
+    fn hold_limits(&self, terms: &FollowTerms) -> ArmRequest {
+        let rate = f64::from(terms.limits.within().rate);
+        #[expect(clippy::cast_possible_truncation, reason = "a rate of at most 1700")]
+        let fastest = Speed::nearest((rate / Speed::nearest(1).angle_per_s()) as i64);
+        ArmRequest {
+            speed: self.start.arm.speed.map(|speed| speed.min(fastest)),
+            force: self.start.arm.force,
+        }
+    }
+
     /// Adds limits that were not sent under this arming yet; `None` if nothing remains to be sent.
     fn limit(&mut self, mut setpoints: Setpoints) -> Option<Order> {
         let epoch = setpoints.epoch;
-        if self.limited != Some((epoch, self.limits)) {
-            (setpoints.force, setpoints.speed) = (self.limits.force, self.limits.speed);
+        let is_new = self.limited != Some((epoch, self.limits));
+        let is_silent = self.follow.phase() == FollowPhase::Silent;
+        for dof in Dof::ALL {
+            let restores = self.restores[dof];
+            // A threshold that rises without a new target, or while the source is silent, would press harder.
+            if restores && (is_silent || setpoints.angle[dof].is_none()) {
+                continue;
+            }
+            if is_new || restores {
+                let own = self.start.arm;
+                let force = self.limits.force[dof];
+                setpoints.force[dof] = force.or(restores.then_some(own.force[dof]));
+                let speed = self.limits.speed[dof];
+                setpoints.speed[dof] = speed.or(restores.then_some(own.speed[dof]));
+                self.restores[dof] = false;
+            }
         }
         if setpoints.is_empty() {
             return None;
@@ -209,8 +315,12 @@ impl FollowProgram {
 
     /// Shows a new state at once if the phase or the targets changed, otherwise at [`REPORT_INTERVAL`].
     fn show(&mut self, view: FollowView, now: Moment) {
+        let hold = |view: FollowView| {
+            view.hold
+                .map(|hold| (hold.view.phase, hold.view.last, hold.end))
+        };
         let is_shown = |(before, since): (FollowView, Moment)| {
-            (view.phase, view.sent) == (before.phase, before.sent)
+            (view.phase, view.sent, hold(view)) == (before.phase, before.sent, hold(before))
                 && now.since(since) < REPORT_INTERVAL
         };
         if !self.shown.is_some_and(is_shown) {
@@ -218,7 +328,7 @@ impl FollowProgram {
         }
     }
 
-    fn seen(&self, pose: &PerDof<Option<Angle>>, heat: Option<DriveHeat>) -> FollowView {
+    fn seen(&self, pose: &PerDof<Option<Angle>>, seen: &Seen<'_>) -> FollowView {
         let lead = |dof: Dof| {
             let (to, at) = self.follow.sent()[dof].zip(pose[dof])?;
             Some(to.get().abs_diff(at.get()))
@@ -228,7 +338,11 @@ impl FollowProgram {
             sent: *self.follow.sent(),
             lead: Dof::ALL.into_iter().filter_map(lead).max().unwrap_or(0),
             delay_p99: self.delays.p99(),
-            heat,
+            heat: seen.status.heat,
+            hold: self.hold.as_ref().map(|(_, hold)| FollowHold {
+                view: hold.view(seen.now),
+                end: hold.end(),
+            }),
         }
     }
 }

@@ -2,9 +2,11 @@
 //! released. Pure: offers, poses and time in, orders out.
 
 use crate::hand::gap::Gap;
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::{Angle, ArmEpoch, Dof, Moment, PerDof, Setpoints, Target};
 use crate::inputs::offer::{END_TIMEOUT, HOLD_TIMEOUT, Offer};
 use crate::link::ArmRequest;
+use crate::motion::hold::HoldClose;
 use crate::motion::pinch::{self, PinchAim, PinchStep, StepLimits};
 use crate::motion::program::Order;
 use crate::record::{Disarmed, LinkState};
@@ -63,6 +65,8 @@ pub enum FollowPhase {
     Following,
     /// The hand follows, and the source repeats the same bits.
     Frozen,
+    /// The source requests a hold.
+    Holding,
     /// The source is silent: the hand is held.
     Silent,
     /// The dead-man switch is released: the hand was stopped.
@@ -133,6 +137,28 @@ impl Follow {
         &self.sent
     }
 
+    /// The hold that the newest offer requests, with what it closes to.
+    pub(crate) fn requested_hold(&self) -> Option<(HoldForces, HoldClose)> {
+        let offer = self.newest?;
+        let has_aims = offer.aims.iter().any(|(_, aim)| aim.is_some());
+        let close = match offer.gap {
+            Some(gap) => HoldClose::Pinch(gap),
+            None if has_aims => HoldClose::To(offer.aims),
+            None => HoldClose::TakeOver,
+        };
+        Some((offer.hold?, close))
+    }
+
+    /// Notes the targets of a hold that closes: silence holds these joints where they are.
+    pub(crate) fn steer(&mut self, targets: &PerDof<Option<Target>>) {
+        for (dof, to) in targets.iter() {
+            if let Some(to) = to.and_then(Target::angle) {
+                self.targets[dof] = Some(f32::from(to.get()));
+                self.sent[dof] = Some(to);
+            }
+        }
+    }
+
     /// Changes the limits.
     pub fn limit(&mut self, limits: FollowLimits) {
         self.limits = limits.within();
@@ -190,8 +216,14 @@ impl Follow {
             return None;
         };
         (self.asked_to_arm, self.is_arming) = (None, false);
-        if self.phase == FollowPhase::Silent {
+        let holds = offer.hold.is_some();
+        if self.phase == FollowPhase::Silent || holds != (self.phase == FollowPhase::Holding) {
             self.enter();
+        }
+        if holds {
+            // A hold steps by itself, and may request the same for a long time.
+            self.phase = FollowPhase::Holding;
+            return None;
         }
         // A gap is one number, which may legitimately stay the same for a long time.
         let is_frozen = offer.mark.is_some()
@@ -207,7 +239,7 @@ impl Follow {
     }
 
     /// Starts from the positions of the joints, discarding previous targets.
-    fn enter(&mut self) {
+    pub(crate) fn enter(&mut self) {
         self.targets = PerDof::splat(None);
         self.sent = PerDof::splat(None);
         self.is_pinching = false;

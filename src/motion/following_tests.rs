@@ -40,6 +40,7 @@ fn offer(when: u64, angle: i16) -> Offer {
         at: ms(when),
         aims: PerDof::splat(Some(Angle::nearest(angle))),
         gap: None,
+        hold: None,
         limits: OfferLimits::NONE,
         held: None,
         mark: Some(angle.unsigned_abs().into()),
@@ -414,6 +415,7 @@ fn next_offer(now: Moment, before: Option<Offer>, rng: &mut Rng) -> Option<Offer
     Some(Offer {
         at: now,
         gap,
+        hold: None,
         limits: OfferLimits::NONE,
         aims: gap.map_or(each, |gap| gap.angles().map(Some)),
         held: match rng.u8(0..4) {

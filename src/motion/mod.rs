@@ -13,6 +13,7 @@ pub mod grasp;
 pub mod grip;
 pub mod hold;
 mod hold_finger;
+mod hosted_hold;
 pub mod move_to;
 mod pinch;
 pub mod play;

@@ -89,11 +89,15 @@ pub trait Program {
     type View: Clone + PartialEq;
     /// Something that its results contain, such as a finished trial.
     type Event;
-    /// Requested poll rates; `None` leaves them unchanged.
+    /// Poll rates requested throughout; `None` leaves them unchanged.
     const RATES: Option<PollRates> = None;
     /// Reaction of the loop to an early end.
     const AFTER_ABORT: AfterAbort = AfterAbort::Stop;
 
+    /// Poll rates requested now; `None` leaves them unchanged.
+    fn rates(&self) -> Option<PollRates> {
+        Self::RATES
+    }
     /// Receives user input.
     fn input(&mut self, input: Self::Input, seen: &Seen<'_>) -> Option<Order>;
     /// Receives a reading.

@@ -38,18 +38,18 @@ impl HandInputs {
         }
     }
 
-    /// Listens for lines at this place; `None` ends that.
+    /// Listens for lines at this place; `None` ends that. `allowed` limits the holds that they request.
     pub(crate) fn listen(
         &mut self,
         place: Option<StreamPlace>,
         connection: &Connection,
-        side: Side,
+        (side, allowed): (Side, ArmRequest),
         env: &Env,
     ) {
         self.open(SourceKind::Stream, || {
             let (place, link) = place.zip(connection.link())?;
             let site = SourceSite::of(link, side, Arc::clone(&env.wake));
-            let source = StreamSource::open(place, site, &env.runtime);
+            let source = StreamSource::open(place, site, allowed, &env.runtime);
             Some(source.map(Source::Stream).map_err(InputError::from))
         });
     }

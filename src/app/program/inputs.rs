@@ -10,6 +10,7 @@ use crate::app::poses::PoseState;
 use crate::app::program::leading;
 use crate::app::settings::Settings;
 use crate::app::state::State;
+use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Moment, Setpoints};
 use crate::inputs::pad::file;
 use crate::link::Owner;
@@ -28,8 +29,12 @@ pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
     } = state;
     let hand = hands.shown_mut();
     let (side, connection) = (hand.side, &hand.connection);
+    // The user's limits are the most that a message may request.
+    let allowed = hand.controls.limits();
     match action {
-        InputAction::Listen(place) => hand.inputs.listen(place, connection, side, env),
+        InputAction::Listen(place) => {
+            hand.inputs.listen(place, connection, (side, allowed), env);
+        }
         InputAction::ReadPad(on) => {
             hand.inputs.read_pad(on, connection, (settings, side), env);
         }
@@ -39,8 +44,6 @@ pub(super) fn act(state: &mut State, action: InputAction, env: &Env) {
             let card = fleet_card(hand, settings);
             let domain = 0;
             let place = interface.map(|interface| (DdsPlace { interface, domain }, card));
-            // The user's limits are the most that a message may request.
-            let allowed = hand.controls.limits();
             hand.inputs.join_dds(place, allowed, connection, env);
         }
         InputAction::Mirror(wanted) => leading::watch_hand(state, wanted, env),
@@ -92,6 +95,8 @@ fn follow(hand: &mut Hand, kind: SourceKind, settings: &Settings, (env, now): (&
         lease,
         terms,
         arm,
+        grip: hand.readings.grip.clone(),
+        overshoot: OvershootMap::clone(&hand.overshoot.map),
         seen: hand.readings.sample,
         clock: env.clock,
     };

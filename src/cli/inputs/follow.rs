@@ -1,5 +1,6 @@
 //! `follow`: a hand follows another program (JSON lines or DDS), a gamepad or another hand, once the user permits it.
 
+use crate::cli::hold;
 use crate::cli::inputs::consent::{self, ConsentFrom};
 use crate::cli::inputs::source::{Allowed, FollowSource, SourceArgs};
 use crate::cli::out::{AlreadyReported, Out, ReaderGone, WrongUsage, notify};
@@ -8,8 +9,9 @@ use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
 use crate::hand::{DriveHeat, Force, HandSample, Moment, PerDof, Speed};
 use crate::link::{ArmRequest, Clock, LinkHandle, Owner, PollRates, Records};
-use crate::motion::follow::{FollowStart, FollowTerms, FollowView, follow};
+use crate::motion::follow::{FollowHold, FollowStart, FollowTerms, FollowView, follow};
 use crate::motion::following::{FollowLimits, FollowPhase};
+use crate::motion::hold::{HoldEnd, HoldPhase};
 use crate::motion::program::Ended;
 use crate::record::{Abort, Disarmed, Record};
 use crate::shell::interrupt::Interrupt;
@@ -222,6 +224,8 @@ impl FollowCommand<'_> {
             lease: self.link.grant(owner),
             terms: watch::Sender::new(self.args.terms()).subscribe(),
             arm: self.args.arm_request(),
+            grip: session::grip_estimator(&self.args.hand),
+            overshoot: hold::overshoot(&self.args.hand),
             seen: self.seen,
             clock: self.clock,
         };
@@ -318,6 +322,13 @@ fn ended(end: Ended<()>, sender: &str) -> String {
     format!("{why}: the hand was stopped")
 }
 
+/// Phase of following, phase and end of its hold, and true while a question awaits an answer: a change of these is printed at once.
+type PrintedState = (
+    Option<FollowPhase>,
+    Option<(HoldPhase, Option<HoldEnd>)>,
+    bool,
+);
+
 /// Prints the progress: at each change, and every second.
 struct ProgressPrinter<'a> {
     out: &'a mut Out,
@@ -328,7 +339,7 @@ struct ProgressPrinter<'a> {
     heat: Option<DriveHeat>,
     /// Number of irregular stops reported.
     odd_stops: u64,
-    printed: Option<((Option<FollowPhase>, bool), Moment)>,
+    printed: Option<(PrintedState, Moment)>,
 }
 
 impl ProgressPrinter<'_> {
@@ -344,7 +355,9 @@ impl ProgressPrinter<'_> {
             self.heat = view.heat;
         }
         let phase = follow.map(|view| view.phase);
-        let state = (phase, self.question.is_some());
+        let hold = follow.and_then(|view| view.hold);
+        let step = hold.map(|hold| (hold.view.phase, hold.end));
+        let state = (phase, step, self.question.is_some());
         let is_due =
             |(printed, at): (_, Moment)| printed != state || now.since(at) >= REPORT_INTERVAL;
         if !self.printed.is_none_or(is_due) {
@@ -372,16 +385,34 @@ impl ProgressPrinter<'_> {
                 let heat =
                     heat.map(|heat| json!({"joint": heat.dof.name(), "celsius": heat.celsius}));
                 fields.insert("heat".into(), heat.into());
+                fields.insert("hold".into(), serde_json::to_value(hold)?);
                 self.out.stream_object(&object)?;
             }
             None => {
                 let heat = self
                     .heat
                     .map_or_else(String::new, |heat| format!("  {heat}"));
-                self.out.stream_line(&format!("{phase:<9} {words}{heat}"))?;
+                let hold = hold.map_or_else(String::new, hold_words);
+                self.out
+                    .stream_line(&format!("{phase:<9} {words}{hold}{heat}"))?;
             }
         }
         self.out.flush()
+    }
+}
+
+/// State of a hold, to be appended to a line.
+fn hold_words(hold: FollowHold) -> String {
+    let view = hold.view;
+    let force = view.mean_g().map_or("-".into(), |g| g.to_string());
+    match (hold.end, view.phase) {
+        (Some(HoldEnd::Nothing | HoldEnd::Held), _) => "  the hand holds nothing".into(),
+        (Some(HoldEnd::Lost), _) => "  the object left the hand".into(),
+        (Some(HoldEnd::Late), _) => "  the hand did not get there in time".into(),
+        (None, HoldPhase::Measuring) => "  measuring".into(),
+        (None, HoldPhase::Closing) => "  closing".into(),
+        (None, HoldPhase::Holding) => format!("  with {force} g"),
+        (None, HoldPhase::CannotHold) => format!("  CANNOT HOLD: with {force} g"),
     }
 }
 
@@ -390,6 +421,7 @@ const fn phase_word(phase: FollowPhase) -> &'static str {
         FollowPhase::Waiting => "arming",
         FollowPhase::Following => "following",
         FollowPhase::Frozen => "frozen",
+        FollowPhase::Holding => "holding",
         FollowPhase::Silent => "silent",
         FollowPhase::Released => "released",
     }

@@ -287,7 +287,7 @@ impl FollowSource {
 /// Listens for lines, and warns if other computers can send them.
 fn stream(place: StreamPlace, site: SourceSite, allowed: Allowed) -> anyhow::Result<Source> {
     let (StreamPlace::Udp(at) | StreamPlace::Tcp(at)) = place;
-    let source = StreamSource::open(place, site, &Handle::current())
+    let source = StreamSource::open(place, site, allowed.limits, &Handle::current())
         .map_err(|error| listen::refused(at, &error))?;
     let can = if allowed.moves {
         "move this hand"

@@ -163,6 +163,7 @@ impl DdsReceiver {
             at: now,
             aims: asked.aims,
             gap: None,
+            hold: None,
             limits: asked.limits,
             held: None,
             mark: Some(asked.mark),

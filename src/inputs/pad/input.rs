@@ -278,6 +278,7 @@ impl PadInput {
             at,
             aims: aim.joints,
             gap: aim.gap,
+            hold: None,
             limits: OfferLimits::NONE,
             held: Some(is_held),
             // Controls held still are not frozen tracking.

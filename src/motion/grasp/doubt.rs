@@ -1,7 +1,7 @@
 //! Reasons why a grasp of another hand is not trusted here.
 
 use crate::hand::Finger;
-use crate::motion::hold::NoRoom;
+use crate::hand::hold_forces::NoRoom;
 
 /// Reason why a grasp that another hand made is not trusted on this one.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]

@@ -466,7 +466,7 @@ mod tests {
     use crate::motion::grasp::confirm::Agreement;
     use crate::motion::grasp::confirmed_file::{add, file_of, of};
     use crate::motion::grasp::doubt::Doubt;
-    use crate::motion::hold::NoRoom;
+    use crate::hand::hold_forces::NoRoom;
 
     fn finger(newtons_per_g: Option<f64>) -> GraspFinger {
         GraspFinger {

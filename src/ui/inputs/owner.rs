@@ -7,7 +7,7 @@ use crate::app::state::State;
 use crate::link::Owner;
 use crate::motion::following::{FollowLimits, FollowPhase};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, format};
-use crate::ui::text::{inputs, words};
+use crate::ui::text::{hold as hold_text, inputs, words};
 use crate::ui::theme;
 use egui::Ui;
 
@@ -32,6 +32,11 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 let delay = format::millis(view.delay_p99);
                 let words = look.fill(inputs::FOLLOW_NOW, &[&view.lead, &delay]);
                 Label::new(&words, look.palette.muted).small().ui(ui);
+                if let Some(hold) = view.hold {
+                    let ended = hold.end.map(|end| hold_text::end(look, Ok(end)));
+                    let words = ended.unwrap_or_else(|| hold_text::state(look, &hold.view));
+                    Label::new(&words, look.palette.text).small().ui(ui);
+                }
             }
             if owner.is_some() {
                 let button = Button::text(look, inputs::TAKE_BACK).large();

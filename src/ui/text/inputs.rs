@@ -84,6 +84,7 @@ texts! {
         FollowPhase::Waiting => "arming", "使能中";
         FollowPhase::Following => "follows", "跟随中";
         FollowPhase::Frozen => "tracking frozen?", "追踪已停止？";
+        FollowPhase::Holding => "holds", "保持中";
         FollowPhase::Silent => "silent: held", "无数据：已保持";
         FollowPhase::Released => "not held to run", "未按住运行键";
     }
@@ -101,6 +102,8 @@ texts! {
         StreamLineFault::Range => "Refused: not 0 to 1", "拒绝：超出 0 至 1";
         StreamLineFault::Gap => "Refused: gap not 3 to 120 mm", "拒绝：间距超出 3 至 120 mm";
         StreamLineFault::Both => "Refused: gap and values", "拒绝：同时给出间距与数值";
+        StreamLineFault::Forces => "Refused: no room between the forces of a hold", "拒绝：保持的两个力没有余地";
+        StreamLineFault::AboveLimit => "Refused: more force than is set here", "拒绝：力高于此处设置";
         StreamLineFault::Late => "Refused: late", "拒绝：迟到";
         StreamLineFault::OtherSender => "Refused: another sender", "拒绝：其他来源";
     }

@@ -5,6 +5,8 @@ use crate::setup::hand;
 use crate::setup::link::{gentle, to_hand};
 use crate::setup::time::in_virtual_time;
 use handscope::hand::gap::{Gap, gap_on_path};
+use handscope::hand::grip::GripEstimator;
+use handscope::hand::overshoot::OvershootMap;
 use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Setpoints, Target};
 use handscope::inputs::{Offer, OfferLimits};
 use handscope::link::{self, Clock, HoldToRun, Lease, LinkHandle, Owner, Records};
@@ -95,7 +97,7 @@ impl Stage {
         &self.seen
     }
 
-    fn beginning(&self, lease: Lease) -> FollowStart {
+    pub(super) fn beginning(&self, lease: Lease) -> FollowStart {
         let terms = FollowTerms {
             limits: LIMITS,
             ..FollowTerms::default()
@@ -104,6 +106,8 @@ impl Stage {
             lease,
             terms: watch::Sender::new(terms).subscribe(),
             arm: gentle(),
+            grip: GripEstimator::default(),
+            overshoot: OvershootMap::default(),
             seen: self.sample(),
             clock: self.clock,
         }
@@ -138,6 +142,7 @@ impl Stage {
                 at: self.clock.now(),
                 aims: PerDof::splat(Some(Angle::nearest(aim))),
                 gap: None,
+                hold: None,
                 limits: OfferLimits::NONE,
                 held: None,
                 mark: Some(aim.unsigned_abs().into()),
@@ -441,6 +446,7 @@ fn a_gap_is_gone_to_over_the_wire_and_not_at_all_without_one_of_its_joints() {
                     at: stage.clock.now(),
                     aims: gap.angles().map(Some),
                     gap: Some(gap),
+                    hold: None,
                     limits: OfferLimits::NONE,
                     held: None,
                     mark: None,

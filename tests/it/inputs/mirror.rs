@@ -4,6 +4,8 @@
 use crate::setup::link::{dial, gentle, missing, opened};
 use crate::setup::time::in_virtual_time;
 use crate::setup::{hand, link};
+use handscope::hand::grip::GripEstimator;
+use handscope::hand::overshoot::OvershootMap;
 use handscope::hand::register::ANGLE_SET;
 use handscope::hand::{Dof, HandSample};
 use handscope::inputs::mirror::{MirrorScale, MirrorSource};
@@ -154,6 +156,8 @@ impl Stage {
             lease: link.grant(Owner::Mirror),
             terms: watch::Sender::new(FollowTerms::default()).subscribe(),
             arm: gentle(),
+            grip: GripEstimator::default(),
+            overshoot: OvershootMap::default(),
             seen: self.follower.sample(),
             clock: self.clock,
         };

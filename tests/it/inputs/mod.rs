@@ -2,6 +2,7 @@
 
 mod dds;
 mod follow;
+mod hold;
 mod mirror;
 mod pad;
 pub(crate) mod stops;

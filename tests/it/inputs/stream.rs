@@ -6,7 +6,7 @@ use handscope::hand::kinematics::Side;
 use handscope::inputs::line::StreamLineFault;
 use handscope::inputs::offer::SourceSite;
 use handscope::inputs::stream::{StreamPlace, StreamSource, StreamView};
-use handscope::link::Clock;
+use handscope::link::{ArmRequest, Clock};
 use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::net::{SocketAddr, TcpStream, UdpSocket};
@@ -29,7 +29,7 @@ pub(super) fn open(place: StreamPlace, stops: &Arc<AtomicU64>) -> StreamSource {
         }),
         wake: Arc::new(|| ()),
     };
-    StreamSource::open(place, site, &Handle::current()).unwrap()
+    StreamSource::open(place, site, ArmRequest::GENTLE, &Handle::current()).unwrap()
 }
 
 /// Waits until what came in is as wanted.
@@ -85,6 +85,13 @@ async fn datagrams_are_counted_by_what_is_wrong_and_followed_when_a_person_lets_
     let view = until(&source, |view| view.intake.refused.len() == 6).await;
     assert_eq!(view.intake.refused[&StreamLineFault::Both], 1);
     assert_eq!(view.intake.refused[&StreamLineFault::Gap], 1);
+    send(r#"{"seq":13,"hold":{"at_least_g":150,"at_most_g":400}}"#);
+    let offer = offers.recv().await.unwrap();
+    assert_eq!(offer.hold.unwrap().at_most().get(), 400);
+    // More than the user allows any joint.
+    send(r#"{"seq":14,"hold":{"at_least_g":150,"at_most_g":600}}"#);
+    let view = until(&source, |view| view.intake.refused.len() == 7).await;
+    assert_eq!(view.intake.refused[&StreamLineFault::AboveLimit], 1);
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 1)]

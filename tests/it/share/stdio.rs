@@ -604,6 +604,10 @@ fn targets_are_followed_held_in_a_silence_and_followed_again() {
             follow(&mut script, 1.0);
             while script.told.try_recv().is_ok() {}
         }
+        // A hold presses no harder than the limits of `arm`.
+        let hold = |most: i16| json!({"hold": {"at_least_g": 150, "at_most_g": most}});
+        assert_eq!(script.ask(hold(900))["kind"], "wrong");
+        script.done(hold(400));
         script.done(to_index(700, 500));
         assert_eq!(script.end(), Some(0));
     });

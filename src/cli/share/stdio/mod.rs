@@ -5,6 +5,7 @@ mod pipe;
 mod refused;
 mod request;
 
+use crate::cli::hold;
 use crate::cli::out::{Out, notify};
 use crate::cli::recordings::beside::SideRecording;
 use crate::cli::session;
@@ -352,7 +353,10 @@ impl StdioSession<'_> {
                 Err(no) => Err(no),
             },
             Ok(StdioRequest::Follow(line)) => match self.right() {
-                Ok(right) => return self.follow(id, right, line),
+                Ok(right) => match line.within(&right.limits) {
+                    Ok(line) => return self.follow(id, right, line),
+                    Err(why) => Err(StdioRefusal::new(RefusalKind::Wrong, why.to_string())),
+                },
                 Err(no) => Err(no),
             },
             Ok(StdioRequest::Clear) => {
@@ -484,6 +488,7 @@ impl StdioSession<'_> {
             at: self.hand.link.clock().now(),
             aims: line.aims,
             gap: line.gap,
+            hold: line.hold,
             // An earlier motion may have changed the limits.
             limits: OfferLimits {
                 force: right.limits.force.map(Some),
@@ -500,6 +505,8 @@ impl StdioSession<'_> {
                 lease: right.lease,
                 terms: watch::Sender::new(FollowTerms::default()).subscribe(),
                 arm: right.limits,
+                grip: self.grip.clone(),
+                overshoot: hold::overshoot(self.hand.endpoint),
                 seen: self.seen,
                 clock: link.clock(),
             };
