@@ -7,7 +7,8 @@ use crate::exhibit::stage::{
 };
 use crate::hand::grip::GripEstimator;
 use crate::hand::{ArmEpoch, Fault, Groups, HandSample, Moment, PerDof};
-use crate::link::{Clock, LinkHandle, LinkTrouble, Owner};
+use crate::hand::overshoot::OvershootMap;
+use crate::link::{Clock, LinkHandle, LinkTrouble, Owner, PollRates};
 use crate::motion::drive::{ArmedBy, DriveStart, drive};
 use crate::motion::play::{PlayCommand, PlayStart, Playing};
 use crate::motion::program::{AfterAbort, Ended, Order, Program, Progress, Seen};
@@ -51,6 +52,8 @@ pub struct ExhibitStart {
     pub grip: GripEstimator,
     /// The program's clock.
     pub clock: Clock,
+    /// Overshoot measured on this hand.
+    pub overshoot: OvershootMap,
     /// Time at which the page was drawn last.
     pub drawn: Arc<PageDrawn>,
 }
@@ -128,6 +131,7 @@ pub(crate) struct ExhibitRun {
     grip: GripEstimator,
     drawn: Arc<PageDrawn>,
     /// The user armed for the exhibition, and nothing has ended that since.
+    overshoot: OvershootMap,
     permitted: bool,
     phase: Phase,
     motion: Playback,
@@ -178,6 +182,7 @@ impl ExhibitRun {
             grip: start.grip,
             drawn: start.drawn,
             permitted: false,
+            overshoot: start.overshoot,
             phase: Phase::Halted(HaltReason::NotArmed),
             motion: Playback::None,
             playing: None,
@@ -537,6 +542,8 @@ impl ExhibitRun {
                     grip: self.grip.clone(),
                 };
                 self.motion = Playback::Plays;
+                    overshoot: self.overshoot.clone(),
+                    force_limit: self.plan.limits.force,
                 self.playing = Some(Playing::new(epoch, start, now));
                 None
             }
@@ -579,6 +586,10 @@ impl Program for ExhibitRun {
 
     fn armed(&mut self, answer: Result<ArmEpoch, ArmRefusal>) -> Option<Order> {
         // A halt or a fault withdraws the request.
+    fn rates(&self) -> Option<PollRates> {
+        self.playing.as_ref().and_then(Playing::rates)
+    }
+
         if !std::mem::take(&mut self.is_arming) {
             return None;
         }

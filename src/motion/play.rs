@@ -2,19 +2,22 @@
 //! another party moves the hand.
 
 use crate::hand::gap::Gap;
-use crate::hand::grip::GripEstimator;
+use crate::hand::grip::{GripEstimator, Tightened};
+use crate::hand::overshoot::OvershootMap;
 use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Dof, Groups, HandSample, Moment, PerDof, Setpoints, Target,
+    Angle, ArmEpoch, Dof, Force, Groups, HandSample, Moment, PerDof, Setpoints, Target,
 };
-use crate::link::LinkHandle;
+use crate::link::{ArmRequest, LinkHandle, PollRates};
 use crate::motion::drive::{Armed, drive};
+use crate::motion::hold::{self, HoldClose, HoldEnd, HoldStart, HoldView};
+use crate::motion::hosted_hold::{HostedHold, stay};
 use crate::motion::program::{AfterAbort, Ended, Order, Program, Progress, Seen};
 use crate::poses::player::{PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView, Player, ReactionCue};
 use crate::poses::reaction::TouchWatch;
 use crate::poses::way::Targets;
 use crate::record::Abort;
 use futures::stream::poll_fn;
-use std::convert::Infallible;
+use std::time::Duration;
 use tokio::sync::mpsc;
 
 /// Settings with which a sequence starts.
@@ -28,6 +31,10 @@ pub struct PlayStart {
     pub locked: PerDof<bool>,
     /// Grip estimate from the readings so far.
     pub grip: GripEstimator,
+    /// Overshoot measured on this hand.
+    pub overshoot: OvershootMap,
+    /// Highest force threshold of a hold.
+    pub force_limit: Force,
 }
 
 /// User input while a sequence runs.
@@ -43,8 +50,17 @@ pub enum PlayCommand {
     Lock(PerDof<bool>),
 }
 
-/// Progress of a sequence.
-pub type PlayProgress = Progress<PlayView, Infallible>;
+/// Progress of a sequence, and of the hold of its step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlayingView {
+    /// The step.
+    pub play: PlayView,
+    /// The hold; `None` while there is none.
+    pub hold: Option<HoldView>,
+}
+
+/// Progress of a sequence; its events are the fingers that pressed harder in a hold.
+pub type PlayProgress = Progress<PlayingView, Tightened>;
 
 /// Plays a sequence to its end.
 pub async fn play(
@@ -79,6 +95,10 @@ pub(crate) struct Playing {
     epoch: ArmEpoch,
     locked: PerDof<bool>,
     grip: GripEstimator,
+    overshoot: OvershootMap,
+    force_limit: Force,
+    /// The hold of the current step, and when the step began.
+    hold: Option<(Moment, HostedHold)>,
 }
 
 impl Playing {
@@ -95,6 +115,9 @@ impl Playing {
             epoch,
             locked: start.locked,
             grip: start.grip,
+            overshoot: start.overshoot,
+            force_limit: start.force_limit,
+            hold: None,
         }
     }
 
@@ -107,25 +130,29 @@ impl Playing {
 impl Program for Playing {
     type Input = PlayCommand;
     type Outcome = PlayEnd;
-    type View = PlayView;
-    type Event = Infallible;
+    type View = PlayingView;
+    type Event = Tightened;
     const AFTER_ABORT: AfterAbort = AfterAbort::Nothing;
 
     fn input(&mut self, command: PlayCommand, seen: &Seen<'_>) -> Option<Order> {
         match command {
-            PlayCommand::Pause if self.player.pause() => return self.hold_here(seen),
+            PlayCommand::Pause if self.player.pause() => return self.rest_here(seen),
             PlayCommand::Pause => {}
             PlayCommand::Resume(pace) => self.player.resume(pace, seen.now),
+    fn rates(&self) -> Option<PollRates> {
+        self.hold.as_ref().map(|_| hold::RATES)
+    }
+
             PlayCommand::End => {
                 self.player.end(Ok(PlayEnd::Person));
-                return self.hold_here(seen);
+                return self.rest_here(seen);
             }
             PlayCommand::Lock(locked) => self.locked = locked,
         }
         None
     }
 
-    fn read(&mut self, sample: &HandSample, fresh: Groups, _now: Moment) {
+    fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         let read = sample.newest(fresh).unwrap_or_default();
         self.grip.apply(sample, fresh, read);
     }
@@ -133,9 +160,18 @@ impl Program for Playing {
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
         let angles = seen.angles()?.value;
         // A locked joint never arrives and is not waited for: it counts as being at its target.
+        if let Some((_, hold)) = &mut self.hold {
+            hold.read(sample, fresh, now);
+        }
         let targets = self.player.targets();
         let at = PerDof::from_fn(|dof| {
             let target = targets[dof].filter(|_| self.locked[dof]).map(Angle::get);
+        if let PlayPhase::Holding { since } = self.player.view().phase
+            && !self.lacks_a_joint()
+        {
+            return self.hold_on(since, seen);
+        }
+        self.hold = None;
             Some(target.unwrap_or_else(|| angles[dof].raw()))
         });
         let grip = self.grip.known(seen.status.is_believed(), seen.now);
@@ -164,8 +200,15 @@ impl Program for Playing {
         self.player.end(Err(why));
     }
 
-    fn view(&self, _now: Moment) -> PlayView {
-        self.player.view()
+    fn view(&self, now: Moment) -> PlayingView {
+        PlayingView {
+            play: self.player.view(),
+            hold: self.hold.as_ref().map(|(_, hold)| hold.view(now)),
+        }
+    }
+
+    fn event(&mut self) -> Option<Tightened> {
+        self.hold.as_mut()?.1.event()
     }
 
     fn ended(&self) -> Option<Ended<PlayEnd>> {
@@ -189,6 +232,60 @@ impl Playing {
         let fresh_for = seen.status.fresh_for();
         let Some(reacting) = &mut self.reaction else {
             return;
+    /// Advances the hold of the step. If nothing is held, the sequence ends.
+    fn hold_on(&mut self, since: Moment, seen: &Seen<'_>) -> Option<Order> {
+        if self.hold.as_ref().is_none_or(|(begun, _)| *begun != since) {
+            self.hold = Some((since, self.new_hold(seen.now)?));
+        }
+        let (_, hold) = self.hold.as_mut()?;
+        let sent = hold.tick(seen, &self.locked);
+        match hold.end() {
+            None => {}
+            Some(HoldEnd::Held) => self.player.held(seen.now),
+            Some(HoldEnd::Nothing | HoldEnd::Lost | HoldEnd::Late) => {
+                let grip = self.grip.known(seen.status.is_believed(), seen.now);
+                self.player.end(Ok(PlayEnd::NotHolding(grip.grasp.state)));
+            }
+        }
+        sent.map(Order::Set)
+    }
+
+    /// The hold of the current step.
+    fn new_hold(&mut self, now: Moment) -> Option<HostedHold> {
+        let cue = self.player.cue()?;
+        self.grip.judge_by(cue.thresholds.unwrap_or_default());
+        let moves = cue.targets.iter().any(|(_, to)| to.is_some());
+        let start = HoldStart {
+            close: match cue.gap {
+                Some(gap) => HoldClose::Pinch(gap),
+                None if moves => HoldClose::To(cue.targets),
+                None => HoldClose::TakeOver,
+            },
+            forces: cue.hold?,
+            duration: Some(cue.dwell).filter(|dwell| *dwell < Duration::MAX),
+            reading_per_g: PerDof::splat(1.0),
+            locked: self.locked,
+            overshoot: self.overshoot.clone(),
+            grip: self.grip.clone(),
+        };
+        let limits = ArmRequest {
+            speed: PerDof::splat(cue.speed),
+            force: PerDof::splat(self.force_limit),
+        };
+        Some(HostedHold::new(self.epoch, start, limits, now))
+    }
+
+    /// As [`Self::hold_here`]; a hand that holds an object keeps its targets, and so the object.
+    fn rest_here(&mut self, seen: &Seen<'_>) -> Option<Order> {
+        let hold = self.hold.take();
+        let is_holding = hold.is_some_and(|(_, hold)| hold.is_holding(seen.now));
+        if is_holding {
+            None
+        } else {
+            self.hold_here(seen)
+        }
+    }
+
         };
         for (finger, tip) in seen.sample.tactile.iter() {
             let fresh = tip.filter(|tip| tip.age(seen.now) <= fresh_for);
@@ -216,10 +313,9 @@ impl Playing {
 
     /// Sets the targets of the free joints to their measured angles, if those are fresh.
     fn hold_here(&self, seen: &Seen<'_>) -> Option<Order> {
-        let pose = seen.angles()?.value.map(AngleReading::hold).all()?;
-        let mut setpoints = Setpoints::none(self.epoch);
-        for (dof, at) in self.free(&pose.map(Some)) {
-            setpoints.angle[dof] = Some(Target::Go(at));
+        let mut setpoints = stay(self.epoch, seen)?;
+        for (dof, to) in setpoints.angle.iter_mut() {
+            *to = to.filter(|_| !self.locked[dof]);
         }
         Some(Order::Set(setpoints))
     }

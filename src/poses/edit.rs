@@ -1,6 +1,7 @@
 //! User edits of the library. Every edit keeps it consistent: names are unique, and steps name existing poses.
 
 use crate::hand::gap::Gap;
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::library::{
     ENTRIES_MAX, EntryId, LibraryPose, Millis, PoseId, PoseLibrary, Reaction, ReactionId,
@@ -24,6 +25,8 @@ pub enum PoseEdit {
     Speed(Speed),
     /// Force threshold of recall.
     Force(Force),
+    /// Forces of the hold in which it ends; `None` for none.
+    Hold(Option<HoldForces>),
     /// Moves it to this position, from 0; the poses between shift.
     Move(usize),
     /// Inserts a copy after it.
@@ -43,6 +46,8 @@ pub enum SequenceEdit {
     Add(PoseId),
     /// Appends a step with a grip by size.
     AddGap(Gap),
+    /// Appends a step that holds what the hand has.
+    AddHold(HoldForces),
     /// Removes a step.
     Remove(usize),
     /// Moves a step from one position to another; the steps between shift.
@@ -241,6 +246,7 @@ impl PoseLibrary {
             }
             PoseEdit::Speed(speed) => pose.speed = speed,
             PoseEdit::Force(force) => pose.force = force,
+            PoseEdit::Hold(forces) => pose.hold = forces,
             PoseEdit::Move(to) => put(&mut self.poses, at, to),
             PoseEdit::Duplicate => self.duplicate(at),
             PoseEdit::Delete => {
@@ -283,7 +289,7 @@ impl PoseLibrary {
         };
         let speed = match &edit {
             SequenceEdit::Add(pose) => self.pose(*pose).map(|pose| pose.speed),
-            SequenceEdit::AddGap(_) => Some(Speed::GENTLE),
+            SequenceEdit::AddGap(_) | SequenceEdit::AddHold(_) => Some(Speed::GENTLE),
             _ => None,
         };
         let Some(sequence) = self.sequences.iter_mut().find(|own| own.id == id) else {
@@ -299,6 +305,7 @@ impl PoseLibrary {
                 let force = Force::GENTLE;
                 sequence.push(StepGoal::Gap { gap, force }, speed);
             }
+            SequenceEdit::AddHold(forces) => sequence.push(StepGoal::Hold(forces), speed),
             SequenceEdit::Remove(at) if at < sequence.steps.len() => {
                 sequence.steps.remove(at);
             }
@@ -331,6 +338,7 @@ impl SequenceStep {
             dwell: Millis::DWELL,
             limit: Millis::LIMIT,
             until: None,
+            hold: None,
         }
     }
 }
@@ -350,6 +358,7 @@ impl LibraryPose {
             leave: PerDof::splat(false),
             speed: Speed::GENTLE,
             force: Force::GENTLE,
+            hold: None,
             others: toml::Table::new(),
         }
     }

@@ -1,6 +1,7 @@
 //! The library as TOML, version 1 (assets/manual/files.md). A file is accepted as a whole or rejected; unknown keys are preserved.
 
 use crate::hand::gap::Gap;
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::poses::grip_row::{GripRow, ThresholdsRow, read_thresholds, thresholds_row, unplaced};
 use crate::poses::library::{
@@ -49,6 +50,8 @@ struct PoseRow {
     grip: Option<GripRow>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     grip_thresholds: Option<ThresholdsRow>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    hold: Option<HoldForces>,
     #[serde(flatten)]
     others: toml::Table,
 }
@@ -80,7 +83,7 @@ struct SequenceRow {
     others: toml::Table,
 }
 
-/// A step goes to a pose, or to a grip by size with its force. Unknown keys are rejected, since ignoring one would change the step.
+/// A step goes to a pose, or to a grip by size with its force, or holds what the hand has. Unknown keys are rejected, since ignoring one would change the step.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StepRow {
@@ -95,6 +98,8 @@ struct StepRow {
     grip: Option<GripRow>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     until: Option<UntilRow>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    hold: Option<HoldForces>,
 }
 
 /// Condition that ends a step. Unknown grips are rejected, since a step that does not wait is a different one.
@@ -168,15 +173,20 @@ fn pose_row(pose: &LibraryPose) -> PoseRow {
         }),
         grip: pose.gap.map(GripRow::of),
         grip_thresholds: pose.thresholds.as_ref().map(thresholds_row),
+        hold: pose.hold,
         others: pose.others.clone(),
     }
 }
 
 fn sequence_row(library: &PoseLibrary, sequence: &Sequence) -> SequenceRow {
     let steps = sequence.steps.iter().filter_map(|step| {
-        let (pose, gap) = match step.goal {
-            StepGoal::Pose(id) => (Some(unplaced(library.pose(id)?.name.clone())), None),
-            StepGoal::Gap { gap, force } => (None, Some((gap, force))),
+        let (pose, gap, hold) = match step.goal {
+            StepGoal::Pose(id) => {
+                let name = library.pose(id)?.name.clone();
+                (Some(unplaced(name)), None, step.hold)
+            }
+            StepGoal::Gap { gap, force } => (None, Some((gap, force)), step.hold),
+            StepGoal::Hold(forces) => (None, None, Some(forces)),
         };
         Some(unplaced(StepRow {
             pose,
@@ -190,6 +200,7 @@ fn sequence_row(library: &PoseLibrary, sequence: &Sequence) -> SequenceRow {
                 retries: until.retries,
             }),
             grip: gap.map(|(gap, _)| GripRow::of(gap)),
+            hold,
         }))
     });
     SequenceRow {
@@ -321,6 +332,7 @@ impl PoseReader<'_> {
             leave: PerDof::from_fn(|dof| leave.contains(&dof)),
             speed: row.speed,
             force: row.force,
+            hold: row.hold,
             others: row.others,
         });
         Ok(())
@@ -410,8 +422,16 @@ impl PoseReader<'_> {
             (Some(_), Some(_), _) => return wrong("grip", FileCause::Both { other: "pose" }),
             (Some(_), None, Some(_)) => return wrong("force", FileCause::Both { other: "pose" }),
             (None, Some(_), None) => return wrong("force", FileCause::Missing),
+            (None, None, Some(_)) if row.hold.is_some() => {
+                return wrong("force", FileCause::Both { other: "hold" });
+            }
+            (None, None, None) if let Some(forces) = row.hold => StepGoal::Hold(forces),
             (None, None, _) => return wrong("pose", FileCause::Missing),
         };
+        if row.hold.is_some() && row.until.is_some() {
+            return wrong("until", FileCause::Both { other: "hold" });
+        }
+        let is_hold = matches!(goal, StepGoal::Hold(_));
         Ok(SequenceStep {
             goal,
             speed: row.speed,
@@ -423,6 +443,7 @@ impl PoseReader<'_> {
                     retries: until.retries,
                 },
             }),
+            hold: row.hold.filter(|_| !is_hold),
         })
     }
 }

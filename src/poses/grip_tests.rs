@@ -382,7 +382,7 @@ fn a_pose_by_size_is_edited_by_its_gap_and_its_angles_follow() {
     let gaps: Vec<_> = goals
         .map(|goal| match goal {
             StepGoal::Gap { gap, .. } => gap.mm(),
-            StepGoal::Pose(_) => f32::NAN,
+            StepGoal::Pose(_) | StepGoal::Hold(_) => f32::NAN,
         })
         .collect();
     assert_eq!(gaps, [30.0, 20.0], "grips by size need no pose");

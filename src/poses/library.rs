@@ -2,6 +2,7 @@
 
 use crate::hand::gap::Gap;
 use crate::hand::grip::GripThresholds;
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::{Angle, Force, PerDof, Speed};
 use crate::poses::reaction::TouchForce;
 use serde::{Deserialize, Serialize};
@@ -216,6 +217,8 @@ pub struct LibraryPose {
     pub speed: Speed,
     /// Force threshold of the joints that move.
     pub force: Force,
+    /// Forces of the hold in which it ends; `None` for none.
+    pub hold: Option<HoldForces>,
     /// Keys of a newer version, preserved.
     pub others: toml::Table,
 }
@@ -262,6 +265,8 @@ pub enum StepGoal {
         /// Force threshold of the joints.
         force: Force,
     },
+    /// What the hand holds, held between these forces.
+    Hold(HoldForces),
 }
 
 impl StepGoal {
@@ -271,18 +276,21 @@ impl StepGoal {
     }
 }
 
-/// One step: a pose, or a grip by size.
+/// One step: a pose, a grip by size, or a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SequenceStep {
     pub goal: StepGoal,
     /// Speed of the motion; the pose's own speed applies when it is recalled alone.
     pub speed: Speed,
-    /// Time at the pose before the next step.
+    /// Time at the pose, or of the hold, before the next step.
     pub dwell: Millis,
     /// A pose not reached after this time counts as reached.
     pub limit: Millis,
     /// The grip to wait for before the dwell; `None` for none.
     pub until: Option<UntilHolding>,
+    /// Forces of the hold in which a pose or a grip by size ends, which then waits for no other grip; `None` for those of the pose, if
+    /// it has any.
+    pub hold: Option<HoldForces>,
 }
 
 /// Poses played in order.

@@ -16,4 +16,6 @@ pub use crate::poses::wish::{Play, Preset};
 #[cfg(test)]
 mod grip_tests;
 #[cfg(test)]
+mod hold_tests;
+#[cfg(test)]
 mod tests;

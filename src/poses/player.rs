@@ -2,6 +2,7 @@
 
 use crate::hand::gap::Gap;
 use crate::hand::grip::{GripEstimate, GripState, GripThresholds};
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::{Angle, Dof, Force, Moment, PerDof, Speed};
 use crate::poses::library::{
     EntryId, LibraryPose, Millis, PoseLibrary, SequenceId, SequenceStep, StepGoal, UntilHolding,
@@ -39,6 +40,9 @@ pub struct Cue {
     pub until: Option<UntilHolding>,
     /// Thresholds of the grip estimate; `None` for the defaults.
     pub thresholds: Option<GripThresholds>,
+    /// Forces of the hold that closes to the targets and lasts for the dwell, for ever if that is the longest duration. Without targets
+    /// it takes over what the hand holds. The hold has its own speeds, at most `speed`, and its own thresholds.
+    pub hold: Option<HoldForces>,
 }
 
 /// Steps of a sequence in its current version.
@@ -57,11 +61,12 @@ impl Cue {
             gap: pose.gap,
             speed: pose.speed,
             force: pose.force,
-            dwell: Duration::ZERO,
+            dwell: pose.hold.map_or(Duration::ZERO, |_| Duration::MAX),
             // A grip that opens first and counts as reached too early would not close.
             limit: pose.gap.map_or(limit, |_| pose.speed.stroke() + SPARE),
             until: None,
             thresholds: pose.thresholds,
+            hold: pose.hold,
         }
     }
 
@@ -73,6 +78,15 @@ impl Cue {
             speed,
             force,
             ..Self::of(&pose)
+        }
+    }
+
+    /// A hold of what the hand has.
+    fn of_hold(forces: HoldForces) -> Self {
+        Self {
+            targets: PerDof::splat(None),
+            hold: Some(forces),
+            ..Self::of(&LibraryPose::at(PerDof::splat(Angle::MAX)))
         }
     }
 
@@ -144,8 +158,10 @@ impl PoseLibrary {
         let cue = match step.goal {
             StepGoal::Pose(pose) => Cue::of(self.pose(pose)?),
             StepGoal::Gap { gap, force } => Cue::of_gap(gap, step.speed, force),
+            StepGoal::Hold(forces) => Cue::of_hold(forces),
         };
         Some(Cue {
+            hold: step.hold.or(cue.hold),
             speed: step.speed,
             dwell: step.dwell.duration(),
             limit: step.limit.duration(),
@@ -167,10 +183,17 @@ impl PoseLibrary {
             EntryId::Sequence(id) => plan(cues(self, id), self.sequence(id)?.looped, None),
             EntryId::Reaction(id) => {
                 let reaction = self.reaction(id)?;
-                let mut rest = Cue::of(self.pose(reaction.rest)?);
+                // Fingers that answer a touch hold nothing.
+                let pose = |id| {
+                    Some(Cue {
+                        hold: None,
+                        ..Cue::of(self.pose(id)?)
+                    })
+                };
+                let mut rest = pose(reaction.rest)?;
                 rest.dwell = Duration::MAX;
                 let touched = ReactionCue {
-                    touched: Cue::of(self.pose(reaction.touched)?),
+                    touched: pose(reaction.touched)?,
                     threshold: reaction.threshold,
                 };
                 plan(vec![rest], false, Some(touched))
@@ -186,7 +209,7 @@ pub enum PlayEnd {
     Finished,
     /// The user ended it.
     Person,
-    /// The grip that a step waited for did not occur in time; this was the grip then.
+    /// The grip that a step waited for did not occur in time, or its hold ended early; this was the grip then.
     NotHolding(GripState),
     /// A joint that the grip by size needs is locked.
     Locked,
@@ -201,6 +224,8 @@ pub enum PlayPhase {
     Waiting { since: Moment },
     /// The hand closed on nothing, and opens to close again.
     Opening { since: Moment },
+    /// Closing for a hold, or holding, until [`Player::held`].
+    Holding { since: Moment },
     /// At a pose.
     Dwelling { since: Moment },
     /// Paused by the user, or the single requested step is done.
@@ -261,19 +286,21 @@ pub struct Player {
 impl Player {
     /// Starts with the first step. Without steps it ends immediately.
     pub fn start(cues: Vec<Cue>, looped: bool, pace: PlayMode, now: Moment) -> Self {
-        let mut view = PlayView::first(now);
-        if cues.is_empty() {
-            view.phase = PlayPhase::Ended(Ok(PlayEnd::Finished));
-        }
-        Self {
+        let mut player = Self {
             parts: VecDeque::new(),
-            due: !cues.is_empty(),
+            due: false,
             cues,
             looped,
             pace,
-            view,
+            view: PlayView::first(now),
             arrived: false,
+        };
+        if player.cues.is_empty() {
+            player.view.phase = PlayPhase::Ended(Ok(PlayEnd::Finished));
+        } else {
+            player.begin(now);
         }
+        player
     }
 
     /// Targets of the current step.
@@ -417,8 +444,16 @@ impl Player {
 
     fn dwelling(&mut self, since: Moment, now: Moment) {
         let dwell = self.cue().map(|cue| cue.dwell);
-        if dwell.is_some_and(|dwell| now.since(since) < dwell) {
-            return;
+        if !dwell.is_some_and(|dwell| now.since(since) < dwell) {
+            self.step_done(now);
+        }
+    }
+
+    /// Notes that the hold of the step has lasted for its time.
+    pub fn held(&mut self, now: Moment) {
+        if matches!(self.view.phase, PlayPhase::Holding { .. }) {
+            self.arrived = true;
+            self.step_done(now);
         }
         match self.pace {
             PlayMode::Through => self.advance(now),
@@ -431,6 +466,9 @@ impl Player {
         if next < self.cues.len() {
             self.view.at = next;
         } else if self.looped {
+    }
+
+    fn step_done(&mut self, now: Moment) {
             self.view.at = 0;
         } else {
             self.view.phase = PlayPhase::Ended(Ok(PlayEnd::Finished));
@@ -442,8 +480,12 @@ impl Player {
 
     fn begin(&mut self, now: Moment) {
         self.parts.clear();
-        self.view.phase = PlayPhase::Moving { since: now };
-        self.due = true;
+        self.due = !self.cue().is_some_and(|cue| cue.hold.is_some());
+        self.view.phase = if self.due {
+            PlayPhase::Moving { since: now }
+        } else {
+            PlayPhase::Holding { since: now }
+        };
         self.arrived = false;
     }
 
@@ -465,6 +507,7 @@ impl Player {
     /// Resumes: to the same pose if it was not reached, else to the next one.
     pub fn resume(&mut self, pace: PlayMode, now: Moment) {
         if !self.is_paused() {
+                | PlayPhase::Holding { .. }
             return;
         }
         self.pace = pace;

@@ -188,6 +188,7 @@ fn cue(angle: i16) -> Cue {
         limit: Duration::from_millis(1000),
         until: None,
         thresholds: None,
+        hold: None,
     }
 }
 

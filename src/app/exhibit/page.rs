@@ -10,6 +10,7 @@ use crate::app::settings::Language;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
 use crate::exhibit::stage::{ExhibitStage, ExhibitView, ExhibitWish};
 use crate::hand::Moment;
+use crate::hand::overshoot::OvershootMap;
 use crate::motion::exhibit;
 use crate::motion::program::Progress;
 use crate::store::{Saver, calendar};
@@ -36,6 +37,7 @@ impl ExhibitState {
             locked: hand.controls.locked(),
             seen: hand.readings.sample,
             grip: hand.readings.grip.clone(),
+            overshoot: OvershootMap::clone(&hand.overshoot.map),
             clock: env.clock,
             drawn: Arc::default(),
         };

@@ -71,6 +71,14 @@ pub(crate) struct HoldNews {
     pub(crate) end: Option<HoldEnded>,
 }
 
+impl HoldNews {
+    /// Notes a newer state of a hold.
+    pub(crate) fn see(&mut self, before: Option<&HoldView>, now: &HoldView) {
+        let is_short = |view: &HoldView| view.phase == HoldPhase::CannotHold;
+        self.cannot_hold |= is_short(now) && !before.is_some_and(is_short);
+    }
+}
+
 impl HoldMotion {
     /// Starts a hold.
     pub(crate) fn begin(
@@ -161,8 +169,7 @@ impl HoldMotion {
                     hold: view,
                     confirming,
                 }) => {
-                    let short = HoldPhase::CannotHold;
-                    news.cannot_hold |= view.phase == short && self.view.phase != short;
+                    news.see(Some(&self.view), &view);
                     (self.view, self.confirming) = (view, confirming);
                 }
                 Progress::Sent(setpoints) => news.sent.push(setpoints),

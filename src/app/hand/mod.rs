@@ -37,8 +37,9 @@ use crate::app::settings::Settings;
 use crate::app::slot::{HandLabel, SlotId, place_name};
 use crate::app::trials::{HandOvershoot, StartRefusal};
 use crate::hand::kinematics::Side;
+use crate::hand::overshoot::OvershootMap;
 use crate::hand::{
-    Angle, ArmEpoch, Dof, Gesture, GestureRoute, HandCommand, Moment, PerDof, Setpoints,
+    Angle, ArmEpoch, Dof, Force, Gesture, GestureRoute, HandCommand, Moment, PerDof, Setpoints,
 };
 use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
@@ -487,7 +488,9 @@ impl Hand {
         let entry = plan.entry;
         self.take_over();
         for cue in plan.cues() {
-            self.controls.override_limits(&cue.targets);
+            // A hold sets speeds and thresholds of whatever joints hold the object.
+            let any = cue.hold.map(|_| PerDof::splat(Some(Angle::MAX)));
+            self.controls.override_limits(&any.unwrap_or(cue.targets));
         }
         let Some(open) = &mut self.connection.open else {
             return false;
@@ -498,6 +501,8 @@ impl Hand {
             pace,
             locked: self.controls.locked(),
             grip: self.readings.grip.clone(),
+            overshoot: OvershootMap::clone(&self.overshoot.map),
+            force_limit: Force::MAX,
         };
         let armed = Armed {
             epoch,
@@ -513,6 +518,7 @@ impl Hand {
         self.running.0 = Some(MotionRun::Sequence(SequenceRun {
             entry,
             view: PlayView::first(now),
+            hold: None,
             commands: Some(commands),
             task: Some(task),
             thresholds,

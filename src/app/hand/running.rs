@@ -2,13 +2,14 @@
 
 use crate::app::checkup::CheckupRun;
 use crate::app::env::running::Running;
-use crate::app::hand::hold::HoldMotion;
+use crate::app::hand::hold::{HoldMotion, HoldNews};
 use crate::app::inputs::FollowRun;
 use crate::app::trials::{SeriesPlan, SeriesRun};
 use crate::checkup::CheckupPlan;
+use crate::hand::Moment;
 use crate::hand::grip::GripThresholds;
-use crate::hand::{Moment, Setpoints};
 use crate::link::Owner;
+use crate::motion::hold::HoldView;
 use crate::motion::play::{PlayCommand, PlayProgress};
 use crate::motion::program::{Ended, Progress};
 use crate::poses::library::EntryId;
@@ -146,6 +147,8 @@ pub struct SequenceRun {
     pub entry: EntryId,
     /// Current progress.
     pub view: PlayView,
+    /// The hold of the current step; `None` while there is none.
+    pub hold: Option<HoldView>,
     /// `None` once the user moves the hand in another way.
     pub(crate) commands: Option<mpsc::Sender<PlayCommand>>,
     pub(crate) task: Option<Running<PlayProgress, Ended<PlayEnd>>>,
@@ -157,6 +160,11 @@ impl SequenceRun {
     /// True while it may send setpoints.
     pub const fn is_running(&self) -> bool {
         !matches!(self.view.phase, PlayPhase::Ended(_))
+    }
+
+    /// True while a hold of it runs.
+    pub const fn holds(&self) -> bool {
+        matches!(self.view.phase, PlayPhase::Holding { .. })
     }
 
     /// True while it waits for the user.
@@ -190,18 +198,25 @@ impl SequenceRun {
         }
     }
 
-    /// Applies the progress of its task and returns the setpoints sent; none after it lost control of the hand.
-    pub(crate) fn news(&mut self) -> Vec<Setpoints> {
+    /// Applies the progress of its task; none after it lost control of the hand.
+    pub(crate) fn news(&mut self) -> HoldNews {
+        let mut news = HoldNews::default();
         let Some(task) = &mut self.task else {
-            return Vec::new();
+            return news;
         };
         let (steps, end) = task.news();
         let moves = self.commands.is_some();
-        let mut sent = Vec::new();
-        for (_, step) in steps.into_iter().filter(|_| moves) {
+        for (at, step) in steps.into_iter().filter(|_| moves) {
             match step {
-                Progress::View(view) => self.view = view,
-                Progress::Sent(setpoints) => sent.push(setpoints),
+                Progress::View(view) => {
+                    self.view = view.play;
+                    if let Some(hold) = view.hold {
+                        news.see(self.hold.as_ref(), &hold);
+                    }
+                    self.hold = view.hold;
+                }
+                Progress::Sent(setpoints) => news.sent.push(setpoints),
+                Progress::Event(tightened) => news.tightened.push((at, tightened)),
             }
         }
         if let Some(end) = end {
@@ -209,7 +224,8 @@ impl SequenceRun {
             if self.is_running() {
                 self.view.phase = PlayPhase::Ended(end);
             }
+            self.hold = None;
         }
-        sent
+        news
     }
 }

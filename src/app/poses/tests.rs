@@ -92,7 +92,7 @@ fn a_pose_and_a_step_go_to_a_place_and_those_between_make_room() {
         let steps = sequence.steps.iter();
         let pose = |goal| match goal {
             StepGoal::Pose(id) => Some(id),
-            StepGoal::Gap { .. } => None,
+            StepGoal::Gap { .. } | StepGoal::Hold(_) => None,
         };
         steps.filter_map(|step| pose(step.goal)).collect()
     };

@@ -3,7 +3,7 @@
 use crate::app::checkup::{CheckupRun, files};
 use crate::app::env::Ctx;
 use crate::app::hand::Hand;
-use crate::app::hand::hold::HoldMotion;
+use crate::app::hand::hold::{HoldMotion, HoldNews};
 use crate::app::hand::running::SequenceRun;
 use crate::app::hand::running::{AskedSeries, MotionRun};
 use crate::app::notices::NoticeKind;
@@ -39,9 +39,8 @@ pub(super) struct Shared<'a> {
 pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) {
     hand.apply_news(&mut ctx.notices, ctx.now);
     let ran = hand.running.sequence().is_some_and(SequenceRun::is_running);
-    let played = hand.running.sequence_mut().map(SequenceRun::news);
-    if let Some(sent) = played {
-        sent.iter().for_each(|setpoints| hand.sent(setpoints));
+    if let Some(news) = hand.running.sequence_mut().map(SequenceRun::news) {
+        apply_hold_news(hand, &news, ctx);
     }
     let thresholds = hand.running.sequence().map(SequenceRun::thresholds);
     hand.readings.grip.judge_by(thresholds.unwrap_or_default());
@@ -56,7 +55,8 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     inputs::tick(hand, shared.settings, shared.poses, ctx);
     hand.need_key(shared.settings.hold_to_run);
     hand.tick_requests(ctx);
-    let is_idle = !hand.running.holds() && hand.connection.idle(ctx.now).is_some();
+    let holds = hand.running.holds() || hand.running.sequence().is_some_and(SequenceRun::holds);
+    let is_idle = !holds && hand.connection.idle(ctx.now).is_some();
     if shared.settings.disarm_idle && is_idle {
         hand.disarm(ctx.now);
         ctx.notify(NoticeKind::IdleDisarmed);
@@ -201,21 +201,26 @@ fn tick_series(hand: &mut Hand, trials: &mut TrialsState, ctx: &mut Ctx<'_>) {
     }
 }
 
-/// Applies the progress of a hold: each finger that pressed harder is a mark.
-fn tick_hold(hand: &mut Hand, ctx: &mut Ctx<'_>) {
-    let Some(news) = hand.running.hold_mut().map(HoldMotion::news) else {
-        return;
-    };
+/// Applies the progress of a hold, also of one in a sequence: each finger that pressed harder is a mark.
+fn apply_hold_news(hand: &mut Hand, news: &HoldNews, ctx: &mut Ctx<'_>) {
     news.sent.iter().for_each(|setpoints| hand.sent(setpoints));
-    for (at, tightened) in news.tightened {
-        let mark = MarkKind::Tightened(tightened);
-        record_event(hand, at, EventKind::Hold, mark.words());
-        hand.measured.history.mark(at, mark);
+    for (at, tightened) in &news.tightened {
+        let mark = MarkKind::Tightened(*tightened);
+        record_event(hand, *at, EventKind::Hold, mark.words());
+        hand.measured.history.mark(*at, mark);
     }
     if news.cannot_hold {
         record_event(hand, ctx.now, EventKind::Hold, "cannot hold".into());
         ctx.notify(NoticeKind::CannotHold);
     }
+}
+
+/// Applies the progress of the hold.
+fn tick_hold(hand: &mut Hand, ctx: &mut Ctx<'_>) {
+    let Some(news) = hand.running.hold_mut().map(HoldMotion::news) else {
+        return;
+    };
+    apply_hold_news(hand, &news, ctx);
     let Some(end) = news.end else {
         return;
     };

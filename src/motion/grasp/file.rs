@@ -463,10 +463,10 @@ fn unplaced<T>(value: T) -> Spanned<T> {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may")]
     use super::*;
+    use crate::hand::hold_forces::NoRoom;
     use crate::motion::grasp::confirm::Agreement;
     use crate::motion::grasp::confirmed_file::{add, file_of, of};
     use crate::motion::grasp::doubt::Doubt;
-    use crate::hand::hold_forces::NoRoom;
 
     fn finger(newtons_per_g: Option<f64>) -> GraspFinger {
         GraspFinger {

@@ -4,6 +4,7 @@ use crate::exhibit::file;
 use crate::exhibit::plan::ExhibitPlan;
 use crate::exhibit::stage::{ExhibitEvent, ExhibitStage, ExhibitView, ExhibitWish, HaltReason};
 use crate::hand::grip::GripEstimator;
+use crate::hand::overshoot::OvershootMap;
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Fault, Faults, HandSample, Moment, PerDof, Target,
     TemperatureReading, Timed,
@@ -67,6 +68,7 @@ impl Booth {
             locked,
             seen: HandSample::default(),
             grip: GripEstimator::default(),
+            overshoot: OvershootMap::default(),
             clock: hand.clock,
             drawn: Arc::default(),
         };
@@ -546,6 +548,7 @@ fn a_touch_in_the_moment_of_a_fault_does_not_hang_the_exhibition() {
         locked: PerDof::splat(false),
         seen: HandSample::default(),
         grip: GripEstimator::default(),
+        overshoot: OvershootMap::default(),
         clock: Clock::start(),
         drawn: Arc::clone(&drawn),
     };

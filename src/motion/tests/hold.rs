@@ -98,8 +98,16 @@ impl Hand {
         self.sim.write(address, &bytes, self.now).unwrap();
     }
 
+    /// Setpoints reach it.
+    pub(super) fn set(&mut self, setpoints: &Setpoints) {
+        for write in setpoints.commands().iter().flat_map(HandCommand::writes) {
+            let address = write.span().address;
+            self.sim.write(address, write.bytes(), self.now).unwrap();
+        }
+    }
+
     /// The user closes it before a hold begins; returns the grip estimate.
-    fn close(&mut self, force_g: i16) -> GripEstimator {
+    pub(super) fn close(&mut self, force_g: i16) -> GripEstimator {
         self.write(SPEED_SET.address, PerDof::splat(50));
         self.write(FORCE_SET.address, PerDof::splat(force_g));
         let bent = PerDof::new([100, 100, 100, 100, 100, 1000]);
@@ -182,11 +190,7 @@ impl Bench {
             self.sent.push(sent);
             return;
         };
-        for write in setpoints.commands().iter().flat_map(HandCommand::writes) {
-            let address = write.span().address;
-            let now = self.hand.now;
-            self.hand.sim.write(address, write.bytes(), now).unwrap();
-        }
+        self.hand.set(&setpoints);
         if !setpoints.is_empty() {
             self.sent.push(sent);
         }
@@ -233,7 +237,7 @@ impl Bench {
     }
 }
 
-fn forces() -> HoldForces {
+pub(super) fn forces() -> HoldForces {
     HoldForces::new(Force::nearest(AT_LEAST_G), Force::nearest(AT_MOST_G)).unwrap()
 }
 
@@ -268,6 +272,20 @@ pub(super) fn ball(stiffness: f64) -> Object {
         },
         ..Object::touched_at(contacts)
     }
+}
+
+/// The same, heavier, and pulled once it is lifted.
+pub(super) fn pulled_ball() -> Object {
+    let mut ball = ball(10.0);
+    ball.mass_g = 200.0;
+    ball.loads.pulls = listed(&[PullLoad {
+        at_s: 2.0,
+        force_g: 400.0,
+        direction_deg: 270.0,
+        rise_ms: 300.0,
+        lasts_ms: 1000.0,
+    }]);
+    ball
 }
 
 fn taken_over(object: Object, force_g: i16) -> Bench {

@@ -6,6 +6,7 @@ mod exhibit;
 mod grasp;
 mod grip;
 mod hold;
+mod hold_in_sequence;
 mod move_to;
 mod play;
 mod series;

@@ -3,6 +3,7 @@
 use crate::fake::{Asked, FakeHand, Said, WELL};
 use crate::hand::gap::Gap;
 use crate::hand::grip::GripEstimator;
+use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target};
 use crate::link::Owner;
 use crate::motion::drive::Armed;
@@ -28,6 +29,7 @@ fn cue(angle: i16) -> Cue {
         limit: Duration::from_secs(5),
         until: None,
         thresholds: None,
+        hold: None,
     }
 }
 
@@ -57,6 +59,8 @@ impl Bench {
             pace,
             locked,
             grip: GripEstimator::default(),
+            overshoot: OvershootMap::default(),
+            force_limit: Force::MAX,
         };
         let armed = Armed {
             epoch: ArmEpoch(1),
@@ -120,7 +124,7 @@ impl Bench {
     fn view(&self) -> PlayView {
         let steps = self.steps.lock().unwrap();
         let mut views = steps.iter().rev().filter_map(|step| match step {
-            Progress::View(view) => Some(*view),
+            Progress::View(view) => Some(view.play),
             Progress::Sent(_) | Progress::Event(_) => None,
         });
         views.next().unwrap()

@@ -3,6 +3,7 @@
 use crate::app::action::Action;
 use crate::hand::gap::{Gap, gap_on_path};
 use crate::hand::grip::GripThresholds;
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::{Angle, Dof, Force, Speed};
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{EntryId, LibraryPose, NAME_CHARS_MAX};
@@ -10,7 +11,7 @@ use crate::ui::hand::tile;
 use crate::ui::kit::{Button, Label, NumberField, Pane, TextField};
 use crate::ui::poses::sequence_view::FIRST_GAP_MM;
 use crate::ui::poses::tiles::{shares, start_ui};
-use crate::ui::text::{Text, poses, tune, words};
+use crate::ui::text::{Text, hold, poses, tune, words};
 use crate::ui::theme;
 use egui::{ScrollArea, Ui, vec2};
 
@@ -19,7 +20,7 @@ const TAGS_MAX: usize = 120;
 /// Width of the captions.
 const CAPTION: f32 = 88.0;
 /// Height of all fields below the picture.
-const FIELDS: f32 = 12.0 * (theme::CONTROL + theme::STEP) + 2.0 * theme::CONTROL_LARGE;
+const FIELDS: f32 = 13.0 * (theme::CONTROL + theme::STEP) + 2.0 * theme::CONTROL_LARGE;
 
 /// Draws the editor of one pose.
 pub(crate) fn editor_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
@@ -33,6 +34,7 @@ pub(crate) fn editor_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
             ui.horizontal(|ui| joint_ui(ui, pane, pose, dof));
         }
         ui.horizontal(|ui| limits_ui(ui, pane, pose));
+        ui.horizontal(|ui| hold_ui(ui, pane, pose));
         order_ui(ui, pane, pose);
         ui.vertical_centered_justified(|ui| start_ui(ui, pane, EntryId::Pose(pose.id)));
     });
@@ -149,6 +151,36 @@ fn limits_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
     }
     if let Some(force) = force.and_then(|force| Force::new(force).ok()) {
         change(pane, pose, PoseEdit::Force(force));
+    }
+}
+
+/// Draws the switch to end in a hold, and its forces.
+fn hold_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose) {
+    let look = pane.look;
+    let holds = Button::text(look, poses::ENDS_HOLD).choice(pose.hold.is_some());
+    if holds.ui(ui, look).clicked() {
+        let forces = pane.hand().controls.hold_forces();
+        let forces = pose.hold.is_none().then_some(forces);
+        change(pane, pose, PoseEdit::Hold(forces));
+    }
+    let Some(forces) = pose.hold else {
+        return;
+    };
+    let mut typed = |caption: Text, now: Force| {
+        let text = look.tr(caption);
+        Label::new(text, look.palette.muted).ui(ui);
+        let label = look.tr_with(poses::POSE, text);
+        let range = f64::from(HoldForces::LEAST)..=f64::from(HoldForces::MOST);
+        let field = NumberField::new(&label, look.tip(caption), range);
+        let typed = field.whole_ui(ui, pane, Some(now.get()));
+        typed.map(Force::nearest)
+    };
+    let least = typed(hold::AT_LEAST, forces.at_least());
+    let most = typed(hold::AT_MOST, forces.at_most());
+    if least.is_some() || most.is_some() {
+        let least = least.unwrap_or(forces.at_least());
+        let new = HoldForces::nearest(least, most.unwrap_or(forces.at_most()));
+        change(pane, pose, PoseEdit::Hold(Some(new)));
     }
 }
 

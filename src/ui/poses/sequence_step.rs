@@ -2,6 +2,7 @@
 
 use crate::app::action::Action;
 use crate::hand::gap::{Gap, GripKind};
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::{Angle, Force, PerDof, Speed};
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{
@@ -10,7 +11,7 @@ use crate::poses::library::{
 use crate::ui::hand::tile;
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
 use crate::ui::poses::tiles::shares;
-use crate::ui::text::{Text, main, poses};
+use crate::ui::text::{Text, hold, main, poses};
 use crate::ui::theme;
 use egui::{Align, CursorIcon, Layout, Rect, Ui, UiBuilder, Vec2, vec2};
 use std::ops::RangeInclusive;
@@ -65,10 +66,15 @@ pub(crate) fn step_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, at:
     let mut bottom = line(below, Layout::left_to_right(Align::Min));
     let mut new = *step;
     place_ui(&mut top, pane, sequence, at);
-    until_ui(&mut top, look, at, &mut new);
+    if !matches!(new.goal, StepGoal::Hold(_)) {
+        until_ui(&mut top, look, at, &mut new);
+        hold_ui(&mut top, pane, at, &mut new);
+    }
     numbers_ui(&mut bottom, pane, at, &mut new);
     if let Some((name, angles)) = shown(pane, step.goal) {
-        tile::sign_ui(ui, look, picture, &shares(&angles));
+        if let Some(angles) = angles {
+            tile::sign_ui(ui, look, picture, &shares(&angles));
+        }
         kit::left_ui(&mut top, |ui| handle_ui(ui, look, at, &name));
     }
     if new != *step {
@@ -76,17 +82,18 @@ pub(crate) fn step_ui(ui: &mut Ui, pane: &mut Pane<'_>, sequence: &Sequence, at:
     }
 }
 
-/// Name and angles of a step.
-fn shown(pane: &Pane<'_>, goal: StepGoal) -> Option<(String, PerDof<Angle>)> {
+/// Name and angles of a step; a hold of what the hand has shows no angles.
+fn shown(pane: &Pane<'_>, goal: StepGoal) -> Option<(String, Option<PerDof<Angle>>)> {
     match goal {
         StepGoal::Pose(id) => {
             let pose = pane.state.poses.library.pose(id)?;
-            Some((pose.name.clone(), pose.angles))
+            Some((pose.name.clone(), Some(pose.angles)))
         }
         StepGoal::Gap { gap, .. } => {
             let name = pane.look.tr(poses::kind(GripKind::Pinch));
-            Some((format!("{name} {} mm", gap.mm()), gap.angles()))
+            Some((format!("{name} {} mm", gap.mm()), Some(gap.angles())))
         }
+        StepGoal::Hold(_) => Some((pane.look.tr(hold::TAKE).to_owned(), None)),
     }
 }
 
@@ -139,7 +146,41 @@ fn until_ui(ui: &mut Ui, look: Look, at: usize, step: &mut SequenceStep) {
             Some(_) => None,
             None => Some(UntilHolding::FIRST),
         };
+        step.hold = None;
     }
+}
+
+/// Draws the switch to end in a hold.
+fn hold_ui(ui: &mut Ui, pane: &Pane<'_>, at: usize, step: &mut SequenceStep) {
+    let look = pane.look;
+    let label = named(look, at, poses::ENDS_HOLD);
+    let holds = Button::text(look, poses::ENDS_HOLD).named(&label);
+    if holds.choice(step.hold.is_some()).ui(ui, look).clicked() {
+        step.hold = match step.hold {
+            Some(_) => None,
+            None => Some(pane.hand().controls.hold_forces()),
+        };
+        step.until = None;
+    }
+}
+
+/// Draws the forces of a hold.
+fn forces_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, forces: &mut HoldForces) {
+    let [least, most] = [forces.at_least(), forces.at_most()];
+    let mut grams = |caption: Text, now: Force| {
+        let number = StepNumber {
+            range: f64::from(HoldForces::LEAST)..=f64::from(HoldForces::MOST),
+            ..StepNumber::whole(at, caption, now.get(), HoldForces::MOST)
+        };
+        number.whole_ui(ui, pane).map(Force::nearest)
+    };
+    let typed = (grams(hold::AT_LEAST, least), grams(hold::AT_MOST, most));
+    *forces = match typed {
+        (None, None) => return,
+        (least_typed, most_typed) => {
+            HoldForces::nearest(least_typed.unwrap_or(least), most_typed.unwrap_or(most))
+        }
+    };
 }
 
 /// A number of a step with its caption.
@@ -195,8 +236,18 @@ impl StepNumber {
 fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, step: &mut SequenceStep) {
     if let StepGoal::Gap { gap, force } = &mut step.goal {
         gap_ui(ui, pane, at, gap);
-        let number = StepNumber::whole(at, poses::FORCE, force.get(), Force::MAX.get());
-        set_if_valid(force, number.whole_ui(ui, pane).map(Force::new));
+        if step.hold.is_none() {
+            let number = StepNumber::whole(at, poses::FORCE, force.get(), Force::MAX.get());
+            set_if_valid(force, number.whole_ui(ui, pane).map(Force::new));
+        }
+    }
+    let forces = match &mut step.goal {
+        StepGoal::Hold(forces) => Some(forces),
+        StepGoal::Pose(_) | StepGoal::Gap { .. } => step.hold.as_mut(),
+    };
+    let is_hold = forces.is_some();
+    if let Some(forces) = forces {
+        forces_ui(ui, pane, at, forces);
     }
     let number = StepNumber {
         caption: main::NAME_SPEED,
@@ -208,7 +259,9 @@ fn numbers_ui(ui: &mut Ui, pane: &mut Pane<'_>, at: usize, step: &mut SequenceSt
         set_if_valid(time, number.whole_ui(ui, pane).map(Millis::try_from));
     };
     millis(poses::DWELL, &mut step.dwell);
-    millis(poses::LIMIT, &mut step.limit);
+    if !is_hold {
+        millis(poses::LIMIT, &mut step.limit);
+    }
     if let Some(until) = &mut step.until {
         millis(poses::WITHIN, &mut until.within);
         let number = StepNumber::whole(at, poses::RETRIES, until.retries.get(), Retries::MAX);

@@ -12,7 +12,7 @@ use crate::ui::hand::tile;
 use crate::ui::kit::{self, Button, Label, Pane, TextField, reorder};
 use crate::ui::poses::sequence_step::{ROW, change, step_ui};
 use crate::ui::text::tune::abort as abort_words;
-use crate::ui::text::{panels, poses};
+use crate::ui::text::{hold, panels, poses};
 use crate::ui::theme;
 use egui::{Align, Layout, Panel, ScrollArea, Ui, UiBuilder, vec2};
 use std::time::Duration;
@@ -132,6 +132,10 @@ impl SequenceView {
             let gap = Gap::nearest(FIRST_GAP_MM);
             change(pane, sequence, SequenceEdit::AddGap(gap));
         }
+        if Button::text(look, poses::ADD_HOLD).ui(ui, look).clicked() {
+            let forces = pane.hand().controls.hold_forces();
+            change(pane, sequence, SequenceEdit::AddHold(forces));
+        }
     }
 }
 
@@ -202,6 +206,7 @@ fn state_text(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (Stri
         PlayPhase::Moving { .. } => (poses::SAY_MOVING, palette.armed),
         PlayPhase::Waiting { .. } => (poses::SAY_WAITING, palette.armed),
         PlayPhase::Opening { .. } => (poses::SAY_OPENING, palette.armed),
+        PlayPhase::Holding { .. } => (poses::SAY_HOLDING, palette.armed),
         PlayPhase::Dwelling { .. } => (poses::SAY_DWELLING, palette.armed),
         PlayPhase::Paused => (poses::SAY_PAUSED, palette.warn),
         PlayPhase::Ended(Ok(PlayEnd::Finished)) => (poses::END_FINISHED, palette.ok),
@@ -220,6 +225,9 @@ fn state_text(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (Stri
     let mut words = look.tr(text).to_owned();
     if run.is_running() {
         words = format!("{words} {}", run.view.at + 1);
+    }
+    if let Some(view) = run.hold.as_ref().filter(|_| run.holds()) {
+        words = format!("{words} · {}", hold::state(look, view));
     }
     if run.view.late > 0 {
         words = format!("{words} · {} {}", look.tr(poses::SAY_LATE), run.view.late);

@@ -275,10 +275,15 @@ pub(crate) fn pictured(library: &PoseState, entry: EntryId) -> Option<PerDof<Ang
     match entry {
         EntryId::Pose(id) => pose(id),
         EntryId::Sequence(id) => {
-            let steps = &library.sequence(id)?.steps;
-            match steps.get(steps.len() / 2)?.goal {
+            let goals = library.sequence(id)?.steps.iter().map(|step| step.goal);
+            // A hold of what the hand has is no picture.
+            let goals: Vec<StepGoal> = goals
+                .filter(|goal| !matches!(goal, StepGoal::Hold(_)))
+                .collect();
+            match *goals.get(goals.len() / 2)? {
                 StepGoal::Pose(id) => pose(id),
                 StepGoal::Gap { gap, .. } => Some(gap.angles()),
+                StepGoal::Hold(_) => None,
             }
         }
         EntryId::Reaction(id) => pose(library.reaction(id)?.touched),

@@ -85,6 +85,8 @@ texts! {
     ADD_GRIP: "Add grip by size", "添加按尺寸抓握", "Adds a step that closes thumb and index to a gap, along the path on which their pads meet.", "添加一步：让拇指与食指沿指腹相对的路径合到指定间距。";
     DWELL: "dwell, ms", "停留 ms", "Time at the pose before the next step, milliseconds.", "到达后停留的时间，毫秒。";
     LIMIT: "limit, ms", "限时 ms", "A pose that is not reached within this time counts as reached, milliseconds.", "超过此时间仍未到达时，视为到达，毫秒。";
+    ADD_HOLD: "Add hold", "添加保持", "Adds a step that holds what the hand has, between two forces, for its time.", "添加一步：在两个力之间保持手中的物体，持续设定时间。";
+    ENDS_HOLD: "Ends in a hold", "以保持结束", "Closes slowly to the pose until an object stops the fingers, then holds it between two forces.", "缓慢闭合到该姿态，遇物体停止后在两个力之间保持。";
     UNTIL: "Until holding", "直到握住", "Waits at the pose until the grip shows that something is held; an unknown grip does not count.", "在该姿态等待，直到抓握状态为“握住”；状态未知不算。";
     WITHIN: "within, ms", "时限 ms", "If nothing is held within this time of the pose, the sequence ends and says so, milliseconds.", "到达姿态后超过此时间仍未握住时，序列结束并说明，毫秒。";
     RETRIES: "retries", "重试", "If the hand closes on nothing, it opens and retries, at most this often, 0 to 20.", "空握时张开并重新握，最多这么多次，0 到 20。";
@@ -102,6 +104,7 @@ texts! {
     SAY_MOVING: "On the way to step", "正在前往第几步：";
     SAY_WAITING: "Waits until holding at step", "等待握住，第几步：";
     SAY_OPENING: "Closed on nothing, opens to try again: step", "空握，张开后重试，第几步：";
+    SAY_HOLDING: "Holds at step", "保持，第几步：";
     SAY_DWELLING: "At step", "停留在第几步：";
     SAY_PAUSED: "Paused at step", "暂停于第几步：";
     SAY_DRY: "Dry run, step", "试运行，第几步：";
@@ -113,7 +116,7 @@ texts! {
     END_LOST: "Ended: the link was lost", "已结束：连接断开";
     END_TAKEN: "Ended: moved in another way", "已结束：改为其他操作";
     END_LOCKED: "Ended: a grip by size needs index and thumb, and one of them is locked", "已结束：按尺寸抓握需要食指与拇指，其中有自由度已锁定";
-    END_NOT_HOLDING: "Ended: the hand did not hold anything in time. Grip: {}.", "已结束：未在时限内握住。抓握：{}。";
+    END_NOT_HOLDING: "Ended: the hand is not known to hold anything. Grip: {}.", "已结束：未确认握住物体。抓握：{}。";
     PICTURE: "Picture of the pose", "姿态图";
 
     EXPERT: "For experts: the register that starts a gesture", "高级：手势的启动方式";

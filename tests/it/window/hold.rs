@@ -1,14 +1,20 @@
 //! A hold between two forces in the Live view: its forces, its start, what it says, and how it ends.
 
 use crate::setup::window::{Bench, LARGE};
+use egui::{Key, Role};
 use handscope::app::action::Action;
 use handscope::app::hand::hold::HoldAction;
-use handscope::hand::{Dof, PerDof};
+use handscope::hand::hold_forces::HoldForces;
+use handscope::hand::{Angle, Dof, Force, PerDof};
 use handscope::history::MarkKind;
 use handscope::motion::hold::HoldPhase;
 use handscope::poses::Preset;
+use handscope::poses::edit::LibraryEdit;
+use handscope::poses::library::{LibraryPose, StepGoal};
+use handscope::poses::player::{PlayEnd, PlayPhase};
 use handscope::sim::SimConfig;
 use handscope::sim::object::{Loads, Object, Obstacle, PullLoad, listed};
+use handscope::ui::View;
 
 /// An object near all open fingers, lifted once it is held and pulled then.
 fn pulled() -> Object {
@@ -153,4 +159,109 @@ fn a_hold_that_worked_is_saved_and_held_with_again() {
     let run = bench.state().hand().running.hold().unwrap();
     assert_eq!(run.confirming, None, "it is the same hand");
     assert_eq!(run.view.forces, grasp.forces);
+}
+
+/// The view of poses with one pose that closes, which is open to be edited.
+fn edited() -> Bench {
+    let mut bench = Bench::open(SimConfig::default(), LARGE);
+    bench.wait(1000);
+    bench.hand(|hand, _| hand.set_object(&pulled()));
+    let pose = LibraryPose {
+        name: "Grasp".into(),
+        ..LibraryPose::at(PerDof::splat(Angle::nearest(300)))
+    };
+    bench.act(Action::Library(LibraryEdit::Add(vec![pose])));
+    bench.show(View::Poses);
+    bench.run(100);
+    bench.click("Pose Grasp");
+    bench.run(100);
+    bench
+}
+
+fn enter(bench: &mut Bench, field: &str, text: &str) {
+    bench.type_into(field, text);
+    bench.key(Key::Enter);
+    bench.run(100);
+}
+
+fn forces(least: i16, most: i16) -> HoldForces {
+    HoldForces::new(Force::nearest(least), Force::nearest(most)).unwrap()
+}
+
+#[test]
+fn a_pose_ends_in_a_hold_between_the_forces_that_are_typed() {
+    let mut bench = edited();
+    let hold = |bench: &Bench| bench.state().poses.library.poses[0].hold;
+    assert_eq!(hold(&bench), None);
+    bench.click_button("Ends in a hold");
+    bench.run(100);
+    assert_eq!(hold(&bench), Some(forces(150, 400)));
+    enter(&mut bench, "Pose At most, g", "500");
+    enter(&mut bench, "Pose At least, g", "200");
+    assert_eq!(hold(&bench), Some(forces(200, 500)));
+    bench.click("Arm the hand");
+    bench.run(300);
+    let id = bench.state().poses.library.poses[0].id;
+    bench.act(Action::Recall(id));
+    let phase = |bench: &Bench| {
+        let run = bench.state().hand().running.sequence();
+        run.and_then(|run| run.hold).map(|hold| hold.phase)
+    };
+    bench.until(20_000, |bench| phase(bench) == Some(HoldPhase::Holding));
+    bench.wait(4000);
+    assert_eq!(phase(&bench), Some(HoldPhase::Holding), "until it is ended");
+    bench.click_button("Ends in a hold");
+    bench.run(100);
+    assert_eq!(hold(&bench), None);
+}
+
+#[test]
+fn steps_that_hold_are_added_edited_and_played_and_each_tightening_is_a_mark() {
+    let mut bench = edited();
+    bench.click("Sequences");
+    bench.run(60);
+    bench.click("New sequence");
+    bench.run(60);
+    bench.click_button("Add");
+    bench.click_button("Add hold");
+    bench.run(60);
+    bench.click("Step 1 Until holding");
+    bench.run(60);
+    bench.click("Step 1 Ends in a hold");
+    bench.run(60);
+    enter(&mut bench, "Step 1 At most, g", "450");
+    enter(&mut bench, "Step 1 dwell, ms", "4000");
+    enter(&mut bench, "Step 2 At least, g", "100");
+    let steps = bench.state().poses.library.sequences[0].steps.clone();
+    assert_eq!(
+        (steps[0].hold, steps[0].until),
+        (Some(forces(150, 450)), None)
+    );
+    assert_eq!(steps[1].goal, StepGoal::Hold(forces(100, 400)));
+    assert!(bench.shows("Step 2: Hold what is held"));
+    let last = bench.rect(Role::TextInput, "Step 1 At most, g");
+    assert!(last.right() < LARGE.x, "{last}");
+    bench.click("Arm the hand");
+    bench.run(300);
+    bench.click_button("Start");
+    let run = |bench: &Bench| bench.state().hand().running.sequence().unwrap().view;
+    let holds = |bench: &Bench| {
+        let run = bench.state().hand().running.sequence().unwrap();
+        run.hold
+            .is_some_and(|hold| hold.phase == HoldPhase::Holding)
+    };
+    bench.until(20_000, holds);
+    bench.until(20_000, |bench| run(bench).at == 1);
+    bench.until(20_000, |bench| {
+        run(bench).phase == PlayPhase::Ended(Ok(PlayEnd::Finished))
+    });
+    let history = &bench.state().hand().measured.history;
+    let is_tightened = |kind: &MarkKind| matches!(kind, MarkKind::Tightened(_));
+    assert!(
+        history
+            .marks(0.0, f64::MAX)
+            .any(|mark| is_tightened(&mark.kind))
+    );
+    let pressed = bench.hand(|hand, _| hand.true_loads());
+    assert!(pressed.as_array().iter().all(|g| *g > 50.0), "{pressed:?}");
 }

@@ -270,6 +270,7 @@ fn steps(bench: &Bench) -> Vec<&str> {
     let name = |goal| match goal {
         StepGoal::Pose(id) => library.pose(id).unwrap().name.as_str(),
         StepGoal::Gap { .. } => "grip by size",
+        StepGoal::Hold(_) => "hold",
     };
     steps.map(|step| name(step.goal)).collect()
 }
@@ -397,7 +398,7 @@ fn a_step_is_told_to_wait_for_the_grip_and_says_what_it_waits_for() {
     for said in [
         "Closed on nothing, opens to try again: step 2",
         "Waits until holding at step 2",
-        "Ended: the hand did not hold anything in time. Grip: Empty.",
+        "Ended: the hand is not known to hold anything. Grip: Empty.",
     ] {
         bench.until(9000, |bench| !bench.texts_with(said).is_empty());
     }
