@@ -4,6 +4,7 @@ use crate::exhibit::pin::{BadPin, DIGITS, Pin};
 use crate::exhibit::plan::{
     AttractLoop, BothWords, ExhibitPiece, ExhibitPlan, MotionLimits, TILES, open_plan,
 };
+use crate::hand::hold_forces::HoldForces;
 use crate::hand::{Force, Speed};
 use crate::poses::library::PoseLibrary;
 use crate::poses::starter::starter;
@@ -261,6 +262,15 @@ impl ExhibitReader<'_> {
             if field == "tiles" && pieces.iter().any(|other| other.name == piece.name) {
                 let cause = FileCause::Twice {
                     name: name.get_ref().clone(),
+                };
+                return Err(self.source.blame(name.span(), field, cause));
+            }
+            let is_above = |forces: HoldForces| forces.at_most() > limits.force;
+            if piece.plan.cues().any(|cue| cue.hold.is_some_and(is_above)) {
+                let least = HoldForces::LEAST + HoldForces::ROOM;
+                let cause = FileCause::Value {
+                    got: quoted(name.get_ref()),
+                    allowed: format!("possible with this `force`: a hold needs {least} g"),
                 };
                 return Err(self.source.blame(name.span(), field, cause));
             }

@@ -58,6 +58,29 @@ step = [{ pose = "Close", speed = 900, dwell_ms = 0, limit_ms = 3000, until = { 
 }
 
 #[test]
+fn a_tile_that_holds_holds_within_the_force_of_the_file() {
+    let tiles = FILE.replacen("Fist", "Pull it out", 1);
+    let own = PoseLibrary::default();
+    for (force, want) in [("800", [150, 600]), ("250", [150, 250]), ("100", [40, 100])] {
+        let text = tiles.replacen("force = 700", &format!("force = {force}"), 1);
+        let plan = read(&text, Path::new(""), &own).unwrap();
+        let mut holds = plan.tiles[0].plan.cues().filter_map(|cue| cue.hold);
+        let hold = holds.next().unwrap();
+        let both = [hold.at_least(), hold.at_most()].map(Force::get);
+        assert_eq!(both, want, "{force}");
+    }
+    let refused = error(&tiles.replacen("force = 700", "force = 99", 1));
+    assert_eq!(
+        (refused.line, refused.field.as_deref()),
+        (Some(8), Some("tiles"))
+    );
+    assert!(
+        refused.to_string().contains("a hold needs 100 g"),
+        "{refused}"
+    );
+}
+
+#[test]
 fn every_field_is_taken_and_most_may_be_left_out() {
     let folder = Path::new("booth");
     let plan = read(FILE, folder, &PoseLibrary::default()).unwrap();
@@ -105,7 +128,7 @@ fn every_field_is_taken_and_most_may_be_left_out() {
 #[test]
 fn the_built_in_exhibition_is_whole() {
     let plan = built_in().unwrap();
-    assert_eq!(plan.tiles.len(), 10);
+    assert_eq!(plan.tiles.len(), 11);
     assert!(plan.tiles.iter().all(|tile| !tile.name.zh.is_empty()));
     assert!(plan.tiles.iter().any(|tile| tile.plan.reaction.is_some()));
     assert_eq!(

@@ -122,6 +122,7 @@ impl MotionLimits {
         }
         cue.speed = cue.speed.min(self.speed);
         cue.force = cue.force.min(self.force);
+        cue.hold = cue.hold.map(|forces| forces.limited(self.force));
     }
 }
 

@@ -1,5 +1,6 @@
 //! Stage of an exhibition as its page shows it, user input, and the events of the day's report.
 
+use crate::hand::grip::Tightened;
 use crate::hand::{Fault, Moment};
 use std::time::Duration;
 
@@ -58,6 +59,21 @@ pub enum ExhibitStage {
     Clearing,
 }
 
+/// A piece in which the hand holds what a visitor gives it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ExhibitHold {
+    /// False before the hand holds something.
+    pub is_held: bool,
+    /// The allowed force does not suffice.
+    pub is_short: bool,
+    /// Mean force of the fingers that hold, g.
+    pub force_g: Option<i16>,
+    /// Number of times that a finger pressed harder.
+    pub tightened: u32,
+    /// The last finger that did, and why.
+    pub last: Option<Tightened>,
+}
+
 /// State that the page shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ExhibitView {
@@ -69,6 +85,8 @@ pub struct ExhibitView {
     pub held: Option<(usize, Moment)>,
     /// The hand moves slowly because it is warm.
     pub is_slow: bool,
+    /// What the piece holds, or will; `None` if it is not to hold anything from now on.
+    pub hold: Option<ExhibitHold>,
 }
 
 impl Default for ExhibitView {
@@ -78,6 +96,7 @@ impl Default for ExhibitView {
             tile: None,
             held: None,
             is_slow: false,
+            hold: None,
         }
     }
 }

@@ -61,6 +61,14 @@ impl HoldForces {
         }
     }
 
+    /// The same with at most this force, if that leaves room for a hold; *at least* gives way.
+    #[must_use]
+    pub fn limited(self, most: Force) -> Self {
+        let most = self.at_most_g.get().min(most.get());
+        let least = self.at_least_g.get().min(most - Self::ROOM);
+        Self::nearest(Force::nearest(least), Force::nearest(most))
+    }
+
     /// Force that each finger presses with at least.
     pub const fn at_least(self) -> Force {
         self.at_least_g

@@ -3,13 +3,15 @@
 use crate::exhibit::heat::{HeatGovernor, HeatLevel};
 use crate::exhibit::plan::{ExhibitPiece, ExhibitPlan};
 use crate::exhibit::stage::{
-    DRAWN_TIMEOUT, ExhibitEvent, ExhibitStage, ExhibitView, ExhibitWish, HOLD_DURATION, HaltReason,
+    DRAWN_TIMEOUT, ExhibitEvent, ExhibitHold, ExhibitStage, ExhibitView, ExhibitWish,
+    HOLD_DURATION, HaltReason,
 };
 use crate::hand::grip::GripEstimator;
-use crate::hand::{ArmEpoch, Fault, Groups, HandSample, Moment, PerDof};
 use crate::hand::overshoot::OvershootMap;
+use crate::hand::{ArmEpoch, Fault, Groups, HandSample, Moment, PerDof};
 use crate::link::{Clock, LinkHandle, LinkTrouble, Owner, PollRates};
 use crate::motion::drive::{ArmedBy, DriveStart, drive};
+use crate::motion::hold::HoldPhase;
 use crate::motion::play::{PlayCommand, PlayStart, Playing};
 use crate::motion::program::{AfterAbort, Ended, Order, Program, Progress, Seen};
 use crate::poses::player::{PlayMode, PlayPlan};
@@ -50,10 +52,10 @@ pub struct ExhibitStart {
     pub seen: HandSample,
     /// Grip estimate from these readings.
     pub grip: GripEstimator,
-    /// The program's clock.
-    pub clock: Clock,
     /// Overshoot measured on this hand.
     pub overshoot: OvershootMap,
+    /// The program's clock.
+    pub clock: Clock,
     /// Time at which the page was drawn last.
     pub drawn: Arc<PageDrawn>,
 }
@@ -129,9 +131,9 @@ pub(crate) struct ExhibitRun {
     plan: Arc<ExhibitPlan>,
     locked: PerDof<bool>,
     grip: GripEstimator,
+    overshoot: OvershootMap,
     drawn: Arc<PageDrawn>,
     /// The user armed for the exhibition, and nothing has ended that since.
-    overshoot: OvershootMap,
     permitted: bool,
     phase: Phase,
     motion: Playback,
@@ -180,9 +182,9 @@ impl ExhibitRun {
             plan: start.plan,
             locked: start.locked,
             grip: start.grip,
+            overshoot: start.overshoot,
             drawn: start.drawn,
             permitted: false,
-            overshoot: start.overshoot,
             phase: Phase::Halted(HaltReason::NotArmed),
             motion: Playback::None,
             playing: None,
@@ -540,10 +542,10 @@ impl ExhibitRun {
                     pace: PlayMode::Through,
                     locked: self.locked,
                     grip: self.grip.clone(),
-                };
-                self.motion = Playback::Plays;
                     overshoot: self.overshoot.clone(),
                     force_limit: self.plan.limits.force,
+                };
+                self.motion = Playback::Plays;
                 self.playing = Some(Playing::new(epoch, start, now));
                 None
             }
@@ -566,7 +568,12 @@ impl ExhibitRun {
         }
         let order = piece.tick(seen);
         if piece.ended().is_some() {
+            let has_held = piece.player().has_hold();
             self.piece_ended(seen.now);
+            if has_held && matches!(self.motion, Playback::Done { .. }) {
+                // The next visitor begins with an open hand.
+                self.motion = Playback::Waits(self.plan.open.clone());
+            }
         }
         order
     }
@@ -579,6 +586,10 @@ impl Program for ExhibitRun {
     type Event = ExhibitEvent;
     const AFTER_ABORT: AfterAbort = AfterAbort::Nothing;
 
+    fn rates(&self) -> Option<PollRates> {
+        self.playing.as_ref().and_then(Playing::rates)
+    }
+
     fn input(&mut self, wish: ExhibitWish, seen: &Seen<'_>) -> Option<Order> {
         self.wish(wish, seen.now);
         None
@@ -586,10 +597,6 @@ impl Program for ExhibitRun {
 
     fn armed(&mut self, answer: Result<ArmEpoch, ArmRefusal>) -> Option<Order> {
         // A halt or a fault withdraws the request.
-    fn rates(&self) -> Option<PollRates> {
-        self.playing.as_ref().and_then(Playing::rates)
-    }
-
         if !std::mem::take(&mut self.is_arming) {
             return None;
         }
@@ -694,6 +701,7 @@ impl Program for ExhibitRun {
             tile,
             held: self.held,
             is_slow: self.permitted && self.level == HeatLevel::Warm,
+            hold: self.playing.as_ref().and_then(|piece| hold_of(piece, now)),
         }
     }
 
@@ -704,4 +712,19 @@ impl Program for ExhibitRun {
     fn ended(&self) -> Option<Ended<()>> {
         self.is_over.then_some(Ok(()))
     }
+}
+
+/// What a piece holds, or will hold.
+fn hold_of(piece: &Playing, now: Moment) -> Option<ExhibitHold> {
+    if let Some(view) = piece.view(now).hold {
+        let is_short = view.phase == HoldPhase::CannotHold;
+        return Some(ExhibitHold {
+            is_held: is_short || view.phase == HoldPhase::Holding,
+            is_short,
+            force_g: view.mean_g(),
+            tightened: view.tightened,
+            last: view.last,
+        });
+    }
+    piece.player().will_hold().then(ExhibitHold::default)
 }

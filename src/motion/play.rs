@@ -121,6 +121,11 @@ impl Playing {
         }
     }
 
+    /// The sequence and its current step.
+    pub(crate) const fn player(&self) -> &Player {
+        &self.player
+    }
+
     /// Arming under which it moves the hand.
     pub(crate) const fn epoch(&self) -> ArmEpoch {
         self.epoch
@@ -134,15 +139,15 @@ impl Program for Playing {
     type Event = Tightened;
     const AFTER_ABORT: AfterAbort = AfterAbort::Nothing;
 
+    fn rates(&self) -> Option<PollRates> {
+        self.hold.as_ref().map(|_| hold::RATES)
+    }
+
     fn input(&mut self, command: PlayCommand, seen: &Seen<'_>) -> Option<Order> {
         match command {
             PlayCommand::Pause if self.player.pause() => return self.rest_here(seen),
             PlayCommand::Pause => {}
             PlayCommand::Resume(pace) => self.player.resume(pace, seen.now),
-    fn rates(&self) -> Option<PollRates> {
-        self.hold.as_ref().map(|_| hold::RATES)
-    }
-
             PlayCommand::End => {
                 self.player.end(Ok(PlayEnd::Person));
                 return self.rest_here(seen);
@@ -155,23 +160,23 @@ impl Program for Playing {
     fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         let read = sample.newest(fresh).unwrap_or_default();
         self.grip.apply(sample, fresh, read);
-    }
-
-    fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
-        let angles = seen.angles()?.value;
-        // A locked joint never arrives and is not waited for: it counts as being at its target.
         if let Some((_, hold)) = &mut self.hold {
             hold.read(sample, fresh, now);
         }
-        let targets = self.player.targets();
-        let at = PerDof::from_fn(|dof| {
-            let target = targets[dof].filter(|_| self.locked[dof]).map(Angle::get);
+    }
+
+    fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
         if let PlayPhase::Holding { since } = self.player.view().phase
             && !self.lacks_a_joint()
         {
             return self.hold_on(since, seen);
         }
         self.hold = None;
+        let angles = seen.angles()?.value;
+        // A locked joint never arrives and is not waited for: it counts as being at its target.
+        let targets = self.player.targets();
+        let at = PerDof::from_fn(|dof| {
+            let target = targets[dof].filter(|_| self.locked[dof]).map(Angle::get);
             Some(target.unwrap_or_else(|| angles[dof].raw()))
         });
         let grip = self.grip.known(seen.status.is_believed(), seen.now);
@@ -227,11 +232,6 @@ impl Playing {
         is_grip && lacks && !self.player.is_over()
     }
 
-    /// Adds setpoints for fingers whose tip was touched or released.
-    fn react(&mut self, seen: &Seen<'_>, setpoints: &mut Setpoints) {
-        let fresh_for = seen.status.fresh_for();
-        let Some(reacting) = &mut self.reaction else {
-            return;
     /// Advances the hold of the step. If nothing is held, the sequence ends.
     fn hold_on(&mut self, since: Moment, seen: &Seen<'_>) -> Option<Order> {
         if self.hold.as_ref().is_none_or(|(begun, _)| *begun != since) {
@@ -286,6 +286,11 @@ impl Playing {
         }
     }
 
+    /// Adds setpoints for fingers whose tip was touched or released.
+    fn react(&mut self, seen: &Seen<'_>, setpoints: &mut Setpoints) {
+        let fresh_for = seen.status.fresh_for();
+        let Some(reacting) = &mut self.reaction else {
+            return;
         };
         for (finger, tip) in seen.sample.tactile.iter() {
             let fresh = tip.filter(|tip| tip.age(seen.now) <= fresh_for);

@@ -325,6 +325,17 @@ impl Player {
         self.cue()?.until
     }
 
+    /// True if a step is a hold.
+    pub fn has_hold(&self) -> bool {
+        self.cues.iter().any(|cue| cue.hold.is_some())
+    }
+
+    /// True if this step or a later one is a hold.
+    pub fn will_hold(&self) -> bool {
+        let ahead = self.cues.iter().skip(self.view.at);
+        !self.is_over() && ahead.into_iter().any(|cue| cue.hold.is_some())
+    }
+
     /// Current progress.
     pub const fn view(&self) -> PlayView {
         self.view
@@ -455,6 +466,9 @@ impl Player {
             self.arrived = true;
             self.step_done(now);
         }
+    }
+
+    fn step_done(&mut self, now: Moment) {
         match self.pace {
             PlayMode::Through => self.advance(now),
             PlayMode::OneStep => self.view.phase = PlayPhase::Paused,
@@ -466,9 +480,6 @@ impl Player {
         if next < self.cues.len() {
             self.view.at = next;
         } else if self.looped {
-    }
-
-    fn step_done(&mut self, now: Moment) {
             self.view.at = 0;
         } else {
             self.view.phase = PlayPhase::Ended(Ok(PlayEnd::Finished));
@@ -496,6 +507,7 @@ impl Player {
             PlayPhase::Moving { .. }
                 | PlayPhase::Waiting { .. }
                 | PlayPhase::Opening { .. }
+                | PlayPhase::Holding { .. }
                 | PlayPhase::Dwelling { .. }
         );
         if ran {
@@ -507,7 +519,6 @@ impl Player {
     /// Resumes: to the same pose if it was not reached, else to the next one.
     pub fn resume(&mut self, pace: PlayMode, now: Moment) {
         if !self.is_paused() {
-                | PlayPhase::Holding { .. }
             return;
         }
         self.pace = pace;

@@ -7,6 +7,7 @@ mod grasp;
 mod grip;
 mod hold;
 mod hold_in_sequence;
+mod hold_tile;
 mod move_to;
 mod play;
 mod series;

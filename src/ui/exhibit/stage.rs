@@ -3,11 +3,11 @@
 use crate::app::exhibit::ExhibitState;
 use crate::app::notices::NoticeKind;
 use crate::app::state::State;
-use crate::exhibit::stage::{ExhibitStage, HaltReason};
+use crate::exhibit::stage::{ExhibitHold, ExhibitStage, HaltReason};
 use crate::record::{Hold, LinkState};
 use crate::ui::exhibit::large::{LargeText, Page};
 use crate::ui::kit::{Look, Pane};
-use crate::ui::text::{Text, exhibit, main, window};
+use crate::ui::text::{Text, exhibit, hold, main, window};
 use egui::{Color32, CornerRadius, ProgressBar, Rect, Ui, UiBuilder, WidgetInfo};
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ const MINUTE: Duration = Duration::from_secs(60);
 /// Text of a stage.
 struct StageWords {
     title: String,
-    note: &'static str,
+    note: String,
     color: Color32,
     /// Remaining share of the time to play.
     left: Option<f32>,
@@ -62,7 +62,7 @@ pub(crate) fn words_ui(ui: &mut Ui, pane: &Pane<'_>, page: Page<'_>) {
     let color = look.palette.text;
     page.line(ui, title, LargeText::new(&words.title, 54.0, color));
     let note = note.with_min_y(note.top() + 6.0 * unit);
-    let label = LargeText::new(words.note, 31.0, look.palette.muted);
+    let label = LargeText::new(&words.note, 31.0, look.palette.muted);
     page.lines(ui, note, label);
     if let Some(left) = words.left {
         let bar = note.with_min_y(note.bottom() - 12.0 * unit);
@@ -87,7 +87,7 @@ fn left_ui(ui: &mut Ui, page: Page<'_>, rect: Rect, left: f32) {
 fn trouble(look: Look, state: &State) -> Option<StageWords> {
     let trouble = |text: Text| StageWords {
         title: look.tr(text).to_owned(),
-        note: look.tip(text),
+        note: look.tip(text).to_owned(),
         color: look.palette.bad,
         left: None,
     };
@@ -99,12 +99,41 @@ fn trouble(look: Look, state: &State) -> Option<StageWords> {
         .then(|| trouble(main::ALARM_TITLE))
 }
 
+/// Text of a piece that holds what the visitor gives it.
+fn hold_words(look: Look, own: ExhibitHold) -> StageWords {
+    let force = own.force_g.map_or("-".into(), |g| g.to_string());
+    let title = match (own.is_held, own.is_short) {
+        (false, _) => look.tr(exhibit::GIVE).to_owned(),
+        (true, false) => look.fill(exhibit::HELD, &[&force]),
+        (true, true) => look.tr(exhibit::HELD_SHORT).to_owned(),
+    };
+    let note = match (own.is_held, own.last) {
+        (false, _) => look.tr(exhibit::GIVE_NOTE).to_owned(),
+        (true, None) => look.tr(exhibit::HELD_NOTE).to_owned(),
+        (true, Some(last)) => {
+            let last = hold::tightened(look, last);
+            look.fill(exhibit::HELD_TIGHTENED, &[&own.tightened, &last])
+        }
+    };
+    let color = if own.is_short {
+        look.palette.warn
+    } else {
+        look.palette.ok
+    };
+    StageWords {
+        title,
+        note,
+        color,
+        left: None,
+    }
+}
+
 fn stage_words(look: Look, state: &State, exhibit: &ExhibitState) -> StageWords {
     let palette = look.palette;
     let (accent, warn) = (palette.accent, palette.warn);
     let words = |(title, note): (Text, Text), color| StageWords {
         title: look.tr(title).to_owned(),
-        note: look.tr(note),
+        note: look.tr(note).to_owned(),
         color,
         left: None,
     };
@@ -127,7 +156,10 @@ fn stage_words(look: Look, state: &State, exhibit: &ExhibitState) -> StageWords 
             let (left, all) = (until.since(state.now), exhibit.plan.visit);
             StageWords {
                 left: Some(left.as_secs_f32() / all.as_secs_f32().max(1.0)),
-                ..words((exhibit::VISIT, exhibit::VISIT_NOTE), palette.ok)
+                ..exhibit.view.hold.map_or_else(
+                    || words((exhibit::VISIT, exhibit::VISIT_NOTE), palette.ok),
+                    |own| hold_words(look, own),
+                )
             }
         }
         ExhibitStage::NextVisitor { .. } => words((exhibit::NEXT, exhibit::NEXT_NOTE), accent),

@@ -22,6 +22,12 @@ texts! {
     ATTRACT_NOTE: "The hand shows what it can do.", "灵巧手正在演示。";
     VISIT: "Your turn", "请尽情体验";
     VISIT_NOTE: "Touch another tile at any time.", "随时可以点其他图块。";
+    GIVE: "Put something into the hand", "请把物体放进手中";
+    GIVE_NOTE: "It closes slowly and holds it. Then pull!", "它会缓慢合拢并握住物体，然后请试着拔出来！";
+    HELD: "It holds with {} g: pull!", "正以 {} g 的力握着：拔拔看！";
+    HELD_NOTE: "The fingertips feel the pull and press harder.", "指尖感觉到拉力时会加力。";
+    HELD_TIGHTENED: "Pressed harder {} times, last: {}", "加力 {} 次，最近：{}";
+    HELD_SHORT: "It may not press harder", "已达到允许的最大力";
     NEXT: "Thank you! Next, please", "谢谢！请下一位";
     NEXT_NOTE: "The hand opens and rests for a moment.", "灵巧手张开，稍作休息。";
     COOLING: "The hand is cooling: about {} min", "灵巧手正在降温：约 {} 分钟";

@@ -1,5 +1,6 @@
 //! `follow`: a hand that follows datagrams of another process, and what is told when it cannot.
 
+use crate::cli::hold::ball;
 use crate::setup::busy::unless_busy;
 use crate::setup::process::{Running, listen, run, sim_on_tcp, start, take_pipe};
 use crate::setup::skipped::skipped;
@@ -37,6 +38,14 @@ impl Sender {
 
     /// Sends the index where this says.
     fn each(place: &str, index: fn(u32) -> f64) -> Self {
+        Self::lines(place, move |seq| {
+            let index = index(seq);
+            format!(r#""right":[null,null,null,{index},null,null]"#)
+        })
+    }
+
+    /// Sends these fields.
+    fn lines(place: &str, fields: impl Fn(u32) -> String + Send + 'static) -> Self {
         let (place, ended) = (place.to_owned(), Arc::new(AtomicBool::new(false)));
         let until = Arc::clone(&ended);
         let send = move || {
@@ -45,8 +54,7 @@ impl Sender {
                 if until.load(Ordering::Relaxed) {
                     return;
                 }
-                let index = index(seq);
-                let line = format!(r#"{{"seq":{seq},"right":[null,null,null,{index},null,null]}}"#);
+                let line = format!(r#"{{"seq":{seq},{}}}"#, fields(seq));
                 let _sent = socket.send_to(line.as_bytes(), &place);
                 std::thread::sleep(Duration::from_millis(10));
             }
@@ -110,6 +118,34 @@ fn a_hand_follows_another_program_and_is_stopped_when_that_is_killed() {
         );
         let after = angle(&hand);
         assert!((before - after).abs() > 50, "{before} {after}");
+    });
+}
+
+#[test]
+fn an_object_is_held_while_lines_ask_for_it_and_their_end_stops_the_hand() {
+    unless_busy(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let (mut running, place) = following(&ball(folder.path()), &["--arm"]);
+        let sends = Sender::lines(&place, |_| {
+            let forces = r#"{"at_least_g":150,"at_most_g":400}"#;
+            format!(r#""right":[0.3,0.3,0.3,0.3,0.5,null],"hold":{forces}"#)
+        });
+        let held = running.until(|line| {
+            let told: Value = serde_json::from_str(line).unwrap();
+            told["hold"]["phase"] == "holding"
+        });
+        let told: Value = serde_json::from_str(&held).unwrap();
+        assert_eq!(told["phase"], "holding", "{told}");
+        assert_eq!(told["hold"]["end"], Value::Null, "{told}");
+        assert_eq!(told["hold"]["forces"]["at_most_g"], 400, "{told}");
+        drop(sends);
+        running.until(|line| phase(line) == "silent");
+        let said = running.end();
+        assert!(
+            said.err.contains("fell silent: the hand was stopped"),
+            "{}",
+            said.err
+        );
     });
 }
 

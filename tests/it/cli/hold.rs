@@ -14,7 +14,7 @@ friction = 0.6
 contact = { little = 900, ring = 900, middle = 900, index = 900, thumb_bend = 900 }
 ";
 
-fn ball(folder: &Path) -> String {
+pub(super) fn ball(folder: &Path) -> String {
     let path = folder.join("ball.toml");
     std::fs::write(&path, BALL).unwrap();
     format!("sim:?scenario=free&object={}", path.display())

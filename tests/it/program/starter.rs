@@ -217,5 +217,5 @@ fn the_shipped_library_is_gentle_named_in_both_languages_and_has_a_key_each() {
     for name in names.split(", ") {
         assert!(library.pose_named(name).is_some(), "{name}");
     }
-    assert_eq!((library.sequences.len(), library.reactions.len()), (3, 1));
+    assert_eq!((library.sequences.len(), library.reactions.len()), (4, 1));
 }

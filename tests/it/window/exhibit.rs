@@ -11,8 +11,9 @@ use handscope::exhibit::file;
 use handscope::exhibit::pin::Pin;
 use handscope::exhibit::plan::ExhibitPlan;
 use handscope::exhibit::stage::{ExhibitStage, ExhibitWish, HaltReason};
-use handscope::hand::{Dof, Gesture};
-use handscope::sim::{Scenario, SimConfig};
+use handscope::hand::{Dof, Gesture, PerDof};
+use handscope::sim::object::{Loads, PullLoad, listed};
+use handscope::sim::{Object, Obstacle, Scenario, SimConfig};
 use handscope::transport::Endpoint;
 use handscope::ui::View;
 
@@ -563,4 +564,41 @@ fn who_types_a_digit_too_many_does_not_leave_the_exhibition() {
     bench.press_at(under.center());
     bench.run(60);
     assert!(bench.state().exhibit.is_none());
+}
+
+#[test]
+fn the_page_says_how_it_holds_what_a_visitor_gives_and_which_finger_pressed_harder() {
+    let mut bench = armed_with(plan());
+    let contacts =
+        PerDof::from_fn(|dof| (dof != Dof::ThumbRotate).then_some(Obstacle::at(900.0, 10.0)));
+    let object = Object {
+        mass_g: 200.0,
+        loads: Loads {
+            lift_after_s: Some(1.0),
+            pulls: listed(&[PullLoad {
+                at_s: 1.0,
+                force_g: 400.0,
+                direction_deg: 270.0,
+                rise_ms: 300.0,
+                lasts_ms: 1000.0,
+            }]),
+            ..Loads::NONE
+        },
+        ..Object::touched_at(contacts)
+    };
+    bench.hand(|hand, _| hand.set_object(&object));
+    let tiles = plan().tiles;
+    let tile = tiles.iter().position(|tile| tile.name.en == "Pull it out");
+    wish(&mut bench, ExhibitWish::Press(tile.unwrap()));
+    bench.run(500);
+    assert!(
+        bench.shows("Put something into the hand"),
+        "{:?}",
+        bench.texts()
+    );
+    let says = |bench: &Bench, words: &str| !bench.texts_with(words).is_empty();
+    bench.until(30_000, |bench| says(bench, "g: pull!"));
+    bench.until(15_000, |bench| says(bench, "Pressed harder"));
+    bench.until(40_000, |bench| bench.shows("Your turn"));
+    bench.until(10_000, |bench| bench.angle(Dof::Index) > 980);
 }
