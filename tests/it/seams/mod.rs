@@ -53,7 +53,11 @@ impl Try {
     fn movers(&self) -> &'static [Start] {
         match self.row {
             Row::Slider => &[Start::Window(Window::slider)],
-            Row::Pose => &[Start::Window(Window::pose), Start::Window(Window::sequence)],
+            Row::Pose => &[
+                Start::Window(Window::pose),
+                Start::Window(Window::sequence),
+                Start::Window(Window::held_step),
+            ],
             Row::Series => &[
                 Start::Window(Window::series),
                 Start::Window(Window::armed_series),
@@ -113,6 +117,7 @@ impl Try {
             Row::Follow => &[
                 Start::Process(Place::follow_udp),
                 Start::Process(Place::follow_tcp),
+                Start::Process(Place::follow_hold),
             ],
             Row::FollowDds => &[Start::Process(Place::follow_dds)],
             Row::Share => &[Start::Process(Place::share)],

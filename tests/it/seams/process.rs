@@ -231,6 +231,21 @@ impl Place {
         process
     }
 
+    /// The lines request a hold, which closes.
+    pub(super) fn follow_hold(self) -> Process {
+        let process = self.start("follow", &FOLLOW_UDP);
+        let place = process.ready("ready udp ");
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let send = move |line: &[u8]| {
+            let _sent = socket.send_to(line, &place);
+        };
+        let forces = r#""hold":{"at_least_g":150,"at_most_g":400}"#;
+        process.sends_lines(send, move |_| {
+            format!(r#""right":[null,null,null,0,null,null],{forces}"#)
+        });
+        process
+    }
+
     pub(super) fn follow_tcp(self) -> Process {
         let process = self.start("follow", &FOLLOW_TCP);
         let place = process.ready("ready tcp ");
@@ -405,16 +420,26 @@ impl Process {
         });
     }
 
-    fn sends(&self, mut send: impl FnMut(&[u8]) + Send + 'static) {
+    fn sends(&self, send: impl FnMut(&[u8]) + Send + 'static) {
+        self.sends_lines(send, |index| {
+            let index = f64::from(index) / 1000.0;
+            format!(r#""right":[null,null,null,{index},null,null]"#)
+        });
+    }
+
+    /// Sends these fields for each angle of the index on its way.
+    fn sends_lines(
+        &self,
+        mut send: impl FnMut(&[u8]) + Send + 'static,
+        fields: impl Fn(i16) -> String + Send + 'static,
+    ) {
         let (mut seq, beside) = (0, Arc::clone(&self.beside));
         self.sends_angles(move |index| {
             let said = std::mem::take(&mut *beside.lock().unwrap());
             if !said.is_empty() {
                 send(&said);
             }
-            let index = f64::from(index) / 1000.0;
-            let line =
-                format!(r#"{{"seq":{seq},"right":[null,null,null,{index},null,null]}}"#) + "\n";
+            let line = format!(r#"{{"seq":{seq},{}}}"#, fields(index)) + "\n";
             send(line.as_bytes());
             seq += 1;
         });

@@ -23,6 +23,7 @@ use handscope::exhibit::file;
 use handscope::exhibit::pin::Pin;
 use handscope::exhibit::plan::{ExhibitPlan, MotionLimits};
 use handscope::exhibit::stage::ExhibitWish;
+use handscope::hand::hold_forces::HoldForces;
 use handscope::hand::{Angle, Dof, Force, PerDof, Setpoints, Speed, Target};
 use handscope::inputs::mirror::MirrorScale;
 use handscope::inputs::pad::device::{OpenPads, PadReader};
@@ -31,7 +32,7 @@ use handscope::motion::hold::HoldClose;
 use handscope::motion::source::SourceKind;
 use handscope::poses::Play;
 use handscope::poses::edit::{LibraryEdit, PoseEdit, SequenceEdit};
-use handscope::poses::library::{EntryId, PoseId};
+use handscope::poses::library::{EntryId, PoseId, SequenceStep};
 use handscope::record::LinkState;
 use handscope::sim::SharedHand;
 use handscope::transport::Endpoint;
@@ -174,6 +175,25 @@ impl Window {
         for _ in 0..2 {
             let add = LibraryEdit::Sequence(own, SequenceEdit::Add(fist));
             self.act(Action::Library(add));
+        }
+        self.arm();
+        self.act(Action::Play(Play::Start(EntryId::Sequence(own))));
+        self
+    }
+
+    /// A step that closes for a hold, and the next step after it.
+    pub(super) fn held_step(mut self) -> Self {
+        let fist = self.fist();
+        self.act(Action::Library(LibraryEdit::NewSequence("S".into())));
+        let own = self.program.state().poses.newest_sequence.unwrap();
+        let forces = HoldForces::nearest(Force::nearest(150), Force::nearest(400));
+        for at in 0..2 {
+            let add = LibraryEdit::Sequence(own, SequenceEdit::Add(fist));
+            self.act(Action::Library(add));
+            let step = self.program.state().poses.library.sequences[0].steps[at];
+            let hold = Some(forces);
+            let change = SequenceEdit::Change(at, SequenceStep { hold, ..step });
+            self.act(Action::Library(LibraryEdit::Sequence(own, change)));
         }
         self.arm();
         self.act(Action::Play(Play::Start(EntryId::Sequence(own))));
