@@ -5,6 +5,13 @@ pub const BLOCK_LEN: usize = 58;
 /// Number of leading bytes that the check word covers.
 const CHECKED_LEN: usize = 54;
 
+/// Largest force that a fingertip may report, N: five times the sensor's rating (manual 1.1).
+///
+/// Manual: 2.6.21 gives no range.
+pub const TIP_FORCE_MAX_N: f32 = 100.0;
+/// The word for "no direction".
+pub const NO_DIRECTION: u16 = 65535;
+
 /// Centres of the seven pads in mm, x to the right, y towards the tip (protocol 5.2: pad i is channel i - 1).
 // Manual: 2.6.21 gives no layout; this is the sensor maker's model.
 pub const PAD_CENTRES_MM: [(f64, f64); 7] = [
@@ -120,20 +127,24 @@ impl TactileBlock {
         (self.direction_raw < 360).then_some(self.direction_raw)
     }
 
-    /// Normal force, N; `None` if it is not a finite number.
+    /// Normal force, N; `None` if it is not a number up to [`TIP_FORCE_MAX_N`]. Only this may feed logic.
     pub fn normal(&self) -> Option<f32> {
-        self.normal_n.is_finite().then_some(self.normal_n)
+        documented(self.normal_n)
     }
 
-    /// Tangential force, N; `None` if it is not a finite number.
+    /// Tangential force, N; `None` if it is not a number up to [`TIP_FORCE_MAX_N`]. Only this may feed logic.
     pub fn tangential(&self) -> Option<f32> {
-        self.tangential_n.is_finite().then_some(self.tangential_n)
+        documented(self.tangential_n)
     }
 
     /// True if the check word equals the 16-bit sum of the first 54 bytes. Shown only; data is never dropped for it.
     pub const fn check_ok(&self) -> bool {
         self.check == self.sum
     }
+}
+
+fn documented(newtons: f32) -> Option<f32> {
+    (newtons.abs() <= TIP_FORCE_MAX_N).then_some(newtons)
 }
 
 fn sum16(bytes: &[u8]) -> u16 {
@@ -185,6 +196,27 @@ mod tests {
         let block = TactileBlock::decode(&bytes).unwrap();
         assert_eq!(block.direction_deg(), None);
         assert!(!block.check_ok());
+    }
+
+    #[test]
+    fn a_force_that_no_sensor_can_report_is_no_value() {
+        let block = |newtons| TactileBlock {
+            normal_n: newtons,
+            tangential_n: newtons,
+            ..TactileBlock::decode(&[0; BLOCK_LEN]).unwrap()
+        };
+        for (newtons, wanted) in [
+            (0.0, Some(0.0)),
+            (-0.4, Some(-0.4)),
+            (100.0, Some(100.0)),
+            (100.5, None),
+            (f32::MAX, None),
+            (f32::NEG_INFINITY, None),
+            (f32::NAN, None),
+        ] {
+            let block = block(newtons);
+            assert_eq!((block.normal(), block.tangential()), (wanted, wanted));
+        }
     }
 
     #[test]

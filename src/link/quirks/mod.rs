@@ -3,7 +3,7 @@
 pub mod book;
 
 use crate::hand::TactileBlock;
-use crate::hand::feedback::tactile::BLOCK_LEN;
+use crate::hand::feedback::tactile::{BLOCK_LEN, NO_DIRECTION, TIP_FORCE_MAX_N};
 use crate::hand::register::BytePacking;
 
 /// Quirks detected when the link identified a hand. `None` if the wire does not need it, or the hand did not answer.
@@ -75,14 +75,10 @@ pub const fn baud_of_code(code: u8, is_can: bool) -> Option<u32> {
     }
 }
 
-/// Largest plausible force of a fingertip, newtons: five times the sensor's rating (manual 1.1).
-const FORCE_MAX_N: f32 = 100.0;
 /// Smallest plausible force other than zero: two small words of another layout, read as a float, are far below.
 const FORCE_MIN_N: f32 = 1e-6;
 /// Largest word of the other layout.
 const ZONE_MAX: u16 = 4095;
-/// The code for "no direction".
-const NO_DIRECTION: u16 = 65535;
 
 impl TouchVariant {
     /// Judges the bytes from the start of a fingertip's block, at least 58 of them.
@@ -116,7 +112,7 @@ impl TouchVariant {
 
 fn absurd(newtons: f32) -> bool {
     let size = newtons.abs();
-    !(newtons == 0.0 || (FORCE_MIN_N..=FORCE_MAX_N).contains(&size))
+    !(newtons == 0.0 || (FORCE_MIN_N..=TIP_FORCE_MAX_N).contains(&size))
 }
 
 #[cfg(test)]
