@@ -187,12 +187,16 @@ pub fn joint_names(side: Side) -> Vec<String> {
     JOINT_NAMES.iter().map(name).collect()
 }
 
+/// Rotation of a driven joint in radians at this drive angle, 0..=1000: 0 open.
+pub fn driven_radians(dof: Dof, angle: i16) -> f64 {
+    (1.0 - f64::from(angle) / 1000.0) * f64::from(RANGE[dof])
+}
+
 /// Rotations of the twelve joints in radians at these drive angles, 0..=1000; NaN for an unknown angle.
 pub fn joint_radians(angles: &PerDof<Option<i16>>) -> Vec<f64> {
     let turned = |(segment, joint): (Segment, &SegmentJoint)| {
         let dof = segment.dof()?;
-        let share = 1.0 - f64::from(angles[dof]?) / 1000.0;
-        Some(share * f64::from(RANGE[dof]) * f64::from(joint.ratio.abs()))
+        Some(driven_radians(dof, angles[dof]?) * f64::from(joint.ratio.abs()))
     };
     let joints = Segment::ALL.into_iter().skip(1).zip(&JOINTS);
     joints

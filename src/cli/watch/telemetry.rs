@@ -1,36 +1,48 @@
 //! Samples and statistics as the JSON lines and the text of `watch`. Pure; a contract with scripts.
 
+use crate::hand::feedback::tactile::NO_DIRECTION;
 use crate::hand::grip::{Grip, GripEstimate};
+use crate::hand::kinematics::driven_radians;
 use crate::hand::units::decimal;
 use crate::hand::{
-    Fault, Faults, Finger, ForceReading, HandSample, Moment, PerDof, Quantity, RateClass, Status,
-    TactileBlock,
+    Fault, Faults, Finger, Force, Group, HandSample, Moment, PerDof, PositionReading, Quantity,
+    RateClass, Speed, Status, TactileBlock,
 };
 use crate::link::{LineUse, LinkStats};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::time::Duration;
 
-/// One sample and its grip as one JSON object. Unread values are null.
+/// One sample and its grip as one JSON object. Values that are unread or outside the manual's ranges are null.
 pub(crate) fn sample_json(sample: &HandSample, grip: &Grip, at: Moment) -> Value {
     let status = sample.status.map(|status| status.value);
     let faults = sample.faults.map(|faults| faults.value);
     let position = sample.position.map(|position| position.value);
+    let angle = Quantity::Angle.documented(sample).map(|six| six.value);
+    let radians =
+        angle.map(|angle| PerDof::from_fn(|dof| Some(rounded(driven_radians(dof, angle[dof]?)))));
+    let speed = sample.speed_set.map(|speed| speed.value);
+    let threshold = sample.force_set.map(|force| force.value);
     let tactile = sample.tactile.iter();
     let tactile = tactile
         .map(|(finger, block)| tactile_json(finger, block.map(|block| block.value).as_ref()));
     let mut object = json!({
         "t_s": at.secs(),
-        "position": position.map(|six| six.map(|position| position.raw())),
+        "angle_rad": radians,
+        "position": position.map(|six| six.map(PositionReading::documented)),
         "status": status.map(|six| six.map(|status| status.name())),
         "status_raw": status.map(|six| six.map(Status::raw)),
         "faults": faults.map(|six| six.map(fault_names)),
         "error_raw": faults.map(|six| six.map(Faults::raw)),
         "tactile": tactile.collect::<Vec<_>>(),
         "grip": grip_json(&grip.at(at), at),
+        "target_angle": Quantity::TargetAngle.documented(sample).map(|six| six.value),
+        "target_speed": speed.map(|six| six.map(|speed| speed.map(Speed::get))),
+        "force_threshold_g": threshold.map(|six| six.map(|force| force.map(Force::get))),
+        "undocumented": undocumented_json(sample),
     });
     let measured = Quantity::MEASURED.map(|quantity| {
-        let six = quantity.raw(sample).map(|six| six.value);
+        let six = quantity.documented(sample).map(|six| six.value);
         (quantity.row().json_name.to_owned(), json!(six))
     });
     if let Value::Object(fields) = &mut object {
@@ -49,13 +61,64 @@ pub(crate) fn watch_json(
     let mut object = sample_json(sample, grip, at);
     let force = sample.force.map(|force| force.value);
     let newtons = force.map(|force| {
-        let newtons = |dof, per_g: f64| f64::from(ForceReading::raw(force[dof])) * per_g;
-        PerDof::from_fn(|dof| Some(rounded_mn(newtons(dof, newtons_per_g[dof]?))))
+        PerDof::from_fn(|dof| {
+            let grams = f64::from(force[dof].documented()?);
+            Some(rounded_mn(grams * newtons_per_g[dof]?))
+        })
     });
     if let Value::Object(fields) = &mut object {
         fields.insert("force_n".into(), json!(newtons));
     }
     object
+}
+
+/// Values outside the manual's ranges: their field in the object, their joint or finger, and the number that the hand sent; null if it
+/// is not stored, or no number.
+fn undocumented_json(sample: &HandSample) -> Value {
+    let joints = sample.undocumented(Group::ALL.into_iter().collect());
+    let joints = joints.map(
+        |value| json!({"field": field(value.group), "joint": value.dof.name(), "raw": value.raw}),
+    );
+    let tips = sample.tactile.iter();
+    let tips = tips.flat_map(|(finger, block)| {
+        let block = block.map(|block| block.value);
+        let force = |number: f32| json!(number.is_finite().then(|| decimal(number)));
+        let fields = block.map(|block| {
+            let turn = block.direction_raw;
+            let turns = block.direction_deg().is_some() || turn == NO_DIRECTION;
+            [
+                ("normal_n", block.normal().is_some(), force(block.normal_n)),
+                (
+                    "tangential_n",
+                    block.tangential().is_some(),
+                    force(block.tangential_n),
+                ),
+                ("direction_deg", turns, json!(turn)),
+            ]
+        });
+        let fields = fields.into_iter().flatten().filter(|field| !field.1);
+        fields.map(
+            move |(field, _, raw)| json!({"field": field, "finger": finger.name(), "raw": raw}),
+        )
+    });
+    joints.chain(tips).collect()
+}
+
+/// Field of a group's values in the object.
+const fn field(group: Group) -> &'static str {
+    match group {
+        Group::AngleSet => "target_angle",
+        Group::ForceSet => "force_threshold_g",
+        Group::SpeedSet => "target_speed",
+        Group::Position => "position",
+        Group::Angle => Quantity::Angle.row().json_name,
+        Group::Force => Quantity::Force.row().json_name,
+        Group::Current => Quantity::Current.row().json_name,
+        Group::Temperature => Quantity::Temperature.row().json_name,
+        Group::Faults => "error_raw",
+        Group::Status => "status_raw",
+        Group::Tactile(_) => "tactile",
+    }
 }
 
 /// Rounds newtons to millinewtons.
@@ -179,8 +242,11 @@ pub(crate) fn sample_text(sample: &HandSample, at: Moment) -> String {
         let row = quantity.row();
         let (name, unit) = (row.json_name.split('_').next(), row.unit);
         let space = if unit.is_empty() { "" } else { " " };
-        let values = quantity.raw(sample);
-        let values = values.map(|six| six.value.map(|value| format!("{value:width$}")));
+        let values = quantity.documented(sample).map(|six| {
+            six.value
+                .map(|value| value.map_or_else(|| "-".into(), |value| value.to_string()))
+        });
+        let values = values.map(|six| six.map(|value| format!("{value:>width$}")));
         let name = name.unwrap_or_default();
         parts.push(format!("{name} {}{space}{unit}", joined(values)));
     }
@@ -188,6 +254,12 @@ pub(crate) fn sample_text(sample: &HandSample, at: Moment) -> String {
     if sample.has_fault() {
         let faults = sample.faults.map(|six| six.value.map(fault_words));
         parts.push(format!("faults {}", joined(faults)));
+    }
+    let measured = Quantity::MEASURED.map(Quantity::group).into_iter();
+    let outside = sample.undocumented(measured.collect());
+    let outside: Vec<String> = outside.map(|value| value.to_string()).collect();
+    if !outside.is_empty() {
+        parts.push(format!("undocumented {}", outside.join(" ")));
     }
     parts.join("  ")
 }
@@ -272,7 +344,7 @@ fn rounded(value: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::hand::grip::GripState;
-    use crate::hand::{Dof, PerFinger, Reply, Timed, register};
+    use crate::hand::{AngleReading, Dof, ForceReading, PerFinger, Reply, Timed, register};
 
     #[test]
     fn what_was_not_read_is_null() {
@@ -351,9 +423,88 @@ mod tests {
         assert_eq!(json["status"][0], "force_reached");
         assert_eq!(json["status"][1], "unknown");
         assert_eq!(json["status_raw"][1], 4);
-        assert_eq!(json["temp_c"][5], 255);
+        assert_eq!(json["temp_c"][5], Value::Null);
+        let cold = json!([{"field": "temp_c", "joint": "thumb_rotate", "raw": 255}]);
+        assert_eq!(json["undocumented"], cold);
         assert!(json["position"].is_null());
         assert!(sample_text(&sample, at).contains("over_temperature+over_current"));
+    }
+
+    #[test]
+    fn a_value_outside_the_manual_is_no_value_and_its_number_is_told() {
+        let at = Moment::ZERO;
+        fn timed<T>(value: T) -> Option<Timed<T>> {
+            let (asked, received) = (Moment::ZERO, Moment::ZERO);
+            Some(Timed {
+                value,
+                asked,
+                received,
+            })
+        }
+        let mut sample = HandSample {
+            angle: timed(PerDof::new([1000, 0, -7, 32767, 1013, 5]).map(AngleReading::new)),
+            force: timed(PerDof::new([0, 0, 0, -32768, 0, 4000]).map(ForceReading::new)),
+            position: timed(PerDof::new([0, 2000, -1, 0, 0, 0]).map(PositionReading::new)),
+            speed_set: timed(
+                PerDof::new([Some(25), None, Some(0), Some(1000), None, Some(1)])
+                    .map(|speed| speed.and_then(|speed| Speed::new(speed).ok())),
+            ),
+            ..HandSample::default()
+        };
+        let plain = TactileBlock::decode(&[0; 58]).unwrap();
+        let odd = TactileBlock {
+            normal_n: f32::NAN,
+            tangential_n: 3e38,
+            direction_raw: 400,
+            ..plain
+        };
+        let free = TactileBlock {
+            direction_raw: 65535,
+            normal_n: 20.0,
+            ..plain
+        };
+        sample.tactile[Finger::Ring] = timed(odd);
+        sample.tactile[Finger::Thumb] = timed(free);
+        let json = sample_json(&sample, &Grip::default(), at);
+        assert_eq!(json["angle"], json!([1000, 0, null, null, null, 5]));
+        assert_eq!(json["force_g"], json!([0, 0, 0, null, 0, 4000]));
+        assert_eq!(json["position"], json!([0, 2000, null, 0, 0, 0]));
+        let turned = &json["angle_rad"];
+        assert_eq!(turned[0], 0.0, "open");
+        assert!(
+            turned[1].as_f64().unwrap() > 1.0 && turned[3].is_null(),
+            "{turned}"
+        );
+        assert_eq!(json["target_speed"], json!([25, null, 0, 1000, null, 1]));
+        let ring = &json["tactile"][1];
+        for field in ["normal_n", "tangential_n", "direction_deg"] {
+            assert!(ring[field].is_null(), "{field}");
+        }
+        assert_eq!(json["tactile"][4]["normal_n"], 20.0);
+        let joint = |field: &str, joint: &str, raw: Value| json!({"field": field, "joint": joint, "raw": raw});
+        let tip = |field: &str, raw: Value| json!({"field": field, "finger": "ring", "raw": raw});
+        let all = json!([
+            joint("target_speed", "ring", Value::Null),
+            joint("target_speed", "thumb_bend", Value::Null),
+            joint("position", "middle", json!(-1)),
+            joint("angle", "middle", json!(-7)),
+            joint("angle", "index", json!(32767)),
+            joint("angle", "thumb_bend", json!(1013)),
+            joint("force_g", "index", json!(-32768)),
+            tip("normal_n", Value::Null),
+            tip("tangential_n", json!(3e38)),
+            tip("direction_deg", json!(400)),
+        ]);
+        assert_eq!(json["undocumented"], all);
+        let text = sample_text(&sample, at);
+        assert!(
+            text.contains("undocumented angle[2]=-7 angle[3]=32767"),
+            "{text}"
+        );
+        assert!(!text.replace("=32767", "").contains("32767"), "{text}");
+        let per_g = PerDof::splat(Some(0.01));
+        let newtons = watch_json(&sample, &Grip::default(), &per_g, at)["force_n"].clone();
+        assert_eq!(newtons, json!([0.0, 0.0, 0.0, null, 0.0, 40.0]));
     }
 
     #[test]
