@@ -1,7 +1,7 @@
 if pip_install datasets; then
-  # Two recordings make one set.
+  # Two recordings make one set. The scenario moves by itself, so nothing commands it.
   "$handscope" export "$session/session.mcap" --mcap --from -3 --out "$session/end.mcap"
-  "$handscope" export "$session/session.mcap" "$session/end.mcap" --lerobot --task grasp --out "$session/set"
+  "$handscope" export "$session/session.mcap" "$session/end.mcap" --lerobot --uncommanded --task grasp --out "$session/set"
   HF_HUB_OFFLINE=1 HF_HOME="$out/hf" python tests/interop/lerobot.py "$session"
 else
   skipped datasets "not here and not to be had"

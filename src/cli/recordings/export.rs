@@ -39,6 +39,9 @@ pub(crate) struct ExportArgs {
     /// With --lerobot: where an episode begins: after a silence, or at each note [default: gaps]
     #[arg(long, value_name = "WHERE")]
     episode: Option<Episodes>,
+    /// With --lerobot: write a set also if no joint was commanded, so that its actions mean nothing
+    #[arg(long)]
+    uncommanded: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -197,9 +200,10 @@ impl ExportArgs {
     fn check(&self) -> anyhow::Result<()> {
         // clap does not require a flag that conflicts with another one of its group.
         let of_sets = self.fps.is_some() || self.task.is_some() || self.episode.is_some();
+        let of_sets = of_sets || self.uncommanded;
         if self.output != ExportOutput::Format(ExportFormat::LeRobot) && of_sets {
             return Err(WrongUsage::error(
-                "--fps, --task and --episode are for --lerobot; leave them out, or export with --lerobot",
+                "--fps, --task, --uncommanded and --episode are for --lerobot; leave them out, or export with --lerobot",
             ));
         }
         let from_stdin = self.files.iter().filter(|file| is_standard(file)).count();
@@ -247,6 +251,7 @@ impl ExportArgs {
                     Some(Episodes::Gaps) => EpisodeStart::Gap,
                     None => default.episodes,
                 },
+                uncommanded: self.uncommanded,
             },
         }
     }
@@ -287,9 +292,15 @@ fn report(
         line = format!("{line}, {} episodes", counts.episodes);
         if let Some(fields) = object.as_object_mut() {
             fields.insert("episodes".into(), counts.episodes.into());
-            fields.insert("action_read_back_frames".into(), counts.read_back.into());
+            for (name, count) in [
+                ("action_uncommanded_episodes", counts.uncommanded),
+                ("action_read_back_frames", counts.read_back),
+                ("action_unfollowed_frames", counts.unfollowed),
+            ] {
+                fields.insert(name.into(), count.into());
+            }
         }
-        warn_read_back(counts, all.rows);
+        warn_actions(counts, all.rows);
     }
     if is_standard(&args.out) {
         notify(&format!("{} {unit}", all.rows));
@@ -304,7 +315,22 @@ fn report(
     Ok(())
 }
 
-fn warn_read_back(counts: &EpisodeCounts, frames: u64) {
+fn warn_actions(counts: &EpisodeCounts, frames: u64) {
+    if counts.uncommanded > 0 {
+        notify(&format!(
+            "in {} of {} episodes no joint was commanded: 'action' is there what the hand held before, and says nothing about what moved it",
+            counts.uncommanded, counts.episodes
+        ));
+    }
+    if counts.unfollowed > 0 {
+        let joints = counts.unfollowed_joints.iter().filter(|(_, moved)| **moved);
+        let joints: Vec<&str> = joints.map(|(dof, _)| dof.name()).collect();
+        notify(&format!(
+            "in {} of {frames} frames a joint ({}) moved while its 'action' stood still: something moved it that the recording does not show",
+            counts.unfollowed,
+            joints.join(", ")
+        ));
+    }
     if counts.read_back > 0 {
         notify(&format!(
             "in {} of {frames} frames something other than the recorded commands set a target, another controller or the hand itself for a gesture: 'action' is there what the hand held when it was read, up to half a second late",
@@ -397,6 +423,9 @@ pub(crate) fn explained(error: ExportError) -> anyhow::Error {
             "{error}; 'handscope info' shows what a recording holds, --from and --to choose of it"
         ),
         ExportError::NoNotes => anyhow!("{error}; leave out --episode notes"),
+        ExportError::NeverCommanded => anyhow!(
+            "{error}; record while the hand is moved from here, by the window, a script, 'follow' or a client of 'share', or write the set nevertheless with --uncommanded"
+        ),
         ExportError::BothSides => anyhow!("{error}; make a set of each"),
         ExportError::ReaderGone => ReaderGone.into(),
     }

@@ -26,7 +26,7 @@ const FORCE_WIDTH: usize = 6;
 const GRIP_WIDTH: usize = 6;
 
 /// The known state at one time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct DatasetFrame {
     /// Number within its episode, from 0.
     pub(crate) number: u64,
@@ -37,12 +37,14 @@ pub(crate) struct DatasetFrame {
     pub(crate) note: Option<Arc<str>>,
     /// True if a target was set by anything other than the recorded writes.
     pub(crate) is_read_back: bool,
-    state: [f32; 6],
-    action: [f32; 6],
+    /// True if a target was sent, or set by anything else during the recording.
+    pub(crate) is_commanded: bool,
+    pub(crate) state: [f32; 6],
+    pub(crate) action: [f32; 6],
     /// Forces of the joints, then of the fingertips, if included.
-    environment: [f32; FORCE_WIDTH + TOUCH_WIDTH],
+    pub(crate) environment: [f32; FORCE_WIDTH + TOUCH_WIDTH],
     /// State numbers of the grasp and the fingers.
-    grip: [f32; GRIP_WIDTH],
+    pub(crate) grip: [f32; GRIP_WIDTH],
 }
 
 /// Names and lengths of the parts of a frame.
@@ -217,6 +219,7 @@ impl DatasetFrames {
             time_s: at.since(began).as_secs_f32(),
             note: self.note.clone(),
             is_read_back: self.targets.are_read_back(),
+            is_commanded: self.targets.are_commanded(),
             state: [0.0; 6],
             action: [0.0; 6],
             environment: [0.0; FORCE_WIDTH + TOUCH_WIDTH],

@@ -1,9 +1,9 @@
 //! Recordings as a LeRobot v3.0 data set without video: frames at an even rate, each with the newest reading before its time.
 //! Missing values are never filled in: a silence ends the episode.
 
-use crate::hand::Moment;
 use crate::hand::grip::GripState;
 use crate::hand::kinematics::Side;
+use crate::hand::{Dof, Moment};
 use crate::record::EventKind;
 use crate::record::export::columns::{self, ParquetCell, ParquetColumn, Values};
 use crate::record::export::frames::{
@@ -14,6 +14,7 @@ use crate::record::export::output::{
 };
 use crate::record::export::source::{Broken, ExportSource};
 use crate::record::export::statistics::Statistics;
+use crate::record::export::unfollowed::UnfollowedMotion;
 use crate::record::file::RecordingFile;
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
@@ -36,6 +37,10 @@ const GROUP_FRAMES: u64 = 65_536;
 const FILE: &str = "chunk-000/file-000.parquet";
 /// Warning in the metadata of a set with read-back actions.
 const READ_BACK: &str = "in action_read_back_frames frames a target was set by something other than the writes of the recording: another controller, or the hand itself for a gesture; the action is what the hand held when it was read, up to half a second late";
+/// Warning in the metadata of a set with episodes without a command.
+const UNCOMMANDED: &str = "in episodes without action_commanded_frames no joint was commanded: the action there is what the hand held before, and says nothing about what moved it";
+/// Warning in the metadata of a set with joints that move by themselves.
+const UNFOLLOWED: &str = "in action_unfollowed_frames frames a joint of action_unfollowed_joints has moved away from an action that stands still: something moved it that the recording does not show";
 /// Default task of a hand.
 const TASK: &str = "grasp";
 
@@ -56,6 +61,8 @@ pub struct LeRobotPlan {
     /// The hand's task; `None` if the note at the start of an episode names it.
     pub task: Option<String>,
     pub episodes: EpisodeStart,
+    /// True if a set in which no joint was commanded is written nevertheless.
+    pub uncommanded: bool,
 }
 
 impl Default for LeRobotPlan {
@@ -64,6 +71,7 @@ impl Default for LeRobotPlan {
             fps: FPS,
             task: None,
             episodes: EpisodeStart::Gap,
+            uncommanded: false,
         }
     }
 }
@@ -107,6 +115,10 @@ pub(crate) fn write(
             _ => ExportError::Empty,
         });
     }
+    let counts = ended.counts();
+    if counts.uncommanded == counts.episodes && !plan.uncommanded {
+        return Err(ExportError::NeverCommanded);
+    }
     let meta = Meta {
         sources,
         side,
@@ -115,15 +127,11 @@ pub(crate) fn write(
         ended: &ended,
     };
     meta.write(&folder.join("meta")).map_err(error)?;
-    let episodes = EpisodeCounts {
-        episodes: u64::try_from(ended.episodes.len()).unwrap_or(u64::MAX),
-        read_back: ended.episodes.iter().map(|episode| episode.read_back).sum(),
-    };
     output.sync(ended.data)?;
     output.finish(ended.index)?;
     Ok(ExportSummary {
         recordings,
-        episodes: Some(episodes),
+        episodes: Some(counts),
     })
 }
 
@@ -178,7 +186,9 @@ struct Episode {
     /// Index of its recording, and its start within that, in seconds.
     recording: usize,
     from_s: f64,
+    commanded: u64,
     read_back: u64,
+    unfollowed: u64,
 }
 
 /// The frames being written.
@@ -189,6 +199,7 @@ struct DataSet {
     statistics: Statistics,
     tasks: Vec<String>,
     episodes: Vec<Episode>,
+    unfollowed: UnfollowedMotion,
     /// Index of the recording being read.
     recording: usize,
     index: u64,
@@ -201,7 +212,22 @@ struct WrittenFrames {
     statistics: Statistics,
     tasks: Vec<String>,
     episodes: Vec<Episode>,
+    unfollowed: UnfollowedMotion,
     index: u64,
+}
+
+impl WrittenFrames {
+    fn counts(&self) -> EpisodeCounts {
+        let uncommanded = self.episodes.iter().filter(|one| one.commanded == 0);
+        let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
+        EpisodeCounts {
+            episodes: number(self.episodes.len()),
+            uncommanded: number(uncommanded.count()),
+            read_back: self.episodes.iter().map(|one| one.read_back).sum(),
+            unfollowed: self.episodes.iter().map(|one| one.unfollowed).sum(),
+            unfollowed_joints: self.unfollowed.joints,
+        }
+    }
 }
 
 fn long(number: impl TryInto<i64>) -> ParquetCell {
@@ -230,6 +256,7 @@ impl DataSet {
             with_touch,
             tasks: Vec::new(),
             episodes: Vec::new(),
+            unfollowed: UnfollowedMotion::new(),
             recording: 0,
             index: 0,
             waiting: 0,
@@ -253,7 +280,9 @@ impl DataSet {
                 task,
                 recording: self.recording,
                 from_s: frame.at.since(began).as_secs_f64(),
+                commanded: 0,
                 read_back: 0,
+                unfollowed: 0,
             });
         } else if self.waiting >= GROUP_FRAMES {
             self.put()?;
@@ -262,7 +291,9 @@ impl DataSet {
         let mut task = 0;
         if let Some(episode) = self.episodes.last_mut() {
             episode.frames += 1;
+            episode.commanded += u64::from(frame.is_commanded);
             episode.read_back += u64::from(frame.is_read_back);
+            episode.unfollowed += u64::from(self.unfollowed.apply(frame));
             task = episode.task;
         }
         let scalars = [
@@ -311,6 +342,7 @@ impl DataSet {
             statistics: self.statistics,
             tasks: self.tasks,
             episodes: self.episodes,
+            unfollowed: self.unfollowed,
             index: self.index,
         })
     }
@@ -386,19 +418,34 @@ impl Meta<'_> {
         };
         let recordings = self.sources.iter().map(|source| recording(source.file));
         let episodes = &self.ended.episodes;
-        let read_back: u64 = episodes.iter().map(|episode| episode.read_back).sum();
+        let counts = self.ended.counts();
+        let warnings = [
+            (counts.uncommanded > 0, UNCOMMANDED),
+            (counts.read_back > 0, READ_BACK),
+            (counts.unfollowed > 0, UNFOLLOWED),
+        ];
+        let warnings = warnings.into_iter().filter(|(is_due, _)| *is_due);
+        let warnings: Vec<&str> = warnings.map(|(_, words)| words).collect();
+        let unfollowed = self.joints().into_iter().zip(Dof::ALL);
+        let unfollowed = unfollowed.filter(|(_, dof)| counts.unfollowed_joints[*dof]);
+        let unfollowed: Vec<String> = unfollowed.map(|(name, _)| name).collect();
         let mut origin = json!({
             "resampling": "each frame holds the newest reading received before its time",
             "gaps": "a silence of more than 0.5 s, or a value outside the manual's ranges, is not filled; it ends the episode",
             "action": "the newest target sent to each joint, stops and other programs' writes included; before the first, what the hand held (ANGLE_SET); the angle itself for a joint that was never commanded",
             "grip_states": GripState::ALL,
-            "action_read_back_frames": read_back,
-            "action_warning": (read_back > 0).then_some(READ_BACK),
+            "action_uncommanded_episodes": counts.uncommanded,
+            "action_read_back_frames": counts.read_back,
+            "action_unfollowed_frames": counts.unfollowed,
+            "action_unfollowed_joints": unfollowed,
+            "action_warning": (!warnings.is_empty()).then(|| warnings.join("; ")),
             "recordings": recordings.collect::<Vec<Value>>(),
             "episodes": episodes.iter().map(|episode| json!({
                 "recording": episode.recording,
                 "from_s": episode.from_s,
+                "action_commanded_frames": episode.commanded,
                 "action_read_back_frames": episode.read_back,
+                "action_unfollowed_frames": episode.unfollowed,
             })).collect::<Vec<Value>>(),
         });
         if let (Some(first), Some(origin)) = (self.sources.first(), origin.as_object_mut())
@@ -410,12 +457,18 @@ impl Meta<'_> {
         origin
     }
 
-    fn features(&self) -> Value {
-        let side = match self.side {
+    /// Start of the name of each joint and fingertip.
+    const fn side(&self) -> &'static str {
+        match self.side {
             Side::Left => "kLeftHand",
             Side::Right => "kRightHand",
-        };
-        let joints = [
+        }
+    }
+
+    /// Names of the joints, in register order.
+    fn joints(&self) -> [String; Dof::ALL.len()] {
+        let side = self.side();
+        [
             "Pinky",
             "Ring",
             "Middle",
@@ -423,7 +476,11 @@ impl Meta<'_> {
             "ThumbBend",
             "ThumbRotation",
         ]
-        .map(|joint| format!("{side}{joint}"));
+        .map(|joint| format!("{side}{joint}"))
+    }
+
+    fn features(&self) -> Value {
+        let (side, joints) = (self.side(), self.joints());
         let tips = ["Pinky", "Ring", "Middle", "Index", "Thumb"];
         let tip = |what: &str| tips.map(|tip| format!("{side}{tip}{what}"));
         let touch = [tip("Normal"), tip("Tangential")].concat();

@@ -14,6 +14,7 @@ pub(crate) mod rosbag;
 pub mod source;
 pub(crate) mod statistics;
 pub(crate) mod targets;
+pub(crate) mod unfollowed;
 
 pub use crate::record::export::lerobot::{EpisodeStart, LeRobotPlan};
 pub use crate::record::export::output::{

@@ -1,5 +1,6 @@
 //! Destination of an export: a file or folder that appears only when complete, and is removed otherwise; or standard output.
 
+use crate::hand::PerDof;
 use crate::record::file::reader::Damage;
 use crate::system::SystemError;
 use parquet::errors::ParquetError;
@@ -32,6 +33,11 @@ pub enum ExportError {
         "a left and a right hand cannot be in one data set, because their joints have different names"
     )]
     BothSides,
+    /// A data set of actions that were never commanded.
+    #[error(
+        "no joint was commanded in this time range, so every action would be what the hand held before"
+    )]
+    NeverCommanded,
     /// The user cancelled the export.
     #[error("interrupted")]
     Interrupted,
@@ -64,8 +70,14 @@ pub struct ExportSummary {
 pub struct EpisodeCounts {
     /// Number of episodes.
     pub episodes: u64,
+    /// Number of episodes in which no joint was commanded.
+    pub uncommanded: u64,
     /// Number of frames whose action was not sent, but read back from the hand.
     pub read_back: u64,
+    /// Number of frames in which a joint has moved away from an action that stands still.
+    pub unfollowed: u64,
+    /// The joints that did.
+    pub unfollowed_joints: PerDof<bool>,
 }
 
 impl ExportSummary {

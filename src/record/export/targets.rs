@@ -70,6 +70,15 @@ impl CommandedTargets {
             .any(|(_, target)| target.as_ref().is_some_and(is_read))
     }
 
+    /// True if a target of a joint was sent, or set during the recording by anything else. What the hand held at the first read is no
+    /// command.
+    pub(crate) fn are_commanded(&self) -> bool {
+        let is_held = |target: &JointTarget| target.origin == TargetOrigin::Held;
+        self.six
+            .iter()
+            .any(|(_, target)| target.as_ref().is_some_and(|target| !is_held(target)))
+    }
+
     /// Applies a write that left for the hand. A joint without a value in it retains its target.
     pub(crate) fn sent(&mut self, at: Moment, number: u64, write: &WrittenMemory) {
         let before = self.six;
@@ -159,8 +168,8 @@ mod tests {
         Angle::new(raw).map_or(Target::Leave, Target::Go)
     }
 
-    /// The index finger's target, and whether it is from elsewhere.
-    fn after(steps: &[Step]) -> (Option<i16>, bool) {
+    /// The targets after these steps.
+    fn targets(steps: &[Step]) -> CommandedTargets {
         let mut targets = CommandedTargets::UNKNOWN;
         let first = |command: HandCommand| WrittenMemory::from(command.writes().first().unwrap());
         for step in steps {
@@ -187,7 +196,29 @@ mod tests {
                 }
             }
         }
+        targets
+    }
+
+    /// The index finger's target, and whether it is from elsewhere.
+    fn after(steps: &[Step]) -> (Option<i16>, bool) {
+        let targets = targets(steps);
         (targets.angle(Dof::Index), targets.are_read_back())
+    }
+
+    #[test]
+    fn what_a_hand_held_at_the_first_read_is_no_command() {
+        use Step::{Gesture, Read, Refused, Sent};
+        for (steps, wanted) in [
+            (&[][..], false),
+            (&[Read(0, 700), Read(500, 700)], false),
+            (&[Read(0, 700), Sent(10, 1, 300), Refused(1)], false),
+            (&[Read(0, 700), Sent(10, 1, -1)], false),
+            (&[Sent(0, 1, 700)], true),
+            (&[Read(0, 700), Read(500, 650)], true),
+            (&[Read(0, 700), Gesture(100)], true),
+        ] {
+            assert_eq!(targets(steps).are_commanded(), wanted);
+        }
     }
 
     #[test]

@@ -162,6 +162,7 @@ chinese! {
         ExportError::Empty => "这一段中没有可导出的内容。";
         ExportError::NoNotes => "这一段中没有可作为片段起点的备注。";
         ExportError::BothSides => "左手与右手的自由度名称不同，不能放入同一数据集。";
+        ExportError::NeverCommanded => "这一段中没有向任何自由度发过指令，动作将始终是灵巧手先前保持的目标。";
         ExportError::Interrupted => "已中断。";
         ExportError::ReaderGone => "输出的读取方已离开。";
     }

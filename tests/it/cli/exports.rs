@@ -306,12 +306,64 @@ fn targets_of_another_controller_are_read_back_and_that_is_said() {
             .unwrap()
             .contains("another controller")
     );
-    // What the hand held all along, and nobody changed, is no reason for a warning.
-    let still = place
-        .export(&["a.mcap"], &["--lerobot", "--to", "1.9"], "still")
+    assert_eq!(info["action_uncommanded_episodes"], 0);
+    // What the hand held all along, and nobody changed, is no command.
+    let still = ["--lerobot", "--to", "1.9"];
+    let words = "no joint was commanded in this time range";
+    refused(&place.export(&["a.mcap"], &still, "none"), 1, words);
+    let wished = [&still[..], &["--uncommanded", "--json"]].concat();
+    let told = place.export(&["a.mcap"], &wished, "still").ok();
+    assert_eq!(told.lines()[0]["action_uncommanded_episodes"], 1);
+    assert!(
+        told.err
+            .contains("in 1 of 1 episodes no joint was commanded"),
+        "{}",
+        told.err
+    );
+    let info = &place.info("still")["handscope"];
+    let warning = info["action_warning"].as_str().unwrap();
+    assert!(warning.contains("no joint was commanded"), "{warning}");
+    assert_eq!(info["action_unfollowed_frames"], 0);
+    refused(
+        &place.export(&["a.mcap"], &["--csv", "--uncommanded"], "none"),
+        2,
+        "are for --lerobot",
+    );
+}
+
+#[test]
+fn a_joint_that_moves_while_its_action_stands_still_is_reported() {
+    let place = Place::new();
+    let mut script = Script::new();
+    for millis in (0..6000).step_by(TICK_MS as usize) {
+        // Two seconds after its command the hand is bent by something else, and stays so.
+        let bent = i16::try_from(u64::saturating_sub(millis, 3000) / 4).unwrap();
+        script.tick(millis, 700 - bent.min(400), 700);
+        if millis == 1000 {
+            script.send(1000, WriteCause::Setpoint, 700, WriteFate::Acknowledged);
+        }
+    }
+    script.write(&place.path("a.mcap"), Side::Right);
+    let told = place
+        .export(&["a.mcap"], &["--lerobot", "--json"], "set")
         .ok();
-    assert_eq!(still.err, "");
-    assert!(place.info("still")["handscope"]["action_warning"].is_null());
+    let frames = told.lines()[0]["action_unfollowed_frames"]
+        .as_u64()
+        .unwrap();
+    // From the first that is 0.1 away, 400 ms after it began to move, to the end.
+    assert!((74..=79).contains(&frames), "{frames}");
+    let words = format!("in {frames} of ");
+    assert!(
+        told.err.contains(&words) && told.err.contains("index"),
+        "{}",
+        told.err
+    );
+    let info = &place.info("set")["handscope"];
+    assert_eq!(info["action_unfollowed_frames"], frames);
+    assert_eq!(info["action_unfollowed_joints"][3], "kRightHandIndex");
+    let warning = info["action_warning"].as_str().unwrap();
+    assert!(warning.contains("stands still"), "{warning}");
+    assert_eq!(info["action_uncommanded_episodes"], 0);
 }
 
 #[test]

@@ -396,9 +396,20 @@ fn tables_and_bags_take_their_place_whole_or_not_at_all() {
 #[test]
 fn a_data_set_for_learners_says_how_it_was_made() {
     let recorded = record("2.5");
-    let told = recorded
-        .export(&["--lerobot", "--fps", "20", "--json"], "set")
-        .ok();
+    // The joints move, and nobody told them to.
+    refused(
+        &recorded.export(&["--lerobot", "--fps", "20"], "none"),
+        1,
+        &["no joint was commanded", "--uncommanded"],
+    );
+    let args = ["--lerobot", "--fps", "20", "--uncommanded", "--json"];
+    let told = recorded.export(&args, "set").ok();
+    assert!(
+        told.err
+            .contains("in 1 of 1 episodes no joint was commanded"),
+        "{}",
+        told.err
+    );
     let frames = told.lines()[0]["rows"].as_u64().unwrap();
     assert!((20..=90).contains(&frames), "{frames}");
     let read = |name: &str| -> Value {
@@ -411,6 +422,9 @@ fn a_data_set_for_learners_says_how_it_was_made() {
         (&"v3.0".into(), &20.into())
     );
     assert_eq!(info["total_frames"], frames);
+    let warning = info["handscope"]["action_warning"].as_str().unwrap();
+    assert!(warning.contains("no joint was commanded"), "{warning}");
+    assert_eq!(info["handscope"]["action_uncommanded_episodes"], 1);
     let names = &info["features"]["action"]["names"];
     assert_eq!(names[0], "kRightHandPinky");
     assert_eq!(names[5], "kRightHandThumbRotation");
