@@ -89,7 +89,7 @@ fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
     }
     if imported.has_grip {
         lines.push(
-            "left out: the columns of the grip, which is recomputed from the readings".into(),
+            "left out: the columns of the grip: it is inferred from readings of which a table does not hold the status, so it is unknown in the recording".into(),
         );
     }
     if imported.incomplete_tips > 0 {
