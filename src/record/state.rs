@@ -161,6 +161,11 @@ pub enum ArmRefusal {
         "the hand refused its speed and force limits; if another Handscope shares it, ask someone there to grant you control"
     )]
     Refused,
+    /// The program that shares the hand does not let this one have control now.
+    #[error(
+        "the program that shares the hand keeps control of it: another one has control, or nobody there has granted it; ask there"
+    )]
+    Taken,
     /// Angles or faults were not read yet, or are outdated.
     #[error("angles and faults are unknown or stale")]
     NotRead,

@@ -2,7 +2,8 @@
 //! requests are checked before each.
 
 use crate::hand::{
-    ArmEpoch, Dof, Groups, HandCommand, Moment, PerDof, Refusal, RegisterWrite, Target, Timed,
+    ArmEpoch, Dof, Groups, HandCommand, ModbusException, Moment, PerDof, Refusal, RegisterWrite,
+    Target, Timed,
 };
 use crate::link::bus::client::Urgent;
 use crate::link::bus::{Bus, BusError};
@@ -295,6 +296,9 @@ impl Session {
             if let Err(error) = self.write(bus, &write, WriteCause::Arming).await {
                 self.failed(bus, &error).await?;
                 let reason = match error {
+                    BusError::Refused {
+                        reason: Refusal::Exception(ModbusException::Busy),
+                    } => ArmRefusal::Taken,
                     BusError::Refused { .. } => ArmRefusal::Refused,
                     _ => ArmRefusal::NoAnswer,
                 };

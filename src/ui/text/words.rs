@@ -56,7 +56,7 @@ pub(crate) fn refusal(look: Look, reason: ArmRefusal) -> String {
         ArmRefusal::Fault => look.tr(main::REFUSED_FAULT).into(),
         ArmRefusal::HandBusy => look.tr(main::REFUSED_BUSY).into(),
         ArmRefusal::LetGo => look.tr(main::REFUSED_LET_GO).into(),
-        ArmRefusal::Refused => look.tr(main::REFUSED_AFAR).into(),
+        ArmRefusal::Refused | ArmRefusal::Taken => look.tr(main::REFUSED_AFAR).into(),
         ArmRefusal::NoAnswer => look.tr(main::REFUSED_NO_ANSWER).into(),
         ArmRefusal::Replaced => look.tr(main::REFUSED_REPLACED).into(),
         ArmRefusal::NotRead => look.tr(main::REFUSED_NOT_READ).into(),

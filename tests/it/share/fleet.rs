@@ -213,7 +213,7 @@ async fn from_afar_nobody_moves_a_hand_before_a_person_there_lets_it_or_its_file
                 }
             };
             let refused = timeout(PATIENCE, refused).await;
-            assert_eq!(refused, Ok(ArmRefusal::Refused));
+            assert_eq!(refused, Ok(ArmRefusal::Taken));
             assert!(place.gateway.clients()[0].refusal.is_some());
             assert_eq!(place.wires.writes(), [0_u16; 0]);
             assert_ne!(watcher.status().state, LinkState::Armed);

@@ -374,8 +374,21 @@ fn a_script_that_does_not_read_may_not_move_the_hand() {
         client.until_held(begun);
         let mut said = BufReader::new(child.stderr.take().unwrap()).lines();
         assert!(said.any(|line| line.unwrap().contains("the output was not read")));
+        // Once it reads again, it is told so.
+        let told = BufReader::new(child.stdout.take().unwrap()).lines();
+        let told = told.map(|line| serde_json::from_str(&line.unwrap()).unwrap());
+        let ended: Value = told
+            .filter(|told: &Value| told["reply"]["id"] == 1)
+            .next()
+            .unwrap();
+        let ended = &ended["reply"];
+        assert_eq!(ended["kind"], "silent", "{ended}");
+        let why = ended["error"].as_str().unwrap();
+        assert!(
+            why.contains("did not read its states for a second"),
+            "{why}"
+        );
         drop(asks);
-        drop(child.stdout.take());
         child.wait().unwrap();
     });
 }
@@ -545,7 +558,8 @@ fn two_scripts_share_a_hand_and_one_moves_it() {
         let mut second = Script::start(&format!("tcp:{}", first.gateway));
         first.done(json!({"do": "arm"}));
         let no = second.ask(json!({"do": "arm"}));
-        assert_eq!(no["kind"], "refused", "{no}");
+        assert_eq!(no["kind"], "taken", "{no}");
+        assert!(no["error"].as_str().unwrap().contains("ask there"), "{no}");
         first.done(to_index(600, 500));
         while second.until("state")["angle"][3].as_i64().unwrap() > 620 {}
         first.done(json!({"do": "release"}));

@@ -15,7 +15,7 @@ use crate::cli::share::stdio::request::{LimitsRequest, MoveRequest, StdioLine, S
 use crate::cli::watch::telemetry::{grip_json, sample_json};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::kinematics::Side;
-use crate::hand::{ArmEpoch, Group, HandCommand, HandSample};
+use crate::hand::{ArmEpoch, Group, HandCommand, HandSample, Moment};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, Records};
@@ -23,7 +23,8 @@ use crate::motion::drive::{Armed, STOP_LOST};
 use crate::motion::follow::{FollowStart, FollowTerms, follow};
 use crate::motion::move_to::{MoveEnd, MoveReport, MoveStart, move_to};
 use crate::motion::program::Ended;
-use crate::record::{Disarmed, LinkState, Record, Rest};
+use crate::record::{ArmRefusal, Disarmed, LinkState, Record, Rest};
+use crate::store::calendar;
 use crate::transport::Endpoint;
 use futures::future::{BoxFuture, FutureExt as _, OptionFuture};
 use futures::stream::{FuturesUnordered, StreamExt as _};
@@ -114,6 +115,8 @@ struct StdioSession<'a> {
     /// The recording being closed, and the ID for its reply.
     ending: Option<(Value, BoxFuture<'static, anyhow::Result<()>>)>,
     is_live: bool,
+    /// True once control was taken from a program that did not read the output.
+    unread: bool,
 }
 
 /// Serves until standard input ends, standard output is closed, or the user ends it. A hand that may move is stopped.
@@ -138,6 +141,7 @@ pub(crate) async fn serve<'a>(
         recording: None,
         ending: None,
         is_live: true,
+        unread: false,
         hand,
     };
     tokio::select! {
@@ -154,8 +158,11 @@ impl StdioSession<'_> {
         lines: &mut mpsc::Receiver<Vec<u8>>,
         records: &mut Records,
     ) -> Result<(), NobodyReads> {
+        let began =
+            calendar::since_1970().saturating_sub(self.hand.link.clock().now().since(Moment::ZERO));
         self.replies.send(&json!({"ready": {
             "v": VERSION,
+            "since_1970_s": began.as_secs_f64(),
             "program": env!("CARGO_PKG_VERSION"),
             "hand": self.hand.endpoint.to_string(),
             "simulated": self.hand.endpoint.is_sim(),
@@ -270,13 +277,13 @@ impl StdioSession<'_> {
             && let Some(right) = self.holds()
         {
             notify("the output was not read for a second: the hand is stopped");
+            self.unread = true;
             let _done = self.hand.link.give_back(right.lease, Disarmed::Silent);
         }
         if self.task.is_none()
-            && let Some(right) = self.right
-            && let Err(end) = self.hand.link.check(right.lease)
+            && let Some(Err(why)) = self.right.map(|right| self.check(right))
         {
-            self.lose(&end.into())?;
+            self.lose(&why)?;
         }
         Ok(())
     }
@@ -381,8 +388,17 @@ impl StdioSession<'_> {
                 "nothing was moved: arm the hand first",
             )
         })?;
-        self.hand.link.check(right.lease)?;
+        self.check(right)?;
         Ok(right)
+    }
+
+    /// Reports the end of a control.
+    fn check(&self, right: Right) -> Result<(), StdioRefusal> {
+        let checked = self.hand.link.check(right.lease);
+        checked.map_err(|end| match end {
+            LeaseRefusal::Ended(Disarmed::Silent) if self.unread => StdioRefusal::unread(),
+            end => end.into(),
+        })
     }
 
     /// Ends the current task, without sending anything to the hand.
@@ -596,6 +612,7 @@ impl StdioSession<'_> {
         match done {
             TaskResult::Armed(Ok(right)) => {
                 self.right = Some(right);
+                self.unread = false;
                 self.reply(&id, Ok(json!({})))
             }
             // The previous control may still be valid, or have ended meanwhile.
@@ -708,8 +725,12 @@ async fn armed(link: &LinkHandle, right: Right) -> Result<ArmEpoch, StdioRefusal
     };
     link.check(right.lease)?;
     link.disarm();
+    let kind = match why {
+        ArmRefusal::Taken => RefusalKind::Taken,
+        _ => RefusalKind::Refused,
+    };
     Err(StdioRefusal::new(
-        RefusalKind::Refused,
+        kind,
         format!("the hand cannot be armed: {why}"),
     ))
 }

@@ -34,6 +34,14 @@ impl StdioRefusal {
         Self { kind, why }
     }
 
+    /// Loss of control by a program that does not read.
+    pub(crate) fn unread() -> Self {
+        Self::new(
+            RefusalKind::Ended(Disarmed::Silent),
+            "the hand was stopped, because this program did not read its states for a second; one long call that lets nothing else run does that, such as an import or a computation without a pause",
+        )
+    }
+
     /// Refusal of a task that was replaced by another request.
     pub(crate) fn replaced() -> Self {
         Self::new(RefusalKind::Replaced, "another request came first")
