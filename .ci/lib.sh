@@ -18,7 +18,7 @@ more_modbus_python="pyModbusTCP uModbus modbus_tk easymodbus pylibmodbus modbus-
 models="mujoco yourdfpy"
 # websockets is for the tests, which show a hand to a viewer.
 readers="mcap mcap-ros2-support rosbags websockets pyarrow pandas polars zstandard lz4"
-tools="maturin uv mypy pandas pandas-stubs matplotlib nbclient nbformat ipykernel"
+tools="maturin uv mypy pandas pandas-stubs pyarrow matplotlib nbclient nbformat ipykernel"
 
 skipped() { printf 'skipped: %s: %s\n' "$1" "$2" | tee -a "$out/skipped.txt"; }
 required() { printf '%s\n' "$@" | tee -a "$out/required.txt"; }

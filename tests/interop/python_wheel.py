@@ -59,7 +59,7 @@ with handscope.open("sim:") as hand, hand.armed():
 """
     run(fresh / "bin/python", "-c", five_lines, cwd=fresh, env=bare)
     if how == "pip":
-        run(*install, "pandas")
+        run(*install, "pandas", "pyarrow")
         run(fresh / "bin/python", "-m", "unittest", "discover", package / "tests", cwd=fresh, env=bare)
     run(*uninstall, "handscope")
     left = {path for path in files(fresh) - before if "handscope" in str(path.relative_to(fresh)).lower()}
