@@ -5,18 +5,27 @@ The manual is `handscope help python`.
 
 from __future__ import annotations
 
+from importlib import metadata as _metadata
+
 from .errors import Disarmed, HandscopeError, LinkLost, NotArmed, ProgramNotFound, Refused, Taken
-from .hand import Hand, Recording, States
-from .recording import read
-from .state import FINGERS, JOINTS, Grip, GripResult, State, Touch
+from .hand import Hand, Motion, Recording, States, hands
+from .recording import events, read
+from .state import FINGERS, JOINTS, Finger, Grip, GripResult, GripState, Joint, MoveEnd, State, Touch
 
 __all__ = [
-    "FINGERS", "JOINTS", "Disarmed", "Grip", "GripResult", "Hand", "HandscopeError", "LinkLost", "NotArmed",
-    "ProgramNotFound", "Recording", "Refused", "State", "States", "Taken", "Touch", "open", "read",
+    "FINGERS", "JOINTS", "Disarmed", "Finger", "Grip", "GripResult", "GripState", "Hand", "HandscopeError", "Joint", "LinkLost",
+    "Motion", "MoveEnd", "NotArmed", "ProgramNotFound", "Recording", "Refused", "State", "States", "Taken", "Touch", "events",
+    "hands", "open", "read",
 ]  # fmt: skip
 
+try:
+    __version__ = _metadata.version("handscope")
+except _metadata.PackageNotFoundError:
+    __version__ = "0+source"
 
-def open(url: str, *, hz: float = 100.0, side: str = "right", port: int = 0) -> Hand:
+
+def open(url: str, *, hz: float = 100.0, side: str = "right", port: int = 0, writers: bool = True) -> Hand:
     """Opens a hand, such as `sim:` or `tcp:192.168.11.210` (`handscope help hands`), and shares it on this computer.
-    Nothing moves. `hz` is how often it is read; `port` where it is shared, any free one if 0."""
-    return Hand(url, hz, side, port)
+    Nothing moves. `hz` is how often it is read; `port` where it is shared, any free one if 0. Without `writers` no other program
+    can move the hand, the window of `show()` and the commands (`trial`, `tune`, ...) included."""
+    return Hand(url, hz, side, port, writers)

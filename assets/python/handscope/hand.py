@@ -13,14 +13,15 @@ import time
 import weakref
 from collections import deque
 from contextlib import contextmanager
-from types import TracebackType
-from typing import Any, Callable, Deque, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Type, Union
+from typing import (
+    Any, Callable, Deque, Dict, Iterable, Iterator, List, Literal, Mapping, NoReturn, Optional, Sequence, Tuple, Union, overload,
+)  # fmt: skip
 
 from . import program
-from .errors import Disarmed, HandscopeError, LinkLost, NotArmed, Taken, of
-from .state import JOINTS, Grip, GripResult, State, Touch
+from .errors import Disarmed, HandscopeError, LinkLost, NotArmed, Refused, Taken, of
+from .state import JOINTS, Finger, Grip, GripResult, Joint, State, Touch
 
-CLOSING = ("little", "ring", "middle", "index", "thumb_bend")
+CLOSING: Tuple[Joint, ...] = ("little", "ring", "middle", "index", "thumb_bend")
 """The joints that `close_until` closes, unless others are named."""
 
 _WAITING_MAX = 4096
@@ -29,8 +30,16 @@ _WINDOW_OPENS_S = 2.0
 _COMMAND_GONE_S = 1.0
 
 _log = logging.getLogger("handscope")
+_hands: "weakref.WeakSet[Hand]" = weakref.WeakSet()
 
 Callback = Callable[[State], None]
+Count = Optional[int]
+Share = Optional[float]
+
+
+def hands() -> List["Hand"]:
+    """The hands that this script has open, also those that no name of it is left of."""
+    return [hand for hand in list(_hands) if not hand._ended and hand._program.is_own]
 
 
 class States:
@@ -54,6 +63,7 @@ class States:
         return self
 
     def __next__(self) -> State:
+        self._hand._program.check()
         with self._news:
             self._news.wait_for(lambda: self._waiting or self._hand._ended or self._hand._link_lost)
             if not self._waiting:
@@ -99,10 +109,33 @@ class Recording:
             self.end()
 
 
-class Hand:
-    """A hand that this script shares. `handscope.open` gives one; `close()` or the end of its `with` block stops what moves."""
+class Motion:
+    """A motion that goes on while the script does: `hand.move(index=400, wait=False)`."""
 
-    def __init__(self, url: str, hz: float = 100.0, side: str = "right", port: int = 0) -> None:
+    def __init__(self, hand: "Hand", asked: program.Asked) -> None:
+        self._hand = hand
+        self._asked = asked
+
+    @property
+    def done(self) -> bool:
+        """True once it has ended, however it did."""
+        return bool(self._asked.reply or self._hand._ended)
+
+    def result(self, timeout_s: Optional[float] = None) -> GripResult:
+        """Waits until it has ended; raises what ended it early. The hand goes on if it does not end in time."""
+        try:
+            return GripResult._done(self._asked.wait(timeout_s))
+        except (Disarmed, NotArmed) as why:
+            # Why it ended may have been told already, before this was asked.
+            self._hand._disarmed = self._hand._disarmed or why
+            raise self._hand._disarmed from None
+
+
+class Hand:
+    """A hand that this script shares. `handscope.open` gives one; `close()`, the end of its `with` block, of the script, or of
+    the last name that it has there stops what moves."""
+
+    def __init__(self, url: str, hz: float, side: str, port: int, writers: bool) -> None:
         self._news = threading.Condition()
         self._newest: Optional[State] = None
         self._lost = 0
@@ -110,13 +143,15 @@ class Hand:
         self._link_lost: Optional[str] = None
         self._disarmed: Optional[HandscopeError] = None
         self._refused: Optional[HandscopeError] = None
-        self._armed: Optional[Dict[str, Optional[int]]] = None
+        self._armed: Optional[Dict[str, Count]] = None
         self._callbacks: List[Callback] = []
         self._readers: "weakref.WeakSet[States]" = weakref.WeakSet()
         self._windows: List["subprocess.Popen[str]"] = []
-        options = ["--hand", url, "--side", side, "--tcp", f"127.0.0.1:{port}", "--writers"]
+        options = ["--hand", url, "--side", side, "--tcp", f"127.0.0.1:{port}"]
         self._side = side
-        self._program = program.Program(options, self._told)
+        self._began = 0.0
+        self._program = _started(url, options + ["--writers"] * writers, weakref.WeakMethod(self._told))
+        self._close = weakref.finalize(self, _end, self._program, self._windows)
         ready = self._program.ready or {}
         self.url: str = ready["hand"]
         """The hand, as the program spells it."""
@@ -124,22 +159,26 @@ class Hand:
         """True for the built-in hand."""
         self.share_url: str = f"tcp:{ready['tcp']}"
         """Where other programs of this computer, and other scripts, find the same hand."""
-        if hz != 100.0:
+        self._asked_url = url
+        try:
             self.rate(hz)
+        except BaseException:
+            self.close()
+            raise
+        _hands.add(self)
 
     # What is heard
 
     def _told(self, told: Mapping[str, Any]) -> None:
-        """Takes what the program says, on the thread that reads it."""
+        # On the thread that reads what the program says.
         if "state" in told:
-            state = State._of(told["state"], self._lost)
+            state = State._of(told["state"], self._lost, self._began)
             self._lost = 0
             with self._news:
                 self._newest = state
                 self._link_lost = None
                 self._news.notify_all()
-            for reader in list(self._readers):
-                reader._take(state)
+            self._pass(state)
             for callback in list(self._callbacks):
                 try:
                     callback(state)
@@ -152,23 +191,25 @@ class Hand:
             self._disarmed = of(told["disarmed"]["kind"], told["disarmed"]["why"])
         elif "refused" in told:
             self._refused = of(told["refused"]["kind"], told["refused"]["why"])
-        elif "link" in told:
+        elif "ready" in told:
+            self._began = told["ready"].get("since_1970_s", 0.0)
+        elif "link" in told or "ended" in told:
             with self._news:
-                lost = told["link"]["state"] == "lost"
-                self._link_lost = (told["link"]["why"] or "the link to the hand is lost") if lost else None
+                link = told.get("link", {})
+                lost = link.get("state") == "lost"
+                self._link_lost = (link["why"] or "the link to the hand is lost") if lost else None
+                self._ended = told.get("ended")
                 self._news.notify_all()
-            for reader in list(self._readers):
-                reader._take(None)
-        elif "ended" in told:
-            with self._news:
-                self._ended = told["ended"]
-                self._news.notify_all()
-            for reader in list(self._readers):
-                reader._take(None)
+            self._pass(None)
+
+    def _pass(self, state: Optional[State]) -> None:
+        for reader in list(self._readers):
+            reader._take(state)
 
     @property
     def state(self) -> State:
         """The newest state. Waits for the first; raises if the hand does not answer any more."""
+        self._program.check()
         with self._news:
             self._news.wait_for(lambda: self._newest or self._ended or self._link_lost, _FIRST_STATE_S)
             if self._ended:
@@ -180,7 +221,7 @@ class Hand:
             return self._newest
 
     @property
-    def touch(self) -> Dict[str, Touch]:
+    def touch(self) -> Dict[Finger, Touch]:
         """The fingertips of the newest state."""
         return self.state.touch
 
@@ -191,6 +232,7 @@ class Hand:
 
     def states(self) -> States:
         """The states from now on, each one: `for state in hand.states():`."""
+        self._program.check()
         states = States(self)
         self._readers.add(states)
         return states
@@ -198,6 +240,7 @@ class Hand:
     def on_state(self, callback: Callback) -> Callable[[], None]:
         """Calls back with each state from now on, on a thread of its own; gives what ends that. Be quick: what is not read in
         time is lost, and told as lost."""
+        self._program.check()
         self._callbacks.append(callback)
 
         def end() -> None:
@@ -214,61 +257,86 @@ class Hand:
     # What moves the hand
 
     @contextmanager
-    def armed(self, speed: Optional[int] = None, force_g: Optional[int] = None) -> Iterator["Hand"]:
-        """Lets this script move the hand, beginning with this speed and force threshold (gentle ones, if none are named).
-        The hand stops where the block ends, however it does."""
+    def armed(self, speed: Count = None, force_g: Count = None) -> Iterator["Hand"]:
+        """Lets this script move the hand, with this speed and force threshold where none are named later (gentle ones, if none
+        are named here). The hand stops where the block ends, however it does."""
         if self._armed is not None:
             raise NotArmed("the hand is armed already, in a block around this one")
-        limits = {"speed": speed, "force_g": force_g}
-        self._armed = limits
+        self._armed = limits = _limits(speed, force_g)
         try:
             self._disarmed = self._refused = None
             self._program.ask("arm", **limits)
             yield self
         finally:
             self._armed = None
-            if not self._ended:
+            if not self._ended and self._program.is_own:
                 self._program.ask("release")
+        self._raise_refused()
+
+    def _raise_refused(self) -> None:
+        """Raises what was refused of what was sent and not waited for."""
+        refused, self._refused = self._refused, None
+        if refused is not None:
+            raise refused
 
     def _may_move(self) -> None:
+        self._program.check()
         if self._armed is None:
             raise NotArmed("nothing was moved: the hand moves only inside 'with hand.armed():'")
         if self._disarmed is not None:
             raise self._disarmed
-        refused, self._refused = self._refused, None
-        if refused is not None:
-            # What was sent before, and not waited for.
-            raise refused
+        self._raise_refused()
 
-    def _moves(self, **fields: Any) -> GripResult:
+    def _begin(self, angle: Mapping[Joint, Share], speed: Count, force_g: Count) -> Motion:
+        limits = _limits(speed, force_g)
+        six = [None if (at := angle.get(joint)) is None else _whole(joint, at, _NO_SHARE) for joint in JOINTS]
         self._may_move()
-        try:
-            return GripResult._done(self._program.ask("move", timeout_s=None, **fields))
-        except Disarmed as why:
-            self._disarmed = why
-            raise
+        # At rest, because what a hand holds is not known before.
+        asked = self._program.begin("move", angle=six, settle=True, **limits)
+        assert asked
+        return Motion(self, asked)
 
-    def move(self, *, speed: Optional[int] = None, force_g: Optional[int] = None, **joints: float) -> GripResult:
-        """Moves joints to these angles, 0 bent to 1000 open, and waits until they are there, or something stops them:
-        `hand.move(index=400, thumb_bend=600, speed=100)`. Other joints are left alone."""
-        return self._moves(angle=_six(joints), speed=speed, force_g=force_g)
+    @overload
+    def move(
+        self, *, little: Count = ..., ring: Count = ..., middle: Count = ..., index: Count = ..., thumb_bend: Count = ...,
+        thumb_rotate: Count = ..., speed: Count = ..., force_g: Count = ..., wait: Literal[True] = ..., **others: NoReturn,
+    ) -> GripResult: ...  # fmt: skip
+
+    @overload
+    def move(
+        self, *, little: Count = ..., ring: Count = ..., middle: Count = ..., index: Count = ..., thumb_bend: Count = ...,
+        thumb_rotate: Count = ..., speed: Count = ..., force_g: Count = ..., wait: Literal[False], **others: NoReturn,
+    ) -> Motion: ...  # fmt: skip
+
+    def move(
+        self, *, little: Count = None, ring: Count = None, middle: Count = None, index: Count = None, thumb_bend: Count = None,
+        thumb_rotate: Count = None, speed: Count = None, force_g: Count = None, wait: bool = True, **others: NoReturn,
+    ) -> Union[GripResult, Motion]:  # fmt: skip
+        """Moves joints to these angles, 0 bent to 1000 open, and waits until the hand rests there, or something stops them:
+        `hand.move(index=400, thumb_bend=600, speed=100)`. Other joints are left alone. Speed and force threshold are those of
+        `armed`, unless they are named. With `wait=False` the script goes on at once, and `result()` waits."""
+        joints = _joints(others, little, ring, middle, index, thumb_bend, thumb_rotate)
+        motion = self._begin(joints, speed, force_g)
+        return motion.result() if wait else motion
 
     def close_until(
-        self, force_g: int, joints: Sequence[str] = CLOSING, *, to: int = 0, speed: Optional[int] = None
+        self, force_g: int, joints: Union[Joint, Sequence[Joint]] = CLOSING, *, to: int = 0, speed: Count = None
     ) -> GripResult:
         """Closes joints until each presses with about this force, or is at `to`; waits until the hand rests, and says what it
         holds. A force threshold acts late: the faster, the more a finger presses (`handscope help safety`)."""
-        angle = _six({joint: to for joint in joints})
-        return self._moves(angle=angle, speed=speed, force_g=force_g, settle=True)
+        chosen: Sequence[Joint] = (joints,) if isinstance(joints, str) else joints
+        _known(chosen)
+        return self._begin({joint: to for joint in chosen}, speed, force_g).result()
 
-    def follow(self, **joints: Optional[float]) -> None:
+    def follow(
+        self, *, little: Share = None, ring: Share = None, middle: Share = None, index: Share = None, thumb_bend: Share = None,
+        thumb_rotate: Share = None, **others: NoReturn,
+    ) -> None:  # fmt: skip
         """Sends a target to be followed, 0 bent to 1 open, and waits for nothing. For loops: without the next within 0.2 s the
         hand is held. How fast and how far ahead it goes is bounded (`handscope help stream`)."""
+        joints = _joints(others, little, ring, middle, index, thumb_bend, thumb_rotate)
         self._may_move()
-        unknown = set(joints) - set(JOINTS)
-        if unknown:
-            raise ValueError(f"{unknown.pop()!r} is not a joint: choose {', '.join(JOINTS)}")
-        self._program.tell({self._side: [joints.get(joint) for joint in JOINTS]})
+        self._program.tell({self._side: [joints[joint] for joint in JOINTS]})
 
     def stop(self) -> None:
         """Stops the hand, whoever moves it, and waits until it is seen to rest. An `armed()` block is over with it."""
@@ -333,8 +401,6 @@ class Hand:
                     raise
             time.sleep(0.02)
 
-    # Beside it
-
     def record(self, path: Union[str, "os.PathLike[str]"]) -> Recording:
         """Records everything from now on, until the block or the recording ends: `with hand.record("grasp.mcap"):`."""
         whole = os.path.abspath(path)
@@ -354,40 +420,72 @@ class Hand:
         raise HandscopeError(program.sentence(words.splitlines(), "the window was closed at once"))
 
     def close(self) -> None:
-        """Stops a hand that may move, and ends its program and its windows."""
-        self._program.close()
+        """Disconnects: stops a hand that may move, and ends its program and its windows. No finger closes."""
+        self._close()
         self._ended = "this hand was closed"
-        for window in self._windows:
-            window.terminate()
-            window.communicate()
 
     def __enter__(self) -> "Hand":
         return self
 
-    def __exit__(
-        self, _type: Optional[Type[BaseException]], _error: Optional[BaseException], _trace: Optional[TracebackType]
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self.close()
 
     def __repr__(self) -> str:
         return f"<handscope.Hand {self.url}>"
 
 
-def _six(joints: Mapping[str, float]) -> List[Optional[int]]:
+def _started(url: str, options: List[str], told: "weakref.WeakMethod[Any]") -> program.Program:
+    """Starts the program of a hand, whose last name may be gone before it ends."""
+
+    def tell(line: Mapping[str, Any]) -> None:
+        if hear := told():
+            hear(line)
+
+    words = f"{url} is open in this script already: use that hand of handscope.hands(), or close() it first"
+    shared = [hand.share_url for hand in hands()]
+    # A simulated hand is another one each time.
+    if any(url in (hand.url, hand._asked_url) for hand in hands() if not hand.simulated) and url not in shared:
+        raise Refused(words, "open_already")
+    try:
+        return program.Program(options, tell)
+    except HandscopeError as error:
+        if any(f"(process {hand._program.pid})" in str(error) for hand in hands()):
+            raise Refused(words, "open_already") from error
+        raise
+
+
+def _end(ended: program.Program, windows: "List[subprocess.Popen[str]]") -> None:
+    """Ends what belongs to a hand, once."""
+    ended.close()
+    for window in windows if ended.is_own else ():
+        window.terminate()
+        window.communicate()
+
+
+def _joints(others: Mapping[str, object], *six: Share) -> Dict[Joint, Share]:
+    _known(others)
+    return dict(zip(JOINTS, six))
+
+
+def _known(joints: Iterable[str]) -> None:
     unknown = set(joints) - set(JOINTS)
     if unknown:
         raise ValueError(f"{unknown.pop()!r} is not a joint: choose {', '.join(JOINTS)}")
-    return [None if (at := joints.get(joint)) is None else _count(joint, at) for joint in JOINTS]
 
 
-def _count(joint: str, at: float) -> int:
-    """An angle of a joint in counts. One of `follow`, 0 to 1, is none: rounded, it would be a fist."""
-    if isinstance(at, bool) or not isinstance(at, numbers.Real) or not float(at).is_integer():
-        raise HandscopeError(
-            f"nothing was moved: {joint}={at!r} is no angle; move() takes whole numbers from 0, bent, to 1000, open,"
-            " and follow() takes 0 to 1"
-        )
-    return int(at)
+# An angle of `follow` is refused by `move`: rounded, it would be a fist.
+_NO_SHARE = "; move() takes whole numbers from 0, bent, to 1000, open, and follow() takes 0 to 1"
+
+
+def _whole(name: str, value: float, more: str = "") -> int:
+    if isinstance(value, bool) or not isinstance(value, numbers.Real) or not float(value).is_integer():
+        raise Refused(f"nothing was moved: {name}={value!r} is not a whole number{more}", "wrong")
+    return int(value)
+
+
+def _limits(speed: Count, force_g: Count) -> Dict[str, Count]:
+    limits = {"speed": speed, "force_g": force_g}
+    return {name: None if value is None else _whole(name, value) for name, value in limits.items()}
 
 
 def _options(options: Mapping[str, Any]) -> List[str]:

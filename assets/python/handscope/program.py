@@ -60,15 +60,7 @@ class Ran(NamedTuple):
 
 def run(arguments: Sequence[str]) -> Ran:
     """Runs a command to its end. Ctrl-C ends it as in a terminal."""
-    child = subprocess.Popen(
-        [find(), *arguments],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        encoding="utf-8",
-        **apart(),
-    )
+    child = _start([find(), *arguments], subprocess.DEVNULL)
     try:
         told, words = child.communicate()
     except BaseException:
@@ -76,12 +68,15 @@ def run(arguments: Sequence[str]) -> Ran:
         child.communicate()
         raise
     said: List[str] = words.splitlines()
-    if child.returncode:
-        why = sentence(said, f"'handscope {arguments[0]}' failed")
-        return Ran(told.splitlines(), why, child.returncode == 2)
-    for line in said:
+    why = sentence(said, f"'handscope {arguments[0]}' failed") if child.returncode else None
+    for line in [] if why else said:
         _log.info("%s", line)
-    return Ran(told.splitlines(), None, False)
+    return Ran(told.splitlines(), why, child.returncode == 2)
+
+
+def _start(command: Sequence[str], stdin: int) -> "subprocess.Popen[str]":
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, bufsize=1, stdin=stdin, stdout=pipe, stderr=pipe, text=True, encoding="utf-8", **apart())
 
 
 def apart() -> Dict[str, Any]:
@@ -100,6 +95,27 @@ def sentence(words: Sequence[str], otherwise: str) -> str:
     return said[-1] if said else otherwise
 
 
+class Asked:
+    """A request on its way to its answer."""
+
+    def __init__(self, program: "Program", what: str) -> None:
+        self._program = program
+        self._what = what
+        self.reply: Dict[str, Any] = {}
+
+    def wait(self, timeout_s: Optional[float]) -> Mapping[str, Any]:
+        """The answer; raises what went wrong."""
+        program = self._program
+        program.check()
+        with program._answered:
+            if not program._answered.wait_for(lambda: self.reply or program._ended, timeout_s):
+                raise HandscopeError(f"the program did not answer '{self._what}' within {timeout_s} s", "no_answer")
+        if "ok" not in self.reply:
+            raise of(self.reply["kind"], self.reply["error"]) if self.reply else program._gone()
+        done: Mapping[str, Any] = self.reply["ok"]
+        return done
+
+
 class Program:
     """One shared hand, in a process of its own. That process stops the hand when this one ends, however it does."""
 
@@ -109,34 +125,31 @@ class Program:
         self._on_told = on_told
         self._ids = itertools.count(1)
         self._lock = threading.Lock()
-        self._waiting: Dict[int, Dict[str, Any]] = {}
+        self._asked: Dict[int, Asked] = {}
+        self._owner = os.getpid()
         self._answered = threading.Condition()
         self._words: List[str] = []
         self.ready: Optional[Mapping[str, Any]] = None
         self._ended = False
-        self._child = subprocess.Popen(
-            [self.path, "share", *arguments, "--stdio"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            encoding="utf-8",
-            bufsize=1,
-            **apart(),
-        )
-        _keep_from_forks(self._child)
+        self._child = _start([self.path, "share", *arguments, "--stdio"], subprocess.PIPE)
+        self.pid = self._child.pid
+        # A forked worker must not keep the program's standard input open: it would outlive the script that moved the hand.
+        _children.add(self._child)
         self._reader = threading.Thread(target=self._read, name="handscope", daemon=True)
         self._listener = threading.Thread(target=self._listen, name="handscope-words", daemon=True)
         self._listener.start()
         self._reader.start()
-        with self._answered:
-            self._answered.wait_for(lambda: self.ready or self._ended, _WITHIN_S)
+        try:
+            with self._answered:
+                self._answered.wait_for(lambda: self.ready or self._ended, _WITHIN_S)
+            if self.ready and self.ready["v"] != LINES_VERSION:
+                raise ProgramNotFound(self._other_version(str(self.ready["program"])))
+        except BaseException:
+            self.close()
+            raise
         if not self.ready:
-            self.close()
+            self.close()  # then its exit status is known
             raise self._why_not()
-        if self.ready["v"] != LINES_VERSION:
-            self.close()
-            raise ProgramNotFound(self._other_version(str(self.ready["program"])))
 
     def _why_not(self) -> HandscopeError:
         """Why the program did not begin."""
@@ -152,30 +165,24 @@ class Program:
     def ask(self, what: str, timeout_s: Optional[float] = _WITHIN_S, **fields: Any) -> Mapping[str, Any]:
         """Asks one thing and waits for the answer. A callback of states runs where answers come in: there a stop goes out and is
         not waited for, and nothing else can be asked."""
+        asked = self.begin(what, **fields)
+        return asked.wait(timeout_s) if asked else {}
+
+    def begin(self, what: str, **fields: Any) -> Optional[Asked]:
+        """Asks one thing; nothing is to be waited for after a stop of a callback."""
         if threading.current_thread() is self._reader:
             if what != "stop":
                 raise HandscopeError(f"a callback of on_state cannot ask for '{what}': it would wait for itself")
             self.tell({"do": what, **fields})
-            return {}
+            return None
         own = next(self._ids)
-        self._waiting[own] = {}
-        try:
-            self.tell({"id": own, "do": what, **fields})
-            with self._answered:
-                if not self._answered.wait_for(lambda: self._waiting[own] or self._ended, timeout_s):
-                    raise HandscopeError(f"the program did not answer '{what}' within {timeout_s} s")
-            reply = self._waiting[own]
-        finally:
-            del self._waiting[own]
-        if not reply:
-            raise self._gone()
-        if "error" in reply:
-            raise of(reply["kind"], reply["error"])
-        done: Mapping[str, Any] = reply["ok"]
-        return done
+        asked = self._asked[own] = Asked(self, what)
+        self.tell({"id": own, "do": what, **fields})
+        return asked
 
     def tell(self, line: Mapping[str, Any]) -> None:
         """Sends a line, and waits for nothing."""
+        self.check()
         text = json.dumps(line, allow_nan=False) + "\n"
         try:
             with self._lock:
@@ -184,6 +191,17 @@ class Program:
                 self._child.stdin.flush()
         except (OSError, ValueError):
             raise self._gone() from None
+
+    @property
+    def is_own(self) -> bool:
+        """False in a process that was forked from the one that started the program."""
+        return os.getpid() == self._owner
+
+    def check(self) -> None:
+        """Raises in a process that was forked from the one that started the program: what it sees is of before."""
+        if not self.is_own:
+            words = f"this hand belongs to process {self._owner}, from which this one was forked: open the hand here"
+            raise HandscopeError(f"{words}, as with handscope.open(hand.share_url)", "other_process")
 
     def _gone(self) -> HandscopeError:
         return HandscopeError(sentence(self._words, "the program 'handscope' has ended"))
@@ -201,8 +219,9 @@ class Program:
                 if "ready" in told:
                     self.ready = told["ready"]
                 reply = told.get("reply")
-                if reply and reply["id"] in self._waiting:
-                    self._waiting[reply["id"]].update(reply)
+                asked = self._asked.pop(reply["id"], None) if reply else None
+                if asked:
+                    asked.reply.update(reply)
                 self._answered.notify_all()
             self._on_told(told)
         self._listener.join(2.0)
@@ -220,6 +239,8 @@ class Program:
 
     def close(self) -> None:
         """Ends the program, which stops a hand that may move, and waits for that."""
+        if not self.is_own:
+            return
         with self._lock:
             if self._child.stdin and not self._child.stdin.closed:
                 try:
@@ -233,15 +254,11 @@ class Program:
             self._child.wait()
         if threading.current_thread() is not self._reader:
             self._reader.join(5.0)
-        self._listener.join(5.0)
-        for pipe in (self._child.stdout, self._child.stderr):
-            if pipe:
+            self._listener.join(5.0)
+        for pipe, reads in ((self._child.stdout, self._reader), (self._child.stderr, self._listener)):
+            # One that is still read would wait for its reader.
+            if pipe and not reads.is_alive():
                 pipe.close()
-
-
-def _keep_from_forks(child: "subprocess.Popen[str]") -> None:
-    """A forked worker must not keep the program's standard input open: it would outlive the script that moved the hand."""
-    _children.add(child)
 
 
 def _close_in_fork() -> None:

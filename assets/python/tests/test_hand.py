@@ -4,8 +4,13 @@ HANDSCOPE_SECONDS is how long 500 states a second are read (5).
 """
 
 import contextlib
+import copy
+import ctypes
+import gc
+import importlib.util
 import os
 import pathlib
+import pickle
 import signal
 import socket
 import struct
@@ -112,6 +117,109 @@ class Stops(unittest.TestCase):
             self.assertGreater(read(INDEX_SET), 500)
 
 
+    def test_what_a_forked_worker_knows_of_the_hand_is_refused_there(self):
+        with simulated() as (url, _), handscope.open(url) as hand:
+            self.assertIsNotNone(hand.state.t_s)
+            heard, told = os.pipe()
+            worker = os.fork()
+            if worker == 0:
+                acts = [lambda: hand.state, hand.stop, lambda: next(hand.states()), lambda: hand.follow(index=0.5)]
+                errors = [error_of(act) for act in acts]
+                os.write(told, "\n".join(f"{getattr(error, 'kind', None)} {error}" for error in errors).encode())
+                hand.close()
+                os._exit(0)
+            os.waitpid(worker, 0)
+            errors = os.read(heard, 65536).decode().splitlines()
+            self.assertEqual(len(errors), 4, errors)
+            for error in errors:
+                self.assertRegex(error, f"^other_process this hand belongs to process {os.getpid()}")
+            self.assertLess(hand.state.age_s, 5, "and goes on here")
+
+    def ended_well(self, text):
+        with simulated() as (url, read), script(url, text) as running:
+            said = running.communicate(timeout=60)
+            self.assertEqual((running.returncode, said[1]), (0, ""), said)
+            self.assertEqual(read(INDEX_SET), 1000)
+
+    def test_a_hand_that_is_closed_while_python_ends_ends_well(self):
+        for _ in range(3):
+            self.ended_well("""
+                class Robot:
+                    def __init__(self, hand):
+                        self.hand, self.itself = hand, self
+                    def __del__(self):
+                        self.hand.close()
+                robot = Robot(hand)
+                print(hand.state.t_s)
+            """)
+
+    def test_a_hand_that_is_still_armed_while_python_ends_ends_well(self):
+        self.ended_well("import contextlib\nstack = contextlib.ExitStack()\nstack.enter_context(hand.armed())\n")
+
+
+def children():
+    """The programs of this script that run."""
+    return [hand._program.pid for hand in handscope.hands()]
+
+
+def is_running(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+class Opens(unittest.TestCase):
+    def test_one_that_fails_leaves_nothing_running(self):
+        started = []
+        begin = program.Program.__init__
+
+        def noted(self, *arguments):
+            begin(self, *arguments)
+            started.append(self.pid)
+
+        program.Program.__init__ = noted
+        try:
+            for hz in (2000, 0, float("nan"), "fast"):
+                with self.assertRaises((handscope.Refused, ValueError)):
+                    handscope.open("sim:", hz=hz)
+        finally:
+            program.Program.__init__ = begin
+        self.assertEqual(len(started), 4)
+        self.assertFalse([pid for pid in started if is_running(pid)])
+
+    def test_one_that_is_forgotten_is_closed(self):
+        hand = handscope.open("sim:")
+        pid = hand._program.pid
+        with hand.states() as states:
+            next(states)
+        self.assertIn(hand, handscope.hands())
+        del hand, states
+        gc.collect()
+        until(lambda: not is_running(pid))
+        self.assertNotIn(pid, children())
+
+    def test_the_same_hand_again_names_the_first(self):
+        with simulated() as (url, _), handscope.open(url) as hand:
+            for again in (url, hand.url):
+                with self.assertRaisesRegex(handscope.Refused, "open in this script already.*close") as error:
+                    handscope.open(again)
+                self.assertEqual(error.exception.kind, "open_already")
+            with handscope.open(hand.share_url) as one, handscope.open(hand.share_url) as two:
+                self.assertEqual(handscope.hands().count(one) + handscope.hands().count(two), 2, "that is what it is for")
+            hand.close()
+            with handscope.open(url) as later:
+                self.assertTrue(later.state.angle)
+        with handscope.open("sim:") as one, handscope.open("sim:") as other:
+            self.assertNotEqual(one.share_url, other.share_url, "a simulated hand is another one each time")
+
+    def test_without_writers_no_other_program_moves_it(self):
+        with handscope.open("sim:", writers=False) as hand, handscope.open(hand.share_url) as other:
+            with self.assertRaises(handscope.Taken), other.armed():
+                self.fail("nobody may")
+
+
 class Moves(unittest.TestCase):
     def test_nothing_moves_outside_armed(self):
         with handscope.open("sim:") as hand:
@@ -152,6 +260,80 @@ class Moves(unittest.TestCase):
                     act()
             self.assertEqual(hand.state.angle["index"], 1000)
             self.assertEqual(hand.move(index=900, speed=500).end, "reached", "it goes on after that")
+
+    def test_figures_of_armed_are_those_of_move_and_close_until(self):
+        speed_set, force_set = 1528, 1504
+        with simulated() as (url, read), handscope.open(url) as hand:
+            with hand.armed(speed=700, force_g=900):
+                for act, wanted in (
+                    (lambda: hand.move(index=900), (700, 900)),
+                    (lambda: hand.move(index=800, speed=300), (300, 900)),
+                    (lambda: hand.close_until(400, "index", to=700), (700, 400)),
+                    (lambda: hand.move(index=900), (700, 900)),
+                ):
+                    act()
+                    self.assertEqual((read(speed_set), read(force_set)), wanted)
+                # What was told is read back about twice a second.
+                told = lambda state: (state.target["index"], state.speed["index"], state.threshold_g["index"])
+                until(lambda: told(hand.state) == (900, 700, 900))
+
+    def test_settings_that_are_not_whole_are_refused_in_a_sentence(self):
+        with handscope.open("sim:") as hand, hand.armed():
+            for act in (
+                lambda: hand.move(index=900, force_g=300.5),
+                lambda: hand.move(index=900, speed=True),
+                lambda: hand.close_until(300.5),
+            ):
+                with self.assertRaisesRegex(handscope.Refused, "nothing was moved: .* is not a whole number") as error:
+                    act()
+                self.assertEqual(error.exception.kind, "wrong")
+            self.assertEqual(hand.move(index=900.0, speed=500.0).end, "reached")
+
+    def test_errors_have_a_kind(self):
+        with handscope.open("sim:") as hand:
+            for kind, act in (
+                ("not_armed", lambda: hand.move(index=3)),
+                ("wrong", lambda: hand.rate(0)),
+                ("refused", lambda: hand._program.ask("record", path=None)),
+                ("failed", lambda: handscope.open("hand")),
+            ):
+                error = error_of(act)
+                self.assertEqual((error.kind, str(error)[:1].isalpha()), (kind, True))
+                again = pickle.loads(pickle.dumps(error))
+                self.assertEqual((type(again), again.kind, str(again)), (type(error), kind, str(error)))
+
+    def test_a_target_of_follow_that_was_refused_is_told_at_the_latest_where_the_block_ends(self):
+        with handscope.open("sim:") as hand:
+            with self.assertRaisesRegex(handscope.Refused, "0 \\(bent\\) to 1 \\(open\\)"), hand.armed():
+                hand.follow(index=400)
+            self.assertEqual(hand.state.angle["index"], 1000)
+
+    def test_a_call_that_lets_nothing_else_run_is_named_as_what_disarmed_the_hand(self):
+        with handscope.open("sim:", hz=500) as hand:
+            with self.assertRaisesRegex(handscope.Disarmed, "did not read its states for a second") as error, hand.armed():
+                ctypes.PyDLL(None).sleep(4)  # keeps the lock of the interpreter
+                hand.move(index=900)
+            self.assertEqual((error.exception.kind, hand.state.angle["index"]), ("silent", 1000))
+
+    def test_a_motion_is_not_waited_for(self):
+        with handscope.open("sim:") as hand, hand.armed(speed=200):
+            motion = hand.move(index=600, wait=False)
+            self.assertFalse(motion.done)
+            until(lambda: hand.state.angle["index"] < 900)
+            result = motion.result()
+            self.assertEqual((result.end, motion.done), ("reached", True))
+            self.assertIs(motion.result().end, result.end)
+            replaced = hand.move(index=200, wait=False)
+            self.assertEqual(hand.move(index=900).end, "reached")
+            with self.assertRaises(handscope.Refused) as error:
+                replaced.result()
+            self.assertEqual(error.exception.kind, "replaced")
+
+    def test_after_a_motion_the_hand_does_not_move(self):
+        with handscope.open("sim:?scenario=free") as hand, hand.armed(speed=500):
+            for angle, wanted in ((600, "empty"), (1000, "open")):
+                result = hand.move(index=angle)
+                self.assertEqual((result.end, result.state, result.fingers["index"]), ("reached", wanted, wanted))
 
     def test_a_share_of_follow_is_no_angle_of_move(self):
         with handscope.open("sim:") as hand, hand.armed():
@@ -215,7 +397,7 @@ class Moves(unittest.TestCase):
         with simulated() as (url, _), handscope.open(url) as first, handscope.open(first.share_url) as second:
             moved = []
             with first.armed():
-                with self.assertRaisesRegex(handscope.HandscopeError, "armed"), second.armed():
+                with self.assertRaisesRegex(handscope.Taken, "armed"), second.armed():
                     self.fail("one at a time")
                 mover = threading.Thread(target=lambda: moved.append(error_of(lambda: first.move(index=0, speed=50))))
                 mover.start()
@@ -295,6 +477,37 @@ class Hears(unittest.TestCase):
                     break
             self.assertGreater(lost, 0)
 
+    def test_what_is_outside_the_manual_is_no_value(self):
+        with handscope.open("sim:?scenario=extremes") as hand:
+            seen = set()
+            for state in hand.states():
+                for joint, angle in state.angle.items():
+                    self.assertTrue(angle is None or 0 <= angle <= 1000, angle)
+                    self.assertEqual(angle is None, state.angle_rad[joint] is None)
+                    if angle is None:
+                        seen.add(state.undocumented["angle", joint])
+                known = [temp for temp in state.temp_c.values() if temp is not None]
+                self.assertTrue(all(0 <= temp <= 100 for temp in known), known)
+                for finger, touch in state.touch.items():
+                    if touch.raw:
+                        self.assertTrue(touch.tangential_n is None or abs(touch.tangential_n) <= 100, touch)
+                        self.assertEqual(touch.normal_n is None, ("normal_n", finger) in state.undocumented)
+                if {32767, -7, 1013} <= seen and state.touch["thumb"].raw:
+                    break
+            self.assertEqual(state.touch["thumb"].normal_n, 20.0)
+
+    def test_a_state_is_a_value(self):
+        with handscope.open("sim:") as hand:
+            state = hand.state
+            self.assertLess(abs(state.time - time.time()), 10)
+            self.assertEqual(pickle.loads(pickle.dumps(state)), state)
+            self.assertEqual(copy.deepcopy(state.grip), state.grip)
+            self.assertIn("angle=", repr(state))
+            self.assertLessEqual({"angle", "force_g", "touch", "grip"}, set(dir(state)))
+            self.assertFalse(hasattr(state, "__dict__"))
+            with self.assertRaises(AttributeError):
+                state.angle = {}
+
     def test_several_hands(self):
         with handscope.open("sim:?seed=1") as one, handscope.open("sim:?seed=2") as other:
             with one.armed(), other.armed():
@@ -312,6 +525,12 @@ class Hears(unittest.TestCase):
             frame = handscope.read(path)
             self.assertLessEqual({"time_s", "angle_index", "force_index_g", "normal_thumb_N"}, set(frame.columns))
             self.assertLess(frame["angle_index"].min(), 730)
+            self.assertLessEqual({"position_index", "force_threshold_index_g", "status_index"}, set(frame.columns))
+            self.assertEqual((str(frame.index.tz), frame.index.is_monotonic_increasing), ("UTC", True))
+            self.assertEqual((frame.attrs["hand"], frame.attrs["simulated"]), (hand.url, True))
+            self.assertEqual(frame.attrs["units"]["force_index_g"], "g")
+            self.assertLess(abs(frame.attrs["start"] - time.time()), 60)
+            self.assertIn("armed", [event["kind"] for event in handscope.events(path)])
             self.assertLess(len(handscope.read(path, end_s=0.2)), len(frame))
             with self.assertRaisesRegex(handscope.HandscopeError, "nowhere"):
                 handscope.read("nowhere.mcap")
@@ -372,6 +591,39 @@ class Begins(unittest.TestCase):
         """
         told = self.in_place_of_the_program(cut)
         self.assertTrue(told.endswith("HandscopeError: killed\n") and "thread" not in told, told)
+
+
+TYPED = """
+import handscope
+with handscope.open("sim:") as hand, hand.armed():
+    motion: handscope.Motion = hand.move(index=3, wait=False)
+    result: handscope.GripResult = hand.move(index=3, thumb_bend=None, speed=20)
+    hand.close_until(300, joints="index")
+    hand.follow(index=0.3)
+    print(hand.touch["thumb"].normal_n, hand.state.angle["index"], hand.grip.state == "holding")
+    hand.move(idnex=3)  # wrong
+    hand.follow(idnex=0.3)  # wrong
+    hand.close_until(300, joints=("index", "thumb"))  # wrong
+    print(hand.state.force_g["indx"])  # wrong
+    print(hand.grip.state == "holdng")  # wrong
+    print(result.end == "there")  # wrong
+    print(hand.state.angles)  # wrong
+"""
+
+
+class Typed(unittest.TestCase):
+    @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
+    def test_a_name_that_does_not_exist_is_found_before_the_script_runs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "typed.py")
+            path.write_text(TYPED)
+            command = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "--hide-error-context", str(path)]
+            package = str(pathlib.Path(handscope.__file__).parent.parent)
+            places = {**os.environ, "MYPYPATH": package}
+            done = subprocess.run(command, env=places, cwd=folder, capture_output=True, text=True)
+        wrong = {number for number, line in enumerate(TYPED.splitlines(), 1) if line.endswith("# wrong")}
+        found = {int(line.split(":")[1]) for line in done.stdout.splitlines() if ": error:" in line}
+        self.assertEqual(found, wrong, done.stdout + done.stderr)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,9 @@
+"""`python -m handscope` is the program of this package."""
+
+import subprocess
+import sys
+
+from .program import find
+
+if __name__ == "__main__":
+    sys.exit(subprocess.call([find(), *sys.argv[1:]]))
