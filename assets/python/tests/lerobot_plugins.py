@@ -1,10 +1,13 @@
 """The plug-ins as the real LeRobot finds and uses them: lerobot_plugins.py FOLDER. Records ten episodes, loads and replays them."""
 
+import os
 import pathlib
+import subprocess
 import sys
 import time
 
 import handscope
+from handscope import program
 from lerobot.datasets import LeRobotDataset
 from lerobot.processor import make_default_processors
 from lerobot.robots import RobotConfig, make_robot_from_config
@@ -15,6 +18,7 @@ from lerobot.utils.feature_utils import combine_feature_dicts, hw_to_dataset_fea
 from lerobot.utils.import_utils import register_third_party_plugins
 
 EPISODES, SECONDS, FPS = 10, 2, 30
+ARRIVES_FRAMES = 20 * FPS
 
 register_third_party_plugins()
 folder = pathlib.Path(sys.argv[1])
@@ -33,7 +37,8 @@ except handscope.NotArmed as error:
 assert set(still.get_observation()) == set(still.observation_features)
 still.disconnect()
 
-robot = make_robot_from_config(follower(url="sim:", arm=True, **kept))
+# Nothing is between the fingers of the follower, so that it can go wherever the leader is, at whatever moment of its grasp.
+robot = make_robot_from_config(follower(url="sim:?scenario=free", arm=True, **kept))
 teleop = make_teleoperator_from_config(leader(url="sim:?scenario=grasp", **kept))
 assert list(robot.action_features)[0] == "kRightHandPinky", robot.action_features
 assert robot.action_features == teleop.action_features
@@ -61,6 +66,17 @@ for episode in range(EPISODES):
     time.sleep(1.5)  # as while a person puts the object back: the hand is held, and followed again
 robot.disconnect()
 teleop.disconnect()
+
+# A reading that no hand can mean leads nowhere.
+wild = make_teleoperator_from_config(leader(url="sim:?scenario=extremes", **kept))
+wild.connect()
+for _ in range(3 * FPS):
+    try:
+        assert all(0 <= value <= 1 for value in wild.get_action().values())
+    except handscope.HandscopeError as error:
+        assert "does not tell where" in str(error), error
+    time.sleep(1 / FPS)
+wild.disconnect()
 dataset.finalize()
 
 loaded = LeRobotDataset("handscope/test", root=folder / "set")
@@ -72,16 +88,39 @@ index = names.index("kRightHandIndex")
 assert min(action[index] for action in actions) < 0.8, "the leading hand grasped"
 print(loaded.num_episodes, "episodes,", loaded.num_frames, "frames of", names)
 
-# The last second of an episode may not have been reached; what is asked for and what is read are near each other in the end.
+# An action may have been anywhere within a grasp; a hand that goes on being asked for it is there in the end.
 robot.connect()
+recording = robot._hand.record(folder / "session.mcap")
 for action in actions[:120]:
     robot.send_action(dict(zip(names, action)))
     time.sleep(1 / FPS)
-for _ in range(FPS):
+for _ in range(ARRIVES_FRAMES):
     robot.send_action(dict(zip(names, actions[119])))
     time.sleep(1 / FPS)
-seen = robot.get_observation()
-error = max(abs(seen[name] - value) for name, value in zip(names, actions[119]))
+    seen = robot.get_observation()
+    error = max(abs(seen[name] - value) for name, value in zip(names, actions[119]))
+    if error < 0.1:
+        break
 print(f"replayed, and within {error:.3f} of the last action")
 assert error < 0.1, (seen, actions[119])
+recording.end()
 robot.disconnect()
+
+# What is exported of it passes the checks that others wrote, where they are installed.
+home = folder / "home"
+exported = ["export", str(folder / "session.mcap"), "--lerobot", "--from", "1", "--out", str(home / "local/replay")]
+(home / "local").mkdir(parents=True)
+assert program.run(exported).why is None
+tools = pathlib.Path(sys.executable).parent
+for tool, arguments, words in (
+    ("lerobot-doctor", ["check", str(home / "local/replay")], "[PASS] Action Quality"),
+    ("lelint", ["check", "local/replay", "--no-video"], "0 errors, 0 warnings"),
+):
+    if not (tools / tool).exists():
+        print(f"skipped: {tool} is not installed")
+        continue
+    places = {**os.environ, "HF_LEROBOT_HOME": str(home), "HF_HUB_OFFLINE": "1"}
+    done = subprocess.run([tools / tool, *arguments], env=places, capture_output=True, text=True)
+    # lelint ends with status 1 for remarks such as the number of episodes.
+    assert done.returncode < 2 and words in done.stdout, (tool, done.stdout, done.stderr)
+    print(tool, "finds nothing wrong")

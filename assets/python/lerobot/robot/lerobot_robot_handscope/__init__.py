@@ -77,10 +77,14 @@ class Handscope(Robot):
         if self._hand is not None:
             raise handscope.HandscopeError(f"{self} is connected already")
         hand = handscope.open(self.config.url, hz=self.config.hz, side=self.config.side)
-        with hand.states() as states:
-            for state in states:
-                if all(tip.normal_n is not None for tip in state.touch.values()) or state.t_s > 3:
-                    break
+        try:
+            with hand.states() as states:
+                for state in states:
+                    if all(tip.normal_n is not None for tip in state.touch.values()) or state.t_s > 3:
+                        break
+        except BaseException:
+            hand.close()
+            raise
         self._hand = hand
 
     def calibrate(self) -> None:

@@ -33,6 +33,7 @@ class HandscopeTeleoperator(Teleoperator):
         self.config = config
         self._prefix = f"k{config.side.capitalize()}Hand"
         self._hand: handscope.Hand | None = None
+        self._led: dict[str, float] = {}
 
     @property
     def action_features(self) -> dict[str, type]:
@@ -54,6 +55,7 @@ class HandscopeTeleoperator(Teleoperator):
         if self._hand is not None:
             raise handscope.HandscopeError(f"{self} is connected already")
         self._hand = handscope.open(self.config.url)
+        self._led = {}
 
     def calibrate(self) -> None:
         """The hand needs none."""
@@ -62,17 +64,15 @@ class HandscopeTeleoperator(Teleoperator):
         """The hand keeps its own settings."""
 
     def get_action(self) -> dict[str, Any]:
-        """Where the joints of the leading hand are: 0 bent to 1 open."""
+        """Where the joints of the leading hand are: 0 bent to 1 open. One that reads outside its range leads to where it was last."""
         if self._hand is None:
             raise handscope.HandscopeError(f"{self} is not connected")
-        angles = self._hand.state.angle
-        action = {}
-        for joint, name in JOINTS.items():
-            angle = angles[joint]
-            if angle is None:
+        for joint, angle in self._hand.state.angle.items():
+            if angle is not None:
+                self._led[self._prefix + JOINTS[joint]] = angle / 1000
+            elif self._prefix + JOINTS[joint] not in self._led:
                 raise handscope.HandscopeError(f"the leading hand does not tell where its {joint} is")
-            action[self._prefix + name] = min(1.0, max(0.0, angle / 1000))
-        return action
+        return dict(self._led)
 
     def send_feedback(self, feedback: dict[str, Any]) -> None:
         """A hand cannot be felt by whoever leads it."""
