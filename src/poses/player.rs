@@ -455,7 +455,7 @@ impl Player {
 
     fn dwelling(&mut self, since: Moment, now: Moment) {
         let dwell = self.cue().map(|cue| cue.dwell);
-        if !dwell.is_some_and(|dwell| now.since(since) < dwell) {
+        if dwell.is_none_or(|dwell| now.since(since) >= dwell) {
             self.step_done(now);
         }
     }
@@ -491,7 +491,7 @@ impl Player {
 
     fn begin(&mut self, now: Moment) {
         self.parts.clear();
-        self.due = !self.cue().is_some_and(|cue| cue.hold.is_some());
+        self.due = self.cue().is_none_or(|cue| cue.hold.is_none());
         self.view.phase = if self.due {
             PlayPhase::Moving { since: now }
         } else {
