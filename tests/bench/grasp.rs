@@ -4,7 +4,7 @@ use crate::grasp_table::{OTHERS, grasps};
 use crate::report::{Aim, Failure, Report};
 
 /// Grasps, each made on a body of its own.
-const GRASPS: usize = 20;
+const GRASPS: usize = 10;
 
 pub(crate) fn run(report: &mut Report) -> Result<(), Failure> {
     let table = grasps(GRASPS, OTHERS);
