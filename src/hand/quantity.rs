@@ -127,17 +127,6 @@ impl Quantity {
         }
     }
 
-    /// Numbers of a sample as the hand sent them; `None` for targets, which are not measured.
-    pub fn raw(self, sample: &HandSample) -> Option<Timed<PerDof<i16>>> {
-        match self {
-            Self::Angle => six(sample.angle, AngleReading::raw),
-            Self::Force => six(sample.force, ForceReading::raw),
-            Self::Current => six(sample.current, CurrentReading::raw),
-            Self::Temperature => six(sample.temperature, |value| value.raw().into()),
-            Self::TargetAngle => None,
-        }
-    }
-
     /// Numbers of a sample within the manual's range; only these may feed logic.
     pub fn documented(self, sample: &HandSample) -> Option<Timed<PerDof<Option<i16>>>> {
         match self {
