@@ -280,6 +280,9 @@ fn a_replay_tells_speed_force_target_and_mover_as_they_were() {
 #[test]
 fn a_whole_session_is_exported_in_every_format_and_told_with_its_path() {
     let mut bench = bench(Scenario::Grasp);
+    // A data set needs a command: the targets of a stop.
+    bench.key(egui::Key::Space);
+    bench.wait(1000);
     let path = ended(&mut bench);
     for &format in ExportFormat::ALL {
         let saved = |bench: &Bench| {
@@ -305,6 +308,18 @@ fn a_whole_session_is_exported_in_every_format_and_told_with_its_path() {
         };
         assert!(to.to_string_lossy().ends_with(ending), "{to:?}");
     }
+}
+
+#[test]
+fn a_data_set_of_a_hand_that_was_only_watched_is_refused_with_the_reason() {
+    let mut bench = bench(Scenario::Grasp);
+    let path = ended(&mut bench);
+    recording(&mut bench, export(&path, ExportFormat::LeRobot, None));
+    settle(&mut bench, |bench| {
+        let told = bench.texts_with("Not exported: ");
+        told.iter()
+            .any(|told| told.contains("No joint was commanded in this time range"))
+    });
 }
 
 fn export(path: &Path, format: ExportFormat, stretch: Option<(Moment, Moment)>) -> RecordingAction {
