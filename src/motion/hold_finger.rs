@@ -1,7 +1,7 @@
 //! One finger that holds an object: the force it should press with, and the steps of its angle target that lead there. Pure.
 
 use crate::hand::grip::TightenCause;
-use crate::hand::statistics::median;
+use crate::hand::statistics::{mean, median};
 use crate::hand::{Angle, Moment, Speed};
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -15,7 +15,7 @@ const USUAL_FRICTION: f64 = 0.45;
 /// Share of the friction that is kept in reserve.
 const MARGIN: f64 = 0.2;
 /// The same while the load rises.
-const MOVING_MARGIN: f64 = 0.4;
+const MOVING_MARGIN: f64 = 0.46;
 /// Share of the ratio at which an object slid that still holds it.
 const BELOW_SLIP: f64 = 0.85;
 /// The wanted force changes only if the need differs by this factor.
@@ -24,7 +24,7 @@ const HYSTERESIS: f64 = 1.08;
 const NO_LONGER_SHORT: f64 = 0.95;
 /// Increase of the force after a slip, at least.
 const SLIP_FACTOR: f64 = 1.25;
-/// A step has its effect after this time: the hand acts 66 ms late, and the reading comes later still.
+/// A step of [`STEP_S`] has its effect after this time: the hand acts 66 ms late, and the reading comes later still.
 const EFFECT: Duration = Duration::from_millis(180);
 /// Time in which a step should be completed.
 const STEP_S: f64 = 0.08;
@@ -32,12 +32,13 @@ const STEP_S: f64 = 0.08;
 const COUNTS_PER_SPEED: f64 = 3.04;
 /// Speed limit of a step times the stiffness: a stiff contact is approached slowly, because a drive that meets its threshold runs on.
 const SPEED_BY_STIFFNESS: f64 = 8000.0;
-/// Share of *at most* from which steps are slower.
+/// Share of *at most* from which steps are slower, and by how much.
 const NEAR_MOST: f64 = 0.7;
+const NEAR_SLOWER: f64 = 5.0;
 /// A rising load is extrapolated over this time: until a step acts.
 const AHEAD_S: f64 = 0.2;
 /// Time without a disturbance after which the force is reduced, and the time between two reductions.
-const QUIET: Duration = Duration::from_secs(2);
+const QUIET: Duration = Duration::from_millis(700);
 const RELAX_INTERVAL: Duration = Duration::from_secs(1);
 /// A reduction that had to be taken back is not tried again for this time.
 const RELAX_PAUSE: Duration = Duration::from_secs(60);
@@ -47,16 +48,34 @@ const BLOCKED_PAUSE: Duration = Duration::from_secs(2);
 /// Time after which a blocked drive is opened again.
 const OPEN_PAUSE: Duration = Duration::from_secs(20);
 /// Reduction of the wanted force per second while it is quiet, as a share of it.
-const RELAX_SHARE: f64 = 0.2;
+const RELAX_SHARE: f64 = 0.6;
 /// Share of what a finger presses too hard that one reduction takes away.
 const RELAX_PART: f64 = 0.8;
+/// Readings of this time make a settled force: their mean is free of noise.
+const SETTLED: Duration = Duration::from_millis(400);
+/// Fewest of them.
+const SETTLED_READINGS: usize = 5;
+/// Two settled forces show the stiffness if their angles differ by this many units; the share of the new value that is learned.
+const SETTLED_WAY: f64 = 2.0;
+const LEARN: f64 = 0.8;
+/// Dead band of a settled force, g, at least.
+const SETTLED_DEAD_G: f64 = 4.0;
+/// Share of the wanted force that is corrected at once.
+const URGENT: f64 = 0.3;
 /// Change of the tangential force that is a disturbance: as a share of the normal force, and at least this, g.
 const JUMP_SHARE: f64 = 0.025;
 const JUMP_LEAST_G: f64 = 2.5;
+/// Possible ratios of the force of the drive to that on the fingertip, and the share of a new one that is learned: each hand has its
+/// own grams, and the fingertip measures newtons.
+const GAIN: std::ops::RangeInclusive<f64> = 0.5..=2.0;
+const LEARN_GAIN: f64 = 0.3;
 /// Normal force below which a ratio says nothing, g.
 const RATIO_FROM_G: f64 = 30.0;
-/// A step may meet an object that is stiffer by this factor.
-const STIFFER: f64 = 1.35;
+/// A step may meet an object that is stiffer by this factor: before its stiffness is known, once the close or a step showed it, and
+/// once two settled forces did.
+const STIFFER_UNKNOWN: f64 = 2.0;
+const STIFFER_SHOWN: f64 = 1.35;
+const STIFFER_SETTLED: f64 = 1.15;
 /// Units of angle by which a finger follows an object beyond what its force explains.
 const FOLLOW: f64 = 40.0;
 /// A finger is still blocked at this share of the force at which steps had no effect.
@@ -113,7 +132,8 @@ pub(crate) struct HoldStep {
 /// A step whose effect is not known yet.
 #[derive(Debug, Clone, Copy)]
 struct Underway {
-    at: Moment,
+    /// Time by which it has acted.
+    until: Moment,
     /// Force and angle before the step.
     from_g: f64,
     from_angle: i16,
@@ -130,12 +150,14 @@ pub(crate) struct FingerHold {
     target: f64,
     /// g per unit of angle.
     stiffness: f64,
-    /// The close or a step showed it.
-    is_stiffness_known: bool,
+    /// Factor by which the contact may be stiffer.
+    stiffer: f64,
     wanted_g: f64,
     cause: TightenCause,
-    forces: VecDeque<f64>,
+    forces: VecDeque<(Moment, f64)>,
     tips: VecDeque<TipForces>,
+    /// Force of the drive for each gram on the fingertip; `None` before both were read.
+    gain: Option<f64>,
     /// Tangential force while nothing happens, g.
     base_g: Option<f64>,
     /// Largest ratio of tangential to normal force at which the object did not slide.
@@ -145,8 +167,10 @@ pub(crate) struct FingerHold {
     underway: Option<Underway>,
     quiet_since: Moment,
     relaxed: Option<Moment>,
-    /// Time of the last step that opened.
-    eased: Option<Moment>,
+    /// The last settled force, and its angle.
+    settled: Option<(f64, i16)>,
+    /// Time by which the last step has acted.
+    acted: Option<Moment>,
     relaxes_from: Moment,
     is_short: bool,
     /// Force at which steps had no effect: its threshold or its stroke stops the drive.
@@ -165,18 +189,20 @@ impl FingerHold {
             noise_g,
             target: angle.into(),
             stiffness: HARD_G,
-            is_stiffness_known: false,
+            stiffer: STIFFER_UNKNOWN,
             wanted_g: range.least_g,
             cause: TightenCause::TooLittle,
             forces: VecDeque::new(),
             tips: VecDeque::new(),
+            gain: None,
             base_g: None,
             held_ratio: 0.0,
             slid_ratio: None,
             underway: None,
             quiet_since: now,
             relaxed: None,
-            eased: None,
+            settled: None,
+            acted: None,
             relaxes_from: now,
             is_short: false,
             blocked: None,
@@ -188,12 +214,13 @@ impl FingerHold {
     /// Uses the stiffness that the close showed, g per unit of angle.
     pub(crate) fn know_stiffness(&mut self, g_per_angle: f64) {
         self.stiffness = g_per_angle.clamp(*STIFFNESS_G.start(), *STIFFNESS_G.end());
-        self.is_stiffness_known = true;
+        self.stiffer = self.stiffer.min(STIFFER_SHOWN);
     }
 
     /// Force that it presses with, g; `None` before the first reading.
     pub(crate) fn force_g(&self) -> Option<f64> {
-        let forces: Vec<f64> = self.forces.iter().copied().collect();
+        let recent = self.forces.iter().rev().take(FORCES);
+        let forces: Vec<f64> = recent.map(|(_, force)| *force).collect();
         median(&forces)
     }
 
@@ -204,7 +231,7 @@ impl FingerHold {
 
     /// Stiffness of the contact, g per unit of angle; `None` before the close or a step showed it.
     pub(crate) fn measured_stiffness(&self) -> Option<f64> {
-        self.is_stiffness_known.then_some(self.stiffness)
+        (self.stiffer < STIFFER_UNKNOWN).then_some(self.stiffness)
     }
 
     /// Tangential force on the fingertip, g; `None` before it was read.
@@ -273,7 +300,7 @@ impl FingerHold {
 
     /// Force that the current load needs.
     fn steady_g(&self) -> f64 {
-        self.tangential_g().unwrap_or_default() / (self.friction() * (1.0 - MARGIN))
+        self.drive_g(self.tangential_g().unwrap_or_default() / (self.friction() * (1.0 - MARGIN)))
     }
 
     /// Force that the load needs when a step acts, if it rises on.
@@ -293,7 +320,7 @@ impl FingerHold {
                 0.0
             }
         });
-        (last.tangential_g + rise) / (self.friction() * (1.0 - MOVING_MARGIN))
+        self.drive_g((last.tangential_g + rise) / (self.friction() * (1.0 - MOVING_MARGIN)))
     }
 
     fn want(&mut self, force_g: f64, cause: TightenCause) {
@@ -320,12 +347,13 @@ impl FingerHold {
 
     /// Applies a new reading of the drive; returns the next step.
     pub(crate) fn apply(&mut self, reading: FingerReading) -> Option<HoldStep> {
-        if self.forces.len() >= FORCES {
+        self.forces.push_back((reading.at, reading.force_g));
+        let is_old = |(at, _): &(Moment, f64)| reading.at.since(*at) > SETTLED;
+        while self.forces.len() > SETTLED_READINGS && self.forces.front().is_some_and(is_old) {
             self.forces.pop_front();
         }
-        self.forces.push_back(reading.force_g);
         let force_g = self.force_g()?;
-        let is_acting = |step: &Underway| reading.at.since(step.at) < EFFECT;
+        let is_acting = |step: &Underway| reading.at < step.until;
         if let Some(step) = self.underway.take_if(|step| !is_acting(step)) {
             self.learn(step, force_g, reading.angle);
         }
@@ -333,8 +361,16 @@ impl FingerHold {
         let seen = HoldNow {
             force_g,
             expected_g,
+            settled_g: self.settled_g(reading.at),
             reading,
         };
+        if self.gain.is_none() {
+            self.learn_gain(force_g);
+        }
+        if let Some(settled_g) = seen.settled_g {
+            self.learn_gain(settled_g);
+            self.learn_settled(settled_g, reading.angle);
+        }
         let is_quiet = self.is_quiet(reading.at);
         if is_quiet {
             self.relax_wish(reading);
@@ -342,19 +378,70 @@ impl FingerHold {
         self.tighten(seen).or_else(|| self.relax(seen, is_quiet))
     }
 
+    /// Mean force since the last step acted; `None` before it has settled.
+    fn settled_g(&self, now: Moment) -> Option<f64> {
+        let acted = self.acted.unwrap_or(Moment::ZERO);
+        let from = self.forces.front()?.0;
+        let is_settled = self.forces.len() >= SETTLED_READINGS
+            && from >= acted
+            && now.since(from) >= SETTLED.mul_f64(0.8);
+        let forces: Vec<f64> = self.forces.iter().map(|(_, force)| *force).collect();
+        mean(&forces).filter(|_| is_settled)
+    }
+
+    /// Smallest difference of a settled force that is not noise, g.
+    fn settled_dead_g(&self) -> f64 {
+        (2.0 * self.noise_g / (SETTLED_READINGS as f64).sqrt()).max(SETTLED_DEAD_G)
+    }
+
+    /// Learns the force of the drive for each gram on the fingertip.
+    fn learn_gain(&mut self, force_g: f64) {
+        let Some(tip) = self.tips.back().filter(|tip| tip.normal_g >= RATIO_FROM_G) else {
+            return;
+        };
+        let measured = (force_g / tip.normal_g).clamp(*GAIN.start(), *GAIN.end());
+        let gain = self.gain.get_or_insert(measured);
+        *gain += (measured - *gain) * LEARN_GAIN;
+    }
+
+    /// Force of the drive at which the fingertip presses with `tip_g`.
+    fn drive_g(&self, tip_g: f64) -> f64 {
+        tip_g * self.gain.unwrap_or(1.0)
+    }
+
+    /// Learns the stiffness from two settled forces at different angles.
+    fn learn_settled(&mut self, force_g: f64, angle: i16) {
+        let Some((before_g, before)) = self.settled else {
+            self.settled = Some((force_g, angle));
+            return;
+        };
+        let way = f64::from(before) - f64::from(angle);
+        if way.abs() < SETTLED_WAY {
+            return;
+        }
+        self.settled = Some((force_g, angle));
+        let change = force_g - before_g;
+        if change * way > 0.0 && change.abs() > self.settled_dead_g() {
+            // Angles are whole units: the farther, the truer.
+            let weight = LEARN * (1.0 - 1.0 / way.abs());
+            self.know_stiffness(self.stiffness + (change / way - self.stiffness) * weight);
+            self.stiffer = STIFFER_SETTLED;
+        }
+    }
+
     /// Learns the stiffness from a step that has acted.
     fn learn(&mut self, step: Underway, force_g: f64, angle: i16) {
         let rise = step.aim_g - step.from_g;
         let is_blocked = rise > self.noise_g && force_g < step.from_g + BLOCKED_SHARE * rise;
-        let blocked = (force_g.max(step.from_g), step.at.plus(BLOCKED_PAUSE));
+        let blocked = (force_g.max(step.from_g), step.until.plus(BLOCKED_PAUSE));
         self.blocked = is_blocked.then_some(blocked);
-        let may_open = |opened: Moment| step.at.since(opened) >= OPEN_PAUSE;
+        let may_open = |opened: Moment| step.until.since(opened) >= OPEN_PAUSE;
         self.opens_first = is_blocked && self.opened.is_none_or(may_open);
         let way = f64::from(step.from_angle) - f64::from(angle);
         let change = force_g - step.from_g;
-        if way.abs() >= 1.0 && change * way > 0.0 && change.abs() > self.noise_g {
-            let measured = change / way;
-            self.know_stiffness(self.stiffness + (measured - self.stiffness) * 0.4);
+        if way.abs() >= 1.0 && change > self.stiffness * way && way > 0.0 {
+            // A force that is still rising shows a lower bound.
+            self.know_stiffness(self.stiffness + (change / way - self.stiffness) * 0.4);
         } else if way == 0.0 && change.abs() <= self.noise_g {
             // The step was lost in the backlash, or the drive rests elsewhere.
             self.target = self
@@ -383,11 +470,7 @@ impl FingerHold {
     }
 
     fn tighten(&mut self, seen: HoldNow) -> Option<HoldStep> {
-        let missing = self.wanted_g - seen.expected_g;
-        let dead = (2.0 * self.noise_g).max(6.0);
-        if missing <= dead {
-            return None;
-        }
+        let missing = self.missing_g(seen)?;
         let is_blocked = |(force_g, until): (f64, Moment)| {
             seen.expected_g >= NEARLY_BLOCKED * force_g && seen.reading.at < until
         };
@@ -402,12 +485,15 @@ impl FingerHold {
         }
         let room = self.range.most_g - seen.expected_g;
         let steps = (missing / self.stiffness).round().max(1.0);
-        let allowed = (room / (self.stiffness * STIFFER)).floor();
+        let allowed = (room / (self.stiffness * self.stiffer)).floor();
         let steps = steps.min(allowed).min(STEP_MAX);
         if steps < 1.0 {
             return None;
         }
-        if self.relaxed.is_some() && self.cause == TightenCause::TooLittle {
+        if self.relaxed.is_some()
+            && matches!(self.cause, TightenCause::TooLittle | TightenCause::Margin)
+            && self.is_quiet(seen.reading.at)
+        {
             self.relaxes_from = seen.reading.at.plus(RELAX_PAUSE);
         }
         let cause = if seen.expected_g < self.range.least_g && self.wanted_g <= self.range.least_g {
@@ -418,22 +504,33 @@ impl FingerHold {
         self.step(seen, -steps, Some(cause))
     }
 
+    /// Force that is missing by more than the noise. What is not urgent waits until the force has settled.
+    fn missing_g(&self, seen: HoldNow) -> Option<f64> {
+        let missing = self.wanted_g - seen.expected_g;
+        let is_urgent = self.cause != TightenCause::TooLittle || missing > URGENT * self.wanted_g;
+        let noise = (2.0 * self.noise_g).max(6.0);
+        let at_once = Some(missing).filter(|missing| is_urgent && *missing > noise);
+        let settled = seen.settled_g.map(|settled| self.wanted_g - settled);
+        at_once.or(settled.filter(|missing| *missing > self.settled_dead_g()))
+    }
+
     fn relax(&mut self, seen: HoldNow, is_quiet: bool) -> Option<HoldStep> {
         let is_allowed = self.underway.is_none() && seen.reading.at >= self.relaxes_from;
         let over = seen.force_g - self.range.most_g;
-        let spare = seen.force_g - self.wanted_g;
         let dead = (2.0 * self.noise_g).max(6.0);
         if over > dead && self.underway.is_none() {
             return self.step(seen, (over / self.stiffness).ceil().min(STEP_MAX), None);
         }
-        let steps = ((spare - dead) / self.stiffness * RELAX_PART)
+        let spare = seen.settled_g? - self.wanted_g - self.settled_dead_g();
+        let steps = (spare / (self.stiffness * self.stiffer))
             .floor()
             .min(STEP_MAX);
-        // The force settles more slowly than a step takes.
-        let settled = |at: Moment| seen.reading.at.since(at) >= RELAX_INTERVAL;
-        let is_settled = self.eased.is_none_or(settled);
-        (is_quiet && is_allowed && is_settled && steps >= 1.0).then_some(())?;
-        self.eased = Some(seen.reading.at);
+        let steps = if steps > 2.0 {
+            (steps * RELAX_PART).floor()
+        } else {
+            steps
+        };
+        (is_quiet && is_allowed && steps >= 1.0).then_some(())?;
         self.step(seen, steps, None)
     }
 
@@ -447,20 +544,25 @@ impl FingerHold {
             ),
         };
         self.target = (from + by).clamp(0.0, 1000.0);
+        let counts = (self.target - f64::from(seen.reading.angle)).abs() * 2.0;
+        let aim_g = seen.expected_g - by * self.stiffness;
+        let is_near = aim_g > NEAR_MOST * self.range.most_g;
+        let fastest = SPEED_BY_STIFFNESS / self.stiffness / if is_near { NEAR_SLOWER } else { 1.0 };
+        let speed = (counts / STEP_S / COUNTS_PER_SPEED).min(fastest.clamp(25.0, 1000.0));
+        let longer_s = (counts / (speed.max(25.0) * COUNTS_PER_SPEED) - STEP_S).max(0.0);
+        let duration = EFFECT + Duration::from_secs_f64(longer_s);
+        let until = seen.reading.at.plus(duration);
+        self.acted = Some(until);
         let begun = self.underway;
         self.underway = Some(Underway {
-            at: seen.reading.at,
+            until,
             from_g: begun.map_or(seen.force_g, |step| step.from_g),
             from_angle: begun.map_or(seen.reading.angle, |step| step.from_angle),
-            aim_g: seen.expected_g - by * self.stiffness,
+            aim_g,
         });
-        let counts = (self.target - f64::from(seen.reading.angle)).abs() * 2.0;
-        let is_near = seen.expected_g - by * self.stiffness > NEAR_MOST * self.range.most_g;
-        let fastest = SPEED_BY_STIFFNESS / self.stiffness / if is_near { 4.0 } else { 1.0 };
-        let fastest = fastest.clamp(25.0, 1000.0);
         Some(HoldStep {
             to: nearest_angle(self.target),
-            speed: nearest_speed((counts / STEP_S / COUNTS_PER_SPEED).min(fastest)),
+            speed: nearest_speed(speed),
             cause,
         })
     }
@@ -471,6 +573,8 @@ struct HoldNow {
     force_g: f64,
     /// Force once the step under way has acted.
     expected_g: f64,
+    /// Mean force since the last step acted; `None` if it has not settled.
+    settled_g: Option<f64>,
     reading: FingerReading,
 }
 

@@ -427,6 +427,10 @@ impl Watch {
         } else {
             self.is_settled = false;
         }
+        if !self.is_settled {
+            // The close, and what the lift calls for, are no reversals.
+            self.targets = self.targets.map(|last| last.map(|(angle, _)| (angle, 0)));
+        }
         self.follow_slide(plan, truth, tips, now);
     }
 
