@@ -10,7 +10,6 @@ use crate::motion::grasp::saved::{Grasp, GraspClaim};
 use crate::motion::grasp::{confirmed_file, run::Unconfirmed};
 use crate::poses::library::{NAME_CHARS_MAX, clean};
 use crate::store::calendar::{day, since_1970};
-use crate::store::write_new;
 use crate::transport::Endpoint;
 use crate::trials::session;
 use anyhow::{Context as _, anyhow, bail};
@@ -178,8 +177,7 @@ fn trust(hand: &Endpoint, grasp: &Grasp) -> anyhow::Result<Trust> {
 
 /// Writes a grasp to a new file.
 pub(crate) fn save(path: &Path, grasp: &Grasp) -> anyhow::Result<()> {
-    let text = file::write(grasp).context("cannot write the grasp")?;
-    match write_new(path, text.as_bytes()) {
+    match file::save(path, grasp) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => nothing_at(path, "--save"),
         written => written.with_context(|| format!("cannot write {}", path.display())),
     }

@@ -43,7 +43,7 @@ const SPARE: Duration = Duration::from_secs(4);
 const CLEAR_SPEED: i16 = 200;
 const ROTATE_SPEED: i16 = 50;
 /// A close stops at this multiple of *at least*: the grip relaxes a little afterwards.
-const CLOSE_FACTOR: f64 = 1.05;
+const CLOSE_FACTOR: f64 = 1.1;
 /// A finger presses with *at least* from this share of it on.
 const NEARLY: f64 = 0.9;
 /// Delay from the targets of the held position to the thresholds at *at most*: a drive that still had the target of the close would

@@ -15,7 +15,7 @@ const USUAL_FRICTION: f64 = 0.45;
 /// Share of the friction that is kept in reserve.
 const MARGIN: f64 = 0.2;
 /// The same while the load rises.
-const MOVING_MARGIN: f64 = 0.46;
+const MOVING_MARGIN: f64 = 0.44;
 /// Share of the ratio at which an object slid that still holds it.
 const BELOW_SLIP: f64 = 0.85;
 /// The wanted force changes only if the need differs by this factor.

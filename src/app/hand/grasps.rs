@@ -11,7 +11,7 @@ use crate::motion::grasp::file::{self, EXTENSION};
 use crate::motion::grasp::run::Unconfirmed;
 use crate::motion::grasp::saved::Grasp;
 use crate::store::calendar::{day, since_1970};
-use crate::store::{FileError, JobKind, Jobs, on_thread, write_new};
+use crate::store::{FileError, JobKind, Jobs, on_thread};
 use crate::transport::Endpoint;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -201,10 +201,7 @@ impl HandGrasps {
 fn keep(kept: Option<Kept>, settings: &Path, hand: &Endpoint) -> io::Result<()> {
     match kept {
         None => Ok(()),
-        Some(Kept::New(grasp)) => {
-            let text = file::write(&grasp).map_err(io::Error::other)?;
-            write_new(&file::library_file(settings, &grasp.name), text.as_bytes())
-        }
+        Some(Kept::New(grasp)) => file::save(&file::library_file(settings, &grasp.name), &grasp),
         Some(Kept::Confirmed(grasp, agreement)) => {
             let Some(file) = confirmed_file::file_of(settings, hand) else {
                 return Ok(());

@@ -11,10 +11,11 @@ use crate::motion::grasp::saved::{
 use crate::motion::hold::HoldClose;
 use crate::poses::library::{NAME_CHARS_MAX, clean};
 use crate::store::toml_file::{VERSION, load};
-use crate::store::{FileCause, FileError, FileText};
+use crate::store::{FileCause, FileError, FileText, create_folder, write_new};
 use crate::transport::Endpoint;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::io;
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -146,6 +147,18 @@ pub fn library_file(settings: &Path, name: &str) -> PathBuf {
 /// [`FileError`] with line and field.
 pub fn read_file(path: &Path) -> Result<Grasp, FileError> {
     load(path, FILE_MAX, read)
+}
+
+/// Writes a new file; creates its folder if missing.
+///
+/// # Errors
+/// The system's error. An existing file is unchanged.
+pub fn save(path: &Path, grasp: &Grasp) -> io::Result<()> {
+    let text = write(grasp).map_err(io::Error::other)?;
+    if let Some(folder) = path.parent() {
+        create_folder(folder)?;
+    }
+    write_new(path, text.as_bytes())
 }
 
 /// Formats a grasp.

@@ -6,6 +6,7 @@ mod exhibit;
 mod grasp;
 mod grip;
 mod hold;
+mod hold_finger;
 mod hold_in_sequence;
 mod hold_tile;
 mod move_to;

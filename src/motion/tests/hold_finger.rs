@@ -1,0 +1,167 @@
+//! One finger that holds, on a spring: the hand acts 70 ms late, and its force sensor is noisy.
+
+use crate::hand::Moment;
+use crate::hand::grip::TightenCause;
+use crate::motion::hold_finger::{FingerHold, FingerReading, ForceRange, HoldStep, TipForces};
+use std::collections::VecDeque;
+use std::time::Duration;
+
+const READING: Duration = Duration::from_millis(10);
+const READINGS_PER_TIP: u64 = 3;
+const LATENCY: Duration = Duration::from_millis(70);
+const NOISE_G: f64 = 5.0;
+const RANGE: ForceRange = ForceRange {
+    least_g: 150.0,
+    most_g: 600.0,
+};
+
+struct Bench {
+    hold: FingerHold,
+    now: Moment,
+    readings: u64,
+    chance: fastrand::Rng,
+    /// g per unit of angle, and the angle at which the spring is touched.
+    stiffness: f64,
+    touched: f64,
+    angle: f64,
+    /// Target and units a second, from this time on.
+    orders: VecDeque<(Moment, f64, f64)>,
+    /// Reading of the force sensor for a gram.
+    reading_per_g: f64,
+    load_g: f64,
+    steps: Vec<HoldStep>,
+}
+
+impl Bench {
+    /// Presses with `force_g` on a spring that the close measured.
+    fn pressing(force_g: f64, stiffness: f64) -> Self {
+        let angle = 500.0;
+        let now = Moment::ZERO.plus(Duration::from_secs(1));
+        let mut hold = FingerHold::new(RANGE, NOISE_G, 500, now);
+        hold.know_stiffness(stiffness);
+        Self {
+            hold,
+            now,
+            readings: 0,
+            chance: fastrand::Rng::with_seed(7),
+            stiffness,
+            touched: angle + force_g / stiffness,
+            angle,
+            orders: VecDeque::new(),
+            reading_per_g: 1.0,
+            load_g: 0.0,
+            steps: Vec::new(),
+        }
+    }
+
+    fn force_g(&self) -> f64 {
+        ((self.touched - self.angle) * self.stiffness).max(0.0)
+    }
+
+    fn run(&mut self, duration: Duration) {
+        let end = self.now.plus(duration);
+        while self.now < end {
+            self.now = self.now.plus(READING);
+            self.readings += 1;
+            self.drive();
+            let force_g = self.force_g();
+            if self.readings.is_multiple_of(READINGS_PER_TIP) {
+                self.hold.feel(TipForces {
+                    at: self.now,
+                    normal_g: force_g,
+                    tangential_g: self.load_g,
+                    spot_mm: None,
+                });
+            }
+            let noise_g = NOISE_G * (self.chance.f64() - 0.5);
+            let step = self.hold.apply(FingerReading {
+                at: self.now,
+                force_g: force_g * self.reading_per_g + noise_g,
+                angle: self.angle.round() as i16,
+                is_warm: false,
+            });
+            if let Some(step) = step {
+                let speed = f64::from(step.speed.get()) * 3.04 / 2.0;
+                let due = self.now.plus(LATENCY);
+                self.orders.push_back((due, step.to.get().into(), speed));
+                self.steps.push(step);
+            }
+        }
+    }
+
+    /// Moves towards the newest target that has arrived.
+    fn drive(&mut self) {
+        while self.orders.get(1).is_some_and(|next| next.0 <= self.now) {
+            self.orders.pop_front();
+        }
+        if let Some((_, to, speed)) = self.orders.front().filter(|own| own.0 <= self.now) {
+            let way = speed * READING.as_secs_f64();
+            self.angle += (to - self.angle).clamp(-way, way);
+        }
+    }
+
+    fn causes(&self) -> Vec<Option<TightenCause>> {
+        self.steps.iter().map(|step| step.cause).collect()
+    }
+}
+
+#[test]
+fn a_quiet_finger_relaxes_to_at_least_and_then_rests() {
+    for stiffness in [3.0, 12.0, 40.0] {
+        let mut bench = Bench::pressing(400.0, stiffness);
+        bench.run(Duration::from_secs(10));
+        let force_g = bench.force_g();
+        let highest = RANGE.least_g + 1.5 * stiffness + 20.0;
+        assert!(
+            (RANGE.least_g - 5.0..highest).contains(&force_g),
+            "{force_g}"
+        );
+        let settled = bench.steps.len();
+        bench.run(Duration::from_secs(60));
+        assert_eq!(bench.steps.len(), settled, "stiffness {stiffness}");
+        assert!(bench.causes().iter().all(Option::is_none), "no reversal");
+    }
+}
+
+#[test]
+fn noise_of_the_sensor_moves_nothing() {
+    let mut bench = Bench::pressing(152.0, 10.0);
+    bench.run(Duration::from_secs(60));
+    assert!(bench.steps.is_empty(), "{:?}", bench.steps);
+}
+
+#[test]
+fn a_force_that_falls_below_at_least_is_corrected_once_it_has_settled() {
+    let mut bench = Bench::pressing(135.0, 10.0);
+    bench.run(Duration::from_secs(10));
+    assert_eq!(bench.causes(), [Some(TightenCause::TooLittle)]);
+    assert!(bench.force_g() >= RANGE.least_g, "{}", bench.force_g());
+}
+
+#[test]
+fn a_hand_that_reads_less_than_the_fingertip_feels_presses_as_hard_as_the_load_needs() {
+    for reading_per_g in [0.6, 1.0, 1.5] {
+        let mut bench = Bench::pressing(250.0 / reading_per_g, 10.0 / reading_per_g);
+        bench.reading_per_g = reading_per_g;
+        bench.run(Duration::from_millis(500));
+        bench.load_g = 80.0;
+        bench.run(Duration::from_secs(8));
+        let ratio = bench.load_g / bench.force_g();
+        assert!((0.2..=0.36).contains(&ratio), "{reading_per_g}: {ratio}");
+    }
+}
+
+#[test]
+fn a_slow_step_on_a_hard_object_is_not_taken_for_a_blocked_drive() {
+    let mut bench = Bench::pressing(200.0, 4.0);
+    bench.run(Duration::from_millis(500));
+    bench.load_g = 180.0;
+    bench.run(Duration::from_millis(1500));
+    // A blocked drive would be opened by one unit.
+    assert!(
+        bench.causes().iter().all(Option::is_some),
+        "{:?}",
+        bench.steps
+    );
+    assert!(bench.force_g() > 450.0, "{}", bench.force_g());
+}
