@@ -58,7 +58,8 @@ const SETTLED_READINGS: usize = 5;
 /// Two settled forces show the stiffness if their angles differ by this many units; the share of the new value that is learned.
 const SETTLED_WAY: f64 = 2.0;
 const LEARN: f64 = 0.8;
-/// Dead band of a settled force, g, at least.
+/// Dead band of a settled force: twice the noise of the mean of the fewest readings, as a share of that of one, and at least this, g.
+const SETTLED_NOISE: f64 = 0.9;
 const SETTLED_DEAD_G: f64 = 4.0;
 /// Share of the wanted force that is corrected at once.
 const URGENT: f64 = 0.3;
@@ -391,7 +392,7 @@ impl FingerHold {
 
     /// Smallest difference of a settled force that is not noise, g.
     fn settled_dead_g(&self) -> f64 {
-        (2.0 * self.noise_g / (SETTLED_READINGS as f64).sqrt()).max(SETTLED_DEAD_G)
+        (self.noise_g * SETTLED_NOISE).max(SETTLED_DEAD_G)
     }
 
     /// Learns the force of the drive for each gram on the fingertip.

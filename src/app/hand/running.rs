@@ -40,7 +40,7 @@ pub enum MotionRun {
     /// An external source.
     Follow(FollowRun),
     /// A hold between two forces, also one that has ended.
-    Hold(HoldMotion),
+    Hold(Box<HoldMotion>),
 }
 
 /// The one place for a program that moves a hand.

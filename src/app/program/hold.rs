@@ -120,5 +120,5 @@ fn start(hand: &mut Hand, close: HoldClose, repeated: Option<RepeatedGrasp>, ctx
     });
     let start = GraspStart { hold, unconfirmed };
     let run = HoldMotion::begin(open.link.clone(), armed, start, grasp, ctx.env);
-    hand.running.0 = Some(MotionRun::Hold(run));
+    hand.running.0 = Some(MotionRun::Hold(Box::new(run)));
 }

@@ -77,7 +77,7 @@ impl Bench {
             let step = self.hold.apply(FingerReading {
                 at: self.now,
                 force_g: force_g * self.reading_per_g + noise_g,
-                angle: self.angle.round() as i16,
+                angle: self.hand_angle(),
                 is_warm: false,
             });
             if let Some(step) = step {
@@ -87,6 +87,11 @@ impl Bench {
                 self.steps.push(step);
             }
         }
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "0..=1000")]
+    fn hand_angle(&self) -> i16 {
+        self.angle.round() as i16
     }
 
     /// Moves towards the newest target that has arrived.
@@ -152,16 +157,19 @@ fn a_hand_that_reads_less_than_the_fingertip_feels_presses_as_hard_as_the_load_n
 }
 
 #[test]
-fn a_slow_step_on_a_hard_object_is_not_taken_for_a_blocked_drive() {
-    let mut bench = Bench::pressing(200.0, 4.0);
-    bench.run(Duration::from_millis(500));
-    bench.load_g = 180.0;
-    bench.run(Duration::from_millis(1500));
-    // A blocked drive would be opened by one unit.
-    assert!(
-        bench.causes().iter().all(Option::is_some),
-        "{:?}",
-        bench.steps
-    );
-    assert!(bench.force_g() > 450.0, "{}", bench.force_g());
+fn a_load_that_rises_is_answered_at_once_and_only_by_pressing_harder() {
+    for stiffness in [4.0, 40.0] {
+        let mut bench = Bench::pressing(200.0, stiffness);
+        bench.run(Duration::from_millis(500));
+        bench.load_g = 180.0;
+        bench.run(READING * 4);
+        assert_eq!(bench.causes().first(), Some(&Some(TightenCause::Load)));
+        bench.run(Duration::from_millis(600));
+        assert!(
+            bench.causes().iter().all(Option::is_some),
+            "{:?}",
+            bench.steps
+        );
+        assert!(bench.force_g() > 450.0, "{}", bench.force_g());
+    }
 }
