@@ -18,9 +18,14 @@ use handscope::ui::View;
 
 /// An object near all open fingers, lifted once it is held and pulled then.
 fn pulled() -> Object {
+    pulled_at(920.0)
+}
+
+/// The same, touched at this angle.
+fn pulled_at(angle: f64) -> Object {
     let contacts = PerDof::from_fn(|dof| match dof {
         Dof::ThumbRotate => None,
-        _ => Some(Obstacle::at(920.0, 10.0)),
+        _ => Some(Obstacle::at(angle, 10.0)),
     });
     Object {
         mass_g: 200.0,
@@ -218,6 +223,8 @@ fn a_pose_ends_in_a_hold_between_the_forces_that_are_typed() {
 #[test]
 fn steps_that_hold_are_added_edited_and_played_and_each_tightening_is_a_mark() {
     let mut bench = edited();
+    // Hardly bent fingers count as open, also with an object between them.
+    bench.hand(|hand, _| hand.set_object(&pulled_at(700.0)));
     bench.click("Sequences");
     bench.run(60);
     bench.click("New sequence");
