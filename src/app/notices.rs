@@ -6,7 +6,7 @@ use crate::hand::gap::BlockError;
 use crate::hand::grip::GripState;
 use crate::hand::{Dof, Finger, Gesture, Moment};
 use crate::link::{LinkTrouble, Owner, RequestError};
-use crate::motion::grasp::doubt::Doubt;
+use crate::motion::grasp::doubt::GraspDoubt;
 use crate::motion::hold::HoldEnd;
 use crate::motion::program::Ended;
 use crate::record::Abort;
@@ -130,7 +130,7 @@ pub enum NoticeKind {
     /// A hold needs more than *at most*.
     CannotHold,
     /// A grasp of another hand is not trusted on this one.
-    GraspDoubted(Doubt),
+    GraspDoubted(GraspDoubt),
     /// A hold ended by itself, or early.
     HoldEnded(Ended<HoldEnd>),
     /// A series of trials has ended.

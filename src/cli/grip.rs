@@ -1,6 +1,5 @@
 //! `grip`: a grip by size on any hand. It moves the hand, so it requires `--arm`.
 
-use crate::app::files::settings_file;
 use crate::cli::out::Out;
 use crate::cli::parse::{hand, moving_speed, rated_force};
 use crate::cli::session;
@@ -69,7 +68,7 @@ pub(crate) async fn run(out: &mut Out, args: &GripArgs) -> anyhow::Result<()> {
         );
     }
     let report = drive(args).await?;
-    let blocks = blocks(&args.hand);
+    let blocks = session::size_blocks(&args.hand);
     let done = outcome(args, &report, &blocks);
     let object = object(args, &report, &blocks);
     out.result(args.json, &object, done.as_ref().ok())?;
@@ -96,12 +95,6 @@ async fn drive(args: &GripArgs) -> anyhow::Result<GripReport> {
     let report = grip::grip(&hand.link, hand.armed, start, ends).await;
     hand.release(report.stop).await;
     Ok(report)
-}
-
-/// Reads the blocks that the window measured with this hand from its settings, without changing them.
-fn blocks(hand: &Endpoint) -> SizeBlocks {
-    let known = settings_file::default_path().and_then(|path| settings_file::peek(&path));
-    known.map_or_else(SizeBlocks::default, |known| known.size_blocks(Some(hand)))
 }
 
 /// Describes the object between the pads, and the shape that its size refers to.

@@ -17,10 +17,11 @@ use crate::hand::statistics::mean;
 use crate::hand::{Finger, Force, Moment, PerDof, Speed};
 use crate::link::ArmRequest;
 use crate::motion::drive::stop_words;
-use crate::motion::grasp::doubt::Doubt;
+use crate::motion::grasp::doubt::GraspDoubt;
 use crate::motion::grasp::run::{ConfirmStep, Confirming, GraspRun, GraspStart, GraspView};
-use crate::motion::grasp::seen::About;
-use crate::motion::hold::{HeldThing, HoldClose, HoldEnd, HoldPhase, HoldStart, HoldView};
+use crate::motion::grasp::seen::GraspLabel;
+use crate::motion::held_object::{Bounded, HeldObject};
+use crate::motion::hold::{HoldClose, HoldEnd, HoldPhase, HoldStart, HoldView};
 use crate::motion::program::{Ended, Progress};
 use crate::poses::starter::starter;
 use crate::record::Abort;
@@ -184,7 +185,7 @@ struct AskedHold {
     /// The grasp that it repeats.
     chosen: Option<ChosenGrasp>,
     /// The grasp that it becomes if it works, and its file.
-    about: Option<(About, PathBuf)>,
+    about: Option<(GraspLabel, PathBuf)>,
 }
 
 impl AskedHold {
@@ -200,7 +201,7 @@ impl AskedHold {
         let about = args.save.as_ref().map(|place| {
             let claim = args.tuned.as_ref();
             let claim = claim.map(|folder| grasp::claim(folder, &args.hand));
-            let about = About {
+            let about = GraspLabel {
                 name: place.name(),
                 note: args.note.clone().unwrap_or_default(),
                 day: day(since_1970()),
@@ -244,6 +245,7 @@ impl AskedHold {
                 reading_per_g: self.reading_per_g,
                 locked: PerDof::splat(false),
                 overshoot: overshoot(&args.hand),
+                blocks: session::size_blocks(&args.hand),
                 grip: session::grip_estimator(&args.hand),
             },
             unconfirmed: self.chosen.as_ref().and_then(ChosenGrasp::unconfirmed),
@@ -327,8 +329,9 @@ impl HoldLines<'_> {
             HoldPhase::Measuring => "measuring the zero of the force sensors".into(),
             HoldPhase::Closing => "closing".into(),
             HoldPhase::Holding => {
-                let thing = view.thing.map_or(String::new(), |thing| held_words(&thing));
-                format!("holding with {force}, margin {margin}; {tightened}{warm}{thing}")
+                let object = view.object.map(|object| object_words(&object));
+                let object = object.map_or(String::new(), |words| format!("; {words}"));
+                format!("holding with {force}, margin {margin}; {tightened}{warm}{object}")
             }
             HoldPhase::CannotHold => format!(
                 "CANNOT HOLD within {} g: pressing with {force}, margin {margin}; {tightened}{warm}",
@@ -364,20 +367,29 @@ fn confirm_words(confirming: Confirming) -> String {
     format!("confirming {close} of {of}: {step}; ")
 }
 
-/// What is held, as far as it is known.
-fn held_words(thing: &HeldThing) -> String {
-    let gap = thing.gap_mm.map(|mm| format!("pads {mm:.0} mm apart"));
-    let stiffness = match thing.stiffness {
-        Stiffness::Unknown => None,
-        known => Some(known.name().to_owned()),
+/// What the fingers cannot show.
+const CANNOT_TELL: &str = "cannot tell";
+
+/// What is in the hand.
+fn object_words(object: &HeldObject) -> String {
+    let bounded = |own: Option<Bounded>, unit: &str| match own {
+        Some(own) => format!("{:.0} ±{:.0} {unit}", own.value, own.bound),
+        None => CANNOT_TELL.into(),
     };
-    let load = thing.load_g.map(|g| format!("load {g} g"));
-    let all: Vec<String> = [gap, stiffness, load].into_iter().flatten().collect();
-    if all.is_empty() {
-        String::new()
-    } else {
-        format!("; held: {}", all.join(", "))
-    }
+    let stiffness = match object.stiffness {
+        Stiffness::Unknown => CANNOT_TELL,
+        known => known.name(),
+    };
+    let yields = match object.yields {
+        Some(true) => "yes",
+        Some(false) => "no",
+        None => CANNOT_TELL,
+    };
+    format!(
+        "in the hand: size {}, stiffness {stiffness}, yields: {yields}, weight {}",
+        bounded(object.size_mm, "mm"),
+        bounded(object.weight_g, "g"),
+    )
 }
 
 fn forces(args: &HoldArgs) -> anyhow::Result<HoldForces> {
@@ -471,7 +483,7 @@ pub(crate) fn overshoot(hand: &Endpoint) -> OvershootMap {
 }
 
 /// The doubt that ended a confirmation.
-const fn doubt(end: Ended<Result<HoldEnd, Doubt>>) -> Option<Doubt> {
+const fn doubt(end: Ended<Result<HoldEnd, GraspDoubt>>) -> Option<GraspDoubt> {
     match end {
         Ok(Err(doubt)) => Some(doubt),
         _ => None,
@@ -479,7 +491,7 @@ const fn doubt(end: Ended<Result<HoldEnd, Doubt>>) -> Option<Doubt> {
 }
 
 /// The outcome in one sentence; `Err` for failures.
-fn outcome(end: Ended<Result<HoldEnd, Doubt>>) -> Result<&'static str, String> {
+fn outcome(end: Ended<Result<HoldEnd, GraspDoubt>>) -> Result<&'static str, String> {
     match end {
         Ok(Ok(HoldEnd::Held)) => Ok("held; the hand keeps its position and what it holds"),
         Ok(Ok(HoldEnd::Nothing)) => Err(
@@ -494,7 +506,7 @@ fn outcome(end: Ended<Result<HoldEnd, Doubt>>) -> Result<&'static str, String> {
     }
 }
 
-const fn end_name(end: Ended<Result<HoldEnd, Doubt>>) -> &'static str {
+const fn end_name(end: Ended<Result<HoldEnd, GraspDoubt>>) -> &'static str {
     match end {
         Ok(Ok(HoldEnd::Held)) => "held",
         Ok(Ok(HoldEnd::Nothing)) => "nothing",

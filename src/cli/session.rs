@@ -5,6 +5,7 @@ use crate::app::files::settings_file;
 use crate::checkup::{free_file, newtons_file};
 use crate::cli::out::notify;
 use crate::hand::PerDof;
+use crate::hand::gap::SizeBlocks;
 use crate::hand::grip::GripEstimator;
 use crate::hand::heat::HOT;
 use crate::link::{
@@ -43,6 +44,12 @@ pub(crate) fn grip_estimator(hand: &Endpoint) -> GripEstimator {
     let file = settings.and_then(|settings| free_file::file_of(&settings, hand));
     let known = file.and_then(|file| free_file::read(&file).ok());
     GripEstimator::knowing(known.unwrap_or_default())
+}
+
+/// Blocks that the window measured with this hand, from its settings, which stay unchanged.
+pub(crate) fn size_blocks(hand: &Endpoint) -> SizeBlocks {
+    let known = settings_file::default_path().and_then(|path| settings_file::peek(&path));
+    known.map_or_else(SizeBlocks::default, |known| known.size_blocks(Some(hand)))
 }
 
 /// Newtons of a gram of each joint of a hand; `None` where they were not measured. An unreadable file counts as missing.

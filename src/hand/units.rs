@@ -114,6 +114,12 @@ impl HandId {
 impl Angle {
     /// Distance from the target, in counts, within which a joint has arrived.
     pub const ARRIVED_TOLERANCE: u16 = 20;
+
+    /// True if a joint at this position has arrived at this target.
+    pub const fn is_reached_at(self, position: i16) -> bool {
+        position.abs_diff(self.0) <= Self::ARRIVED_TOLERANCE
+    }
+
     /// Angle of this joint in degrees, by the linear map of [`Dof::degrees`].
     pub fn degrees(self, dof: Dof) -> f32 {
         let (low, high) = dof.degrees();

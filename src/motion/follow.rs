@@ -1,7 +1,7 @@
 //! A hand that follows a source (gamepad, stream, another hand) under a lease that the user granted. `inputs` decides when and how far
 //! it moves; this program executes that.
 
-use crate::hand::gap::Gap;
+use crate::hand::gap::{Gap, SizeBlocks};
 use crate::hand::grip::GripEstimator;
 use crate::hand::hold_forces::HoldForces;
 use crate::hand::overshoot::OvershootMap;
@@ -256,6 +256,7 @@ impl FollowProgram {
                 reading_per_g: PerDof::splat(1.0),
                 locked: terms.locked,
                 overshoot: self.start.overshoot.clone(),
+                blocks: SizeBlocks::default(),
                 grip: self.start.grip.clone(),
             };
             let hold = HostedHold::new(epoch, start, self.hold_limits(terms), seen.now);

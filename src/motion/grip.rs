@@ -4,13 +4,13 @@
 use crate::hand::gap::{Gap, PinchGap, held_gap, pinch_gap};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Force, Group, Groups, HandCommand, HandSample, Moment, PerDof,
+    AngleReading, ArmEpoch, Force, Group, Groups, HandCommand, HandSample, Moment, PerDof,
     Setpoints, Speed, Target,
 };
 use crate::link::session::watch::other_controller::OtherController;
 use crate::link::{LinkHandle, Stop};
 use crate::motion::drive::{Armed, drive};
-use crate::motion::program::{Ended, Order, Program, Seen};
+use crate::motion::program::{Ended, LEG_SPARE, Order, Program, Seen};
 use crate::poses::way::{WayPart, pinch_way};
 use crate::record::{Abort, Rest};
 use futures::Stream;
@@ -24,8 +24,6 @@ const START_DELAY: Duration = Duration::from_millis(500);
 const ACT_DELAY: Duration = Duration::from_millis(150);
 /// A completed leg waits at most this long, counted from its start, for its setpoints to be read back.
 const READ_BACK_TIMEOUT: Duration = Duration::from_millis(1500);
-/// Time that a leg may take beyond the time its speed implies.
-const SPARE: Duration = Duration::from_secs(4);
 
 /// Settings with which a grip starts.
 #[derive(Debug, Clone)]
@@ -134,7 +132,7 @@ impl Program for GripRun {
         self.angles = angles.and_then(|angles| angles.value.map(AngleReading::documented).all());
         let since = seen.now.since(self.sent);
         let Some(angles) = self.angles else {
-            return self.late(since, SPARE);
+            return self.late(since, LEG_SPARE);
         };
         let Some(leg) = self.legs.as_ref().and_then(|legs| legs.front()).copied() else {
             let (gap, speed) = (self.start.gap, self.start.speed);
@@ -142,9 +140,10 @@ impl Program for GripRun {
             self.legs = Some(way.into());
             return self.send(seen.now);
         };
-        let arrived = leg.targets.iter().all(|(dof, to)| {
-            to.is_none_or(|to| angles[dof].abs_diff(to.get()) <= Angle::ARRIVED_TOLERANCE)
-        });
+        let arrived = leg
+            .targets
+            .iter()
+            .all(|(dof, to)| to.is_none_or(|to| to.is_reached_at(angles[dof])));
         let is_last = self.legs.as_ref().is_some_and(|legs| legs.len() == 1);
         // A leg sent now would overwrite the setpoints of another controller unseen.
         let is_unread = since >= READ_BACK_TIMEOUT && !self.setpoints.others.is_doubted();
@@ -254,8 +253,8 @@ impl SentSetpoints {
     }
 }
 
-/// Time limit of a leg: the full stroke at its speed, plus [`SPARE`].
+/// Time limit of a leg: the full stroke at its speed, plus [`LEG_SPARE`].
 fn limit(leg: &WayPart) -> Duration {
     let fastest = leg.speeds.as_array().iter().max().copied();
-    fastest.unwrap_or(Speed::MIN).stroke() + SPARE
+    fastest.unwrap_or(Speed::MIN).stroke() + LEG_SPARE
 }

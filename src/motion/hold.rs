@@ -2,19 +2,20 @@
 //! holds, and never with more than *at most*. The hand itself enforces *at most* by its force threshold, also if this program dies.
 
 use crate::hand::feedback::tactile::spot_mm;
-use crate::hand::gap::{Gap, held_gap};
+use crate::hand::gap::{Gap, SizeBlocks};
 use crate::hand::grip::{Grip, GripEstimator, Tightened};
 use crate::hand::hold_forces::HoldForces;
 use crate::hand::newtons::N_PER_G;
-use crate::hand::overshoot::{MeasuredOn, OvershootMap, Stages, Stiffness};
-use crate::hand::statistics::{count, mean, median, spread};
+use crate::hand::overshoot::{MeasuredOn, OvershootMap, Stages};
+use crate::hand::statistics::{count, mean, spread};
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Finger, Force, ForceReading, Group, Groups, HandSample,
     Moment, PerDof, PerFinger, Setpoints, Speed, Target, heat,
 };
 use crate::link::PollRates;
+use crate::motion::held_object::{HeldObject, ObjectWatch, TipLoad};
 use crate::motion::hold_finger::{FingerHold, FingerReading, ForceRange, TipForces};
-use crate::motion::program::{Ended, Order, Program, Seen};
+use crate::motion::program::{Ended, LEG_SPARE, Order, Program, Seen};
 use crate::poses::way::{Targets, pinch_way, way};
 use crate::record::{Abort, Rest};
 use serde::Serialize;
@@ -37,11 +38,11 @@ const ZERO_TIMEOUT: Duration = Duration::from_secs(3);
 const STILL: Duration = Duration::from_millis(300);
 const STILL_READINGS: u32 = 4;
 const START_DELAY: Duration = Duration::from_millis(500);
-/// Time that a part of the close may take beyond the time its speed implies.
-const SPARE: Duration = Duration::from_secs(4);
 /// Speed of joints that open, and of the thumb's rotation: if feedback freezes, it goes on for half a second.
 const CLEAR_SPEED: i16 = 200;
 const ROTATE_SPEED: i16 = 50;
+/// Speed of a close without a measurement, and of a finger that presses on.
+const SLOW_SPEED: i16 = 25;
 /// A close stops at this multiple of *at least*: the grip relaxes a little afterwards.
 const CLOSE_FACTOR: f64 = 1.1;
 /// A finger presses with *at least* from this share of it on.
@@ -91,6 +92,8 @@ pub struct HoldStart {
     pub locked: PerDof<bool>,
     /// Overshoot measured on this hand, which sets the speed of the close.
     pub overshoot: OvershootMap,
+    /// Blocks measured with this hand: sizes are by the model without them.
+    pub blocks: SizeBlocks,
     /// Grip estimate from the readings so far.
     pub grip: GripEstimator,
 }
@@ -123,18 +126,6 @@ pub enum HoldPhase {
     CannotHold,
 }
 
-/// What is held, as far as the fingers show it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct HeldThing {
-    /// Distance of the pads of thumb and index, mm, by the model; `None` unless those two alone hold it.
-    pub gap_mm: Option<f32>,
-    /// Class of its stiffness.
-    pub stiffness: Stiffness,
-    /// Sum of the tangential forces, g: its weight, if the hand is upright and still. `None` while the load changes, or if a fingertip
-    /// of a finger that holds is not read.
-    pub load_g: Option<i16>,
-}
-
 /// A hold for display.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct HoldView {
@@ -153,7 +144,7 @@ pub struct HoldView {
     /// A drive is warm.
     pub is_warm: bool,
     /// What is held; `None` before it is.
-    pub thing: Option<HeldThing>,
+    pub object: Option<HeldObject>,
 }
 
 impl HoldView {
@@ -167,7 +158,7 @@ impl HoldView {
             tightened: 0,
             last: None,
             is_warm: false,
-            thing: None,
+            object: None,
         }
     }
 
@@ -203,8 +194,6 @@ impl Zero {
 enum HoldStage {
     Measuring,
     Closing,
-    /// Fingers whose drive counts the zero of its sensor stopped too early, and press on.
-    Pressing,
     /// The held position is the target; the thresholds follow.
     TakingOver,
     Holding,
@@ -243,7 +232,8 @@ pub struct HoldRun {
     events: VecDeque<Tightened>,
     force_g: PerFinger<Option<i16>>,
     is_warm: bool,
-    thing: Option<HeldThing>,
+    shown: ObjectWatch,
+    object: Option<HeldObject>,
     end: Option<Ended<HoldEnd>>,
 }
 
@@ -251,6 +241,7 @@ impl HoldRun {
     /// A hold under this arming.
     pub fn new(epoch: ArmEpoch, start: HoldStart, now: Moment) -> Self {
         Self {
+            shown: ObjectWatch::new(start.blocks.clone()),
             start,
             epoch,
             step: HoldStage::Measuring,
@@ -274,7 +265,7 @@ impl HoldRun {
             events: VecDeque::new(),
             force_g: PerFinger::splat(None),
             is_warm: false,
-            thing: None,
+            object: None,
             end: None,
         }
     }
@@ -343,14 +334,13 @@ impl Program for HoldRun {
             return None;
         }
         let Some(angles) = seen.angles().map(|angles| angles.value) else {
-            let is_late = seen.now.since(self.sent) > SPARE + ZERO_TIMEOUT;
+            let is_late = seen.now.since(self.sent) > LEG_SPARE + ZERO_TIMEOUT;
             return (is_late && self.step != HoldStage::Holding)
                 .then(|| self.finish(HoldEnd::Late));
         };
         match self.step {
             HoldStage::Measuring => self.begin(seen, &angles),
             HoldStage::Closing => self.close(seen, &angles),
-            HoldStage::Pressing => self.press(seen, &angles),
             HoldStage::TakingOver => self.raise_thresholds(seen),
             HoldStage::Holding => self.regulate(seen, &angles, fresh),
         }
@@ -366,9 +356,7 @@ impl Program for HoldRun {
         HoldView {
             phase: match self.step {
                 HoldStage::Measuring => HoldPhase::Measuring,
-                HoldStage::Closing | HoldStage::Pressing | HoldStage::TakingOver => {
-                    HoldPhase::Closing
-                }
+                HoldStage::Closing | HoldStage::TakingOver => HoldPhase::Closing,
                 HoldStage::Holding if holding().any(FingerHold::is_short) => HoldPhase::CannotHold,
                 HoldStage::Holding => HoldPhase::Holding,
             },
@@ -378,7 +366,7 @@ impl Program for HoldRun {
             tightened: self.tightened,
             last: self.last,
             is_warm: self.is_warm,
-            thing: self.thing,
+            object: self.object,
         }
     }
 
@@ -562,25 +550,30 @@ impl HoldRun {
             let is_own = matches!(expected.on, MeasuredOn::ThisHand { .. });
             is_own && threshold_g + expected.over_g <= range.most_g
         };
-        let speeds = (25..=CLEAR_SPEED).rev().step_by(25);
-        Speed::nearest(speeds.into_iter().find(|speed| fits(*speed)).unwrap_or(25))
+        let speeds = (SLOW_SPEED..=CLEAR_SPEED).rev().step_by(25);
+        Speed::nearest(
+            speeds
+                .into_iter()
+                .find(|speed| fits(*speed))
+                .unwrap_or(SLOW_SPEED),
+        )
     }
 
     fn close(&mut self, seen: &Seen<'_>, angles: &PerDof<AngleReading>) -> Option<Order> {
         let leg = self.legs.as_ref().and_then(|legs| legs.front()).copied()?;
         self.watch_contacts(seen.sample, angles);
-        let moves = |dof: Dof| leg[dof].is_some();
-        if self.is_at_rest(seen, moves) {
-            self.legs.as_mut().and_then(VecDeque::pop_front);
-            if self.legs.as_ref().is_some_and(|legs| !legs.is_empty()) {
-                return self.send_leg(seen.now, angles);
+        if self.is_at_rest(seen, |dof| leg[dof].is_some()) {
+            if let Some(order) = self.press_on(seen, angles, &leg) {
+                return Some(order);
             }
-            self.legs = Some(VecDeque::from([leg]));
-            self.step = HoldStage::Pressing;
-            return self.press(seen, angles);
+            self.legs.as_mut().and_then(VecDeque::pop_front);
+            return match self.legs.as_ref().is_some_and(VecDeque::is_empty) {
+                true => self.take_over(seen, angles),
+                false => self.send_leg(seen.now, angles),
+            };
         }
-        let slowest = Speed::nearest(25).stroke();
-        (seen.now.since(self.sent) > slowest + SPARE).then(|| self.finish(HoldEnd::Late))
+        let slowest = Speed::nearest(SLOW_SPEED).stroke();
+        (seen.now.since(self.sent) > slowest + LEG_SPARE).then(|| self.finish(HoldEnd::Late))
     }
 
     /// Notes where contacts begin: the stiffness follows from there.
@@ -589,22 +582,22 @@ impl HoldRun {
             let dof = finger.bend();
             let force = self.force_g(sample, dof);
             let begins = force.filter(|force| *force > 3.0 * self.zeros[dof].noise_g() + 5.0);
-            if self.touched[finger].is_none() {
-                self.touched[finger] = begins.map(|force| (angles[dof].raw(), force));
+            if let (None, Some(force)) = (self.touched[finger], begins) {
+                self.touched[finger] = Some((angles[dof].raw(), force));
+                self.shown.met(finger, angles[dof].raw(), force);
             }
         }
     }
 
-    /// A drive that counts the zero of its sensor stops too early by as much: its threshold rises until the finger presses.
-    fn press(&mut self, seen: &Seen<'_>, angles: &PerDof<AngleReading>) -> Option<Order> {
-        let leg = self.legs.as_ref().and_then(|legs| legs.front()).copied()?;
-        self.watch_contacts(seen.sample, angles);
-        if !self.is_at_rest(seen, |dof| leg[dof].is_some()) {
-            return None;
-        }
+    /// A drive that counts the zero of its sensor stops too early by as much: its threshold rises until the joint arrives or presses.
+    fn press_on(
+        &mut self,
+        seen: &Seen<'_>,
+        angles: &PerDof<AngleReading>,
+        leg: &Targets,
+    ) -> Option<Order> {
         let mut setpoints = Setpoints::none(self.epoch);
-        for finger in Finger::ALL {
-            let dof = finger.bend();
+        for dof in Dof::ALL {
             let range = self.range(dof);
             let (Some(to), Some(force)) = (leg[dof], self.force_g(seen.sample, dof)) else {
                 continue;
@@ -621,10 +614,13 @@ impl HoldRun {
             self.threshold_g[dof] = raised;
             setpoints.angle[dof] = Some(Target::Go(to));
             setpoints.force[dof] = Some(Force::nearest(rounded(raised)));
-            setpoints.speed[dof] = Some(Speed::nearest(25));
+            setpoints.speed[dof] = Some(Speed::nearest(match dof {
+                Dof::ThumbRotate => ROTATE_SPEED,
+                _ => SLOW_SPEED,
+            }));
         }
         if setpoints.is_empty() {
-            return self.take_over(seen, angles);
+            return None;
         }
         self.sent = seen.now;
         Some(Order::Set(setpoints))
@@ -663,7 +659,7 @@ impl HoldRun {
             self.fingers[finger] = Some(hold);
             self.held_from[finger] = at.get();
             setpoints.angle[dof] = Some(Target::Go(at));
-            setpoints.speed[dof] = Some(Speed::nearest(25));
+            setpoints.speed[dof] = Some(Speed::nearest(SLOW_SPEED));
         }
         if setpoints.is_empty() {
             return Some(self.finish(HoldEnd::Nothing));
@@ -721,6 +717,9 @@ impl HoldRun {
                 angle: at.get(),
                 is_warm: is_warm(seen.sample, dof),
             });
+            if let Some((settled_g, angle)) = hold.settled() {
+                self.shown.rests(finger, angle, settled_g);
+            }
             let Some(step) = step.filter(|step| !(is_gone || is_far && step.cause.is_some()))
             else {
                 continue;
@@ -734,7 +733,7 @@ impl HoldRun {
                 self.events.push_back(tightened);
             }
         }
-        self.thing = Some(self.held_thing(angles, seen.now));
+        self.object = Some(self.held_object(angles, seen.now));
         if self.is_lost(seen.now) {
             return Some(self.finish(HoldEnd::Lost));
         }
@@ -749,21 +748,15 @@ impl HoldRun {
         *since = is_gone.then(|| since.unwrap_or(seen.now));
     }
 
-    fn held_thing(&self, angles: &PerDof<AngleReading>, now: Moment) -> HeldThing {
+    fn held_object(&self, angles: &PerDof<AngleReading>, now: Moment) -> HeldObject {
         let holding = || self.fingers.as_array().iter().flatten();
-        let stiffness: Vec<f64> = holding()
-            .filter_map(FingerHold::measured_stiffness)
-            .collect();
         let is_quiet = holding().all(|finger| finger.is_quiet(now));
-        let loads: Option<Vec<f64>> = holding().map(FingerHold::tangential_g).collect();
-        let load = loads
-            .filter(|_| is_quiet)
-            .map(|loads| loads.iter().sum::<f64>());
-        HeldThing {
-            gap_mm: held_gap(&self.start.grip.grip(), angles).map(|gap| gap.mm),
-            stiffness: Stiffness::of(median(&stiffness)),
-            load_g: load.map(whole),
-        }
+        let loads: Option<Vec<TipLoad>> = holding().map(FingerHold::tip_load).collect();
+        self.shown.object(
+            PerFinger::from_fn(|finger| self.fingers[finger].is_some()),
+            angles[Dof::ThumbRotate].documented(),
+            loads.as_deref().filter(|_| is_quiet),
+        )
     }
 
     /// True once every finger that held presses on nothing.

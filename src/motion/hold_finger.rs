@@ -3,6 +3,7 @@
 use crate::hand::grip::TightenCause;
 use crate::hand::statistics::{mean, median};
 use crate::hand::{Angle, Moment, Speed};
+use crate::motion::held_object::TipLoad;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -233,6 +234,23 @@ impl FingerHold {
     /// Stiffness of the contact, g per unit of angle; `None` before the close or a step showed it.
     pub(crate) fn measured_stiffness(&self) -> Option<f64> {
         (self.stiffer < STIFFER_UNKNOWN).then_some(self.stiffness)
+    }
+
+    /// The last force at rest, g, and its angle.
+    pub(crate) const fn settled(&self) -> Option<(f64, i16)> {
+        self.settled
+    }
+
+    /// Mean load of the fingertip in the readings that are kept; `None` before the first.
+    pub(crate) fn tip_load(&self) -> Option<TipLoad> {
+        let mean_of = |force: fn(&TipForces) -> f64| {
+            let forces: Vec<f64> = self.tips.iter().map(force).collect();
+            mean(&forces)
+        };
+        Some(TipLoad {
+            normal_g: mean_of(|tip| tip.normal_g)?,
+            tangential_g: mean_of(|tip| tip.tangential_g)?,
+        })
     }
 
     /// Tangential force on the fingertip, g; `None` before it was read.

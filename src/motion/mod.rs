@@ -11,6 +11,7 @@ pub mod following;
 mod following_tests;
 pub mod grasp;
 pub mod grip;
+pub mod held_object;
 pub mod hold;
 mod hold_finger;
 mod hosted_hold;

@@ -5,7 +5,7 @@ use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::{Angle, ArmEpoch, Groups, HandSample, Moment, Setpoints, Speed, Target};
 use crate::link::{ArmRequest, LinkHandle};
 use crate::motion::drive::{Armed, drive};
-use crate::motion::program::{AfterAbort, Ended, Order, Program, Seen};
+use crate::motion::program::{AfterAbort, Ended, LEG_SPARE, Order, Program, Seen};
 use crate::poses::way::{Targets, way};
 use crate::record::{Abort, Rest};
 use futures::stream::pending;
@@ -15,8 +15,6 @@ use std::time::Duration;
 
 /// Minimum time before a leg is judged at rest: the hand acts late.
 const START_DELAY: Duration = Duration::from_millis(500);
-/// Time that a leg may take beyond the time its speed implies.
-const SPARE: Duration = Duration::from_secs(4);
 
 /// Settings with which a motion starts.
 #[derive(Debug, Clone)]
@@ -53,13 +51,7 @@ pub struct MoveReport {
 
 /// Moves until the joints are at their targets or the hand rests elsewhere.
 pub async fn move_to(hand: &LinkHandle, armed: Armed, start: MoveStart) -> MoveReport {
-    let program = Moving {
-        epoch: armed.epoch,
-        legs: None,
-        sent: armed.clock.now(),
-        start,
-        end: None,
-    };
+    let program = Moving::new(armed.epoch, start, armed.clock.now());
     let driven = drive(hand, armed, program, pending(), |_| true).await;
     let estimator = &driven.program.start.grip;
     MoveReport {
@@ -68,7 +60,9 @@ pub async fn move_to(hand: &LinkHandle, armed: Armed, start: MoveStart) -> MoveR
     }
 }
 
-struct Moving {
+/// The program of a motion; another program may host it.
+#[derive(Debug)]
+pub(crate) struct Moving {
     start: MoveStart,
     epoch: ArmEpoch,
     /// Remaining legs, the first of them sent; `None` until the position of the hand is known.
@@ -98,7 +92,7 @@ impl Program for Moving {
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
         let since = seen.now.since(self.sent);
         let Some(angle) = seen.angles() else {
-            self.end_if(since > SPARE, MoveEnd::Late);
+            self.end_if(since > LEG_SPARE, MoveEnd::Late);
             return None;
         };
         let angles = angle.value.map(|at| at.hold().map(Angle::get));
@@ -107,8 +101,7 @@ impl Program for Moving {
             return self.send(seen.now);
         };
         let arrived = leg.iter().all(|(dof, to)| {
-            let is_there = |to: Angle, at: i16| at.abs_diff(to.get()) <= Angle::ARRIVED_TOLERANCE;
-            to.is_none_or(|to| angles[dof].is_some_and(|at| is_there(to, at)))
+            to.is_none_or(|to| angles[dof].is_some_and(|at| to.is_reached_at(at)))
         });
         let is_last = self.legs.as_ref().is_some_and(|legs| legs.len() == 1);
         // A reading from before the leg was sent says nothing about it.
@@ -123,7 +116,7 @@ impl Program for Moving {
             self.end_if(arrived, MoveEnd::Reached);
             self.end_if(!arrived, MoveEnd::Stopped);
         }
-        self.end_if(since > limit(self.slowest()), MoveEnd::Late);
+        self.end_if(since > self.slowest().stroke() + LEG_SPARE, MoveEnd::Late);
         None
     }
 
@@ -139,6 +132,17 @@ impl Program for Moving {
 }
 
 impl Moving {
+    /// A motion under this arming.
+    pub(crate) const fn new(epoch: ArmEpoch, start: MoveStart, now: Moment) -> Self {
+        Self {
+            start,
+            epoch,
+            legs: None,
+            sent: now,
+            end: None,
+        }
+    }
+
     /// Ends the motion if `is_over`. The first end is final.
     fn end_if(&mut self, is_over: bool, end: MoveEnd) {
         if is_over {
@@ -167,12 +171,4 @@ impl Moving {
         self.sent = now;
         Some(Order::Set(setpoints))
     }
-}
-
-/// Time limit of a leg: the full stroke at its speed, plus [`SPARE`].
-fn limit(speed: Speed) -> Duration {
-    let stroke = f64::from(Angle::MAX.get());
-    let longest = Duration::from_secs(600);
-    let takes = Duration::try_from_secs_f64(stroke / speed.angle_per_s());
-    takes.unwrap_or(longest).min(longest) + SPARE
 }

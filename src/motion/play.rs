@@ -1,7 +1,7 @@
 //! A sequence of poses on a hand that the user armed: each pose with its speed and force, then its dwell. The sequence ends when
 //! another party moves the hand.
 
-use crate::hand::gap::Gap;
+use crate::hand::gap::{Gap, SizeBlocks};
 use crate::hand::grip::{GripEstimator, Tightened};
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{
@@ -266,6 +266,7 @@ impl Playing {
             reading_per_g: PerDof::splat(1.0),
             locked: self.locked,
             overshoot: self.overshoot.clone(),
+            blocks: SizeBlocks::default(),
             grip: self.grip.clone(),
         };
         let limits = ArmRequest {

@@ -5,6 +5,7 @@ use crate::hand::{AngleReading, ArmEpoch, Groups, HandSample, Moment, PerDof, Se
 use crate::link::{ArmRequest, LinkStatus, Owner, PollRates};
 use crate::record::{Abort, ArmRefusal, Disarmed};
 use crate::trials::limits::TaskStall;
+use std::time::Duration;
 
 /// Result of a program: its own outcome, or the reason for an early end.
 pub type Ended<O> = Result<O, Abort>;
@@ -19,6 +20,9 @@ pub enum Progress<V, E> {
     /// Something that its results contain.
     Event(E),
 }
+
+/// Time that a leg of a motion may take beyond the time its speed implies.
+pub const LEG_SPARE: Duration = Duration::from_secs(4);
 
 /// Action that a program requests from the loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use crate::hand::{
 };
 use crate::link::{LinkHandle, PollRates};
 use crate::motion::drive::{Armed, Driven, drive};
-use crate::motion::program::{Ended, Order, Program, Progress, Seen};
+use crate::motion::program::{Ended, LEG_SPARE, Order, Program, Progress, Seen};
 use crate::motion::series;
 use crate::record::Abort;
 use futures::Stream;
@@ -47,7 +47,6 @@ const STEADY_TIMEOUT: Duration = Duration::from_secs(20);
 /// Maximum time for the user to answer: the drive warms while it presses.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(120);
 /// Time that a motion may take beyond the time its speed implies.
-const SPARE: Duration = Duration::from_secs(4);
 /// Readings that may be typed again before the points are rejected.
 const RETYPED_MAX: u8 = 3;
 
@@ -257,7 +256,7 @@ impl Program for ScaleRun {
             Some(ScalePhase::Zeroing { since, mean }) => {
                 let zero = mean.value().filter(|_| now.since(since) >= MEAN_DURATION);
                 let Some(zero_g) = zero else {
-                    return self.late(since, SPARE, now);
+                    return self.late(since, LEG_SPARE, now);
                 };
                 self.zero_g = zero_g;
                 if !ZEROS_G.contains(&zero_g) {
@@ -267,7 +266,7 @@ impl Program for ScaleRun {
             }
             Some(ScalePhase::Pressing { since }) => {
                 if !self.rests(since, now) {
-                    return self.late(since, SPEED.stroke() + SPARE, now);
+                    return self.late(since, SPEED.stroke() + LEG_SPARE, now);
                 }
                 self.phase = Some(ScalePhase::Settling {
                     pressed: since,
@@ -419,10 +418,10 @@ impl ScaleRun {
 
     fn tick_opening(&mut self, since: Moment, to: Angle, now: Moment) -> Option<Order> {
         if !self.rests(since, now) {
-            return self.late(since, Speed::GENTLE.stroke() + SPARE, now);
+            return self.late(since, Speed::GENTLE.stroke() + LEG_SPARE, now);
         }
         let (_, at) = self.pose?;
-        if at.abs_diff(to.get()) > Angle::ARRIVED_TOLERANCE {
+        if !to.is_reached_at(at) {
             return Some(self.stop(ScaleEnd::NotOpened));
         }
         if let Some(end) = self.ending {
@@ -449,9 +448,9 @@ impl ScaleRun {
         let force = felt.hand.value();
         let force = force.filter(|_| now.since(since) >= MEAN_DURATION);
         let Some(hand_g) = force else {
-            return self.late(since, SPARE, now);
+            return self.late(since, LEG_SPARE, now);
         };
-        let is_bent = at.abs_diff(Angle::MIN.get()) <= Angle::ARRIVED_TOLERANCE;
+        let is_bent = Angle::MIN.is_reached_at(at);
         let pressed_for = now.since(pressed);
         if !is_bent && pressed_for >= SHORT_DELAY && self.is_short(hand_g) {
             self.counts_zero = true;

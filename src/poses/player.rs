@@ -407,8 +407,7 @@ impl Player {
         };
         let there = |dof: Dof| match part.targets[dof] {
             None => true,
-            Some(target) => seen[dof]
-                .is_some_and(|seen| target.get().abs_diff(seen) <= Angle::ARRIVED_TOLERANCE),
+            Some(target) => seen[dof].is_some_and(|seen| target.is_reached_at(seen)),
         };
         let is_there = Dof::ALL.into_iter().all(there);
         let too_late = now.since(since) >= cue.limit;

@@ -253,12 +253,12 @@ impl Runner {
         // Only replies to requests made after the command show its effect.
         let angle = sample.angle.filter(|angle| angle.asked >= since);
         let away = self.plan.start.iter().find_map(|(dof, start)| {
-            let start = (*start)?.get();
+            let start = (*start)?;
             let near = angle.is_some_and(|angle| {
                 let seen = angle.value[dof].documented();
-                seen.is_some_and(|seen| start.abs_diff(seen) <= Angle::ARRIVED_TOLERANCE)
+                seen.is_some_and(|seen| start.is_reached_at(seen))
             });
-            (!near).then_some((dof, start))
+            (!near).then_some((dof, start.get()))
         });
         let still = angle.is_some_and(|angle| self.is_still(&angle.value.map(|v| v.raw()), now));
         let (dof, target) = match away {

@@ -52,6 +52,16 @@ mod idle;
 #[cfg(unix)]
 mod line;
 mod memory;
+#[expect(clippy::cast_precision_loss, reason = "counts of objects")]
+mod object;
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::indexing_slicing,
+    clippy::unwrap_used,
+    reason = "counts of objects; the simulated hand answers, or the bench has no meaning"
+)]
+mod object_table;
 #[path = "../it/trials/other_hand.rs"]
 #[expect(
     clippy::indexing_slicing,
@@ -123,6 +133,7 @@ const PARTS: [Part; 21] = [
     ("grip", grip::run),
     ("hold", hold::run),
     ("grasp", grasp::run),
+    ("object", object::run),
     ("png", pictures::run),
     ("start", start::run),
     ("memory", memory::run),

@@ -2,6 +2,7 @@
 //! forces in units of its own. Used by the bench and, in a small form, by the tests.
 
 use super::hold_table::Plan;
+use handscope::hand::gap::SizeBlocks;
 use handscope::hand::grip::GripEstimator;
 use handscope::hand::newtons::N_PER_G;
 use handscope::hand::overshoot::OvershootMap;
@@ -10,10 +11,10 @@ use handscope::hand::{
     Angle, ArmEpoch, Dof, Finger, Group, HandCommand, HandSample, Moment, PerDof, Reply,
 };
 use handscope::link::LinkStatus;
-use handscope::motion::grasp::doubt::Doubt;
+use handscope::motion::grasp::doubt::GraspDoubt;
 use handscope::motion::grasp::run::{GraspRun, GraspStart, Unconfirmed};
 use handscope::motion::grasp::saved::Grasp;
-use handscope::motion::grasp::seen::About;
+use handscope::motion::grasp::seen::GraspLabel;
 use handscope::motion::hold::{HoldClose, HoldEnd, HoldStart};
 use handscope::motion::program::{Ended, Order, Program, Seen};
 use handscope::record::LinkState;
@@ -79,7 +80,7 @@ struct Bench {
 struct Ran {
     program: GraspRun,
     now: Moment,
-    end: Ended<Result<HoldEnd, Doubt>>,
+    end: Ended<Result<HoldEnd, GraspDoubt>>,
     /// It was dropped while the hand carried it.
     is_dropped: bool,
     is_broken: bool,
@@ -217,6 +218,7 @@ fn hold_start(close: HoldClose, plan: &Plan, reading_per_g: PerDof<f64>) -> Hold
         reading_per_g,
         locked: PerDof::splat(false),
         overshoot: OvershootMap::default(),
+        blocks: SizeBlocks::default(),
         grip: GripEstimator::default(),
     }
 }
@@ -237,7 +239,7 @@ fn made(plan: &Plan, own: OwnHand) -> Option<Grasp> {
         unconfirmed: None,
     };
     let ran = Bench::of(own, plan.object, start).run(&most_g(plan, &own, &ones));
-    let about = About {
+    let about = GraspLabel {
         name: "grasp".into(),
         note: String::new(),
         day: "2026-11-30".into(),
@@ -301,7 +303,7 @@ fn object_of(plan: &Plan, nth: u64) -> Object {
 pub(crate) struct Used {
     pub(crate) is_same_object: bool,
     /// `None`: it is trusted.
-    pub(crate) doubt: Option<Doubt>,
+    pub(crate) doubt: Option<GraspDoubt>,
     /// The hold afterwards worked, or would have without the doubt.
     pub(crate) works: bool,
     /// The confirmation broke it, dropped it, or pressed too hard.
@@ -416,7 +418,7 @@ fn used(plan: &Plan, grasp: &Grasp, own: OwnHand, nth: u64) -> Used {
     let doubt = match confirmed.end {
         Ok(Err(doubt)) => Some(doubt),
         Ok(Ok(HoldEnd::Held)) => None,
-        _ => Some(Doubt::NoLoad { close: 99 }),
+        _ => Some(GraspDoubt::NoLoad { close: 99 }),
     };
     let is_harmed = confirmed.is_broken || confirmed.is_dropped || confirmed.over_g > OVERSHOOT_G;
     let mut object = object;

@@ -1,6 +1,7 @@
 //! Holds of random objects by random bodies in virtual time, judged by the simulated object's own truth. Used by the bench and, in a
 //! small form, by the tests.
 
+use handscope::hand::gap::SizeBlocks;
 use handscope::hand::grip::GripEstimator;
 use handscope::hand::hold_forces::HoldForces;
 use handscope::hand::overshoot::OvershootMap;
@@ -9,16 +10,17 @@ use handscope::hand::{
     Reply, Setpoints, Target,
 };
 use handscope::link::LinkStatus;
-use handscope::motion::hold::{HoldClose, HoldEnd, HoldRun, HoldStart};
+use handscope::motion::hold::{HoldClose, HoldEnd, HoldRun, HoldStart, HoldView};
 use handscope::motion::program::{Order, Program, Seen};
 use handscope::record::LinkState;
+use handscope::sim::body_params::BodyParams;
 use handscope::sim::body_params::random::random;
 use handscope::sim::object::{Friction, Loads, PullLoad, listed};
 use handscope::sim::{HeldState, Object, ObjectLoss, Obstacle, Scenario, SimConfig, SimHand};
 use std::time::Duration;
 
 /// Random bodies; each holds every 40th object.
-const BODIES: u64 = 40;
+pub(crate) const BODIES: u64 = 40;
 const EPOCH: ArmEpoch = ArmEpoch(1);
 /// Interval of the loop. The state is read in every second step, the fingertips in every sixth, the rest in every fortieth.
 const STEP: Duration = Duration::from_millis(5);
@@ -267,11 +269,9 @@ fn hold(plan: &Plan) -> Outcome {
     let mut bench = Bench::of(plan);
     let mut watch = Watch::default();
     loop {
-        bench.now = bench.now.plus(STEP);
-        let tips = bench.read();
-        let truth = bench.hand.held();
+        let Step { tips, truth, sent } = bench.step();
         watch.truth(plan, &truth, &tips, bench.now);
-        if let Some(setpoints) = bench.tick() {
+        if let Some(setpoints) = sent {
             watch.sent(&setpoints, bench.now);
         }
         if let Some(end) = bench.program.ended() {
@@ -280,9 +280,17 @@ fn hold(plan: &Plan) -> Outcome {
     }
 }
 
+/// One step of a hold.
+pub(crate) struct Step {
+    /// Fingertips that were read.
+    tips: PerFinger<bool>,
+    truth: HeldState,
+    sent: Option<Setpoints>,
+}
+
 /// A simulated hand and the program that holds.
-struct Bench {
-    hand: SimHand,
+pub(crate) struct Bench {
+    pub(crate) hand: SimHand,
     program: HoldRun,
     sample: HandSample,
     status: LinkStatus,
@@ -292,7 +300,6 @@ struct Bench {
 
 impl Bench {
     fn of(plan: &Plan) -> Self {
-        let now = Moment::ZERO.plus(Duration::from_millis(10));
         let bends = PerDof::new([Some(100), Some(100), Some(100), Some(100), Some(100), None]);
         let start = HoldStart {
             close: HoldClose::To(bends.map(|angle: Option<i16>| angle.map(Angle::nearest))),
@@ -301,14 +308,21 @@ impl Bench {
             reading_per_g: PerDof::splat(1.0),
             locked: PerDof::splat(false),
             overshoot: OvershootMap::default(),
+            blocks: SizeBlocks::default(),
             grip: GripEstimator::default(),
         };
+        Self::new(plan.seed, random(plan.seed % BODIES), plan.object, start)
+    }
+
+    /// A hold of this object on a hand with this body.
+    pub(crate) fn new(seed: u64, body: BodyParams, object: Object, start: HoldStart) -> Self {
+        let now = Moment::ZERO.plus(Duration::from_millis(10));
         Self {
             hand: SimHand::new(SimConfig {
-                seed: plan.seed,
+                seed,
                 scenario: Scenario::Free,
-                body: random(plan.seed % BODIES),
-                object: Some(plan.object),
+                body,
+                object: Some(object),
                 ..SimConfig::default()
             }),
             program: HoldRun::new(EPOCH, start, now),
@@ -321,6 +335,28 @@ impl Bench {
             now,
             steps: 0,
         }
+    }
+
+    /// Advances hand and hold by one step.
+    pub(crate) fn step(&mut self) -> Step {
+        self.now = self.now.plus(STEP);
+        let tips = self.read();
+        // The hand as it is before it receives what the hold sends.
+        let truth = self.hand.held();
+        let sent = self.tick();
+        Step { tips, truth, sent }
+    }
+
+    pub(crate) fn held_for(&self) -> Option<Duration> {
+        self.program.held_for(self.now)
+    }
+
+    pub(crate) fn view(&self) -> HoldView {
+        self.program.view(self.now)
+    }
+
+    pub(crate) fn has_ended(&self) -> bool {
+        self.program.ended().is_some()
     }
 
     /// Reads what is due; returns the fingertips that were read.

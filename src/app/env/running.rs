@@ -15,15 +15,15 @@ const STEPS_MAX: usize = 1024;
 pub(crate) struct Running<S, E> {
     steps: broadcast::Receiver<(Moment, S)>,
     lost: LostSteps,
-    questions: mpsc::Receiver<OpenQuestion>,
-    question: Option<OpenQuestion>,
+    questions: mpsc::Receiver<AskedQuestion>,
+    question: Option<AskedQuestion>,
     end: oneshot::Receiver<E>,
     _task: AbortOnDrop,
 }
 
 /// A question that waits for its answer.
 #[derive(Debug)]
-struct OpenQuestion {
+struct AskedQuestion {
     question: Question,
     since: Moment,
     answer: oneshot::Sender<bool>,
@@ -35,7 +35,7 @@ pub(crate) type TaskEffect<T> = Box<dyn FnOnce(&mut T, Moment) + Send>;
 /// Sender of a task's steps and questions.
 pub(crate) struct Steps<S> {
     sender: broadcast::Sender<(Moment, S)>,
-    questions: mpsc::Sender<OpenQuestion>,
+    questions: mpsc::Sender<AskedQuestion>,
     env: Env,
 }
 
@@ -50,7 +50,7 @@ impl<S> Steps<S> {
 impl<S: Send> User for &Steps<S> {
     async fn ask(&mut self, question: Question) -> bool {
         let (answer, answered) = oneshot::channel();
-        let open = OpenQuestion {
+        let open = AskedQuestion {
             question,
             since: self.env.clock.now(),
             answer,
@@ -126,7 +126,7 @@ impl<S, E> Running<S, E> {
 
     /// Answers the question if it is the open one; true if it was.
     pub(crate) fn answer(&mut self, question: &Question, yes: bool) -> bool {
-        let is_it = |open: &mut OpenQuestion| open.question == *question;
+        let is_it = |open: &mut AskedQuestion| open.question == *question;
         let open = self.question.take_if(is_it);
         open.is_some_and(|open| open.answer.send(yes).is_ok())
     }

@@ -6,7 +6,7 @@ use crate::app::notices::NoticeKind;
 use crate::hand::{Force, PerDof};
 use crate::motion::grasp::confirm::Agreement;
 use crate::motion::grasp::confirmed_file::{self, Confirmed};
-use crate::motion::grasp::doubt::Doubt;
+use crate::motion::grasp::doubt::GraspDoubt;
 use crate::motion::grasp::file::{self, EXTENSION};
 use crate::motion::grasp::run::Unconfirmed;
 use crate::motion::grasp::saved::Grasp;
@@ -85,7 +85,7 @@ pub enum GraspState {
     /// This hand confirms it first.
     New,
     /// It cannot be confirmed.
-    Doubted(Doubt),
+    Doubted(GraspDoubt),
 }
 
 impl HandGrasps {
@@ -118,12 +118,12 @@ impl HandGrasps {
     /// How this hand would repeat a grasp.
     ///
     /// # Errors
-    /// [`Doubt`]: its forces cannot be converted for this hand.
+    /// [`GraspDoubt`]: its forces cannot be converted for this hand.
     pub(crate) fn repeated(
         &self,
         grasp: &Grasp,
         newtons: PerDof<Option<f64>>,
-    ) -> Result<RepeatedGrasp, Doubt> {
+    ) -> Result<RepeatedGrasp, GraspDoubt> {
         let is_own = self.is_own(grasp);
         let reading_per_g = match is_own {
             true => grasp.reading_per_g(),

@@ -9,10 +9,10 @@ use crate::hand::{Moment, Setpoints};
 use crate::link::LinkHandle;
 use crate::motion::drive::{Armed, drive};
 use crate::motion::grasp::confirm::Agreement;
-use crate::motion::grasp::doubt::Doubt;
+use crate::motion::grasp::doubt::GraspDoubt;
 use crate::motion::grasp::run::{Confirming, GraspRun, GraspStart, GraspView};
 use crate::motion::grasp::saved::Grasp;
-use crate::motion::grasp::seen::{About, NotSaved};
+use crate::motion::grasp::seen::{GraspLabel, NoGrasp};
 use crate::motion::hold::{HoldClose, HoldEnd, HoldPhase, HoldView};
 use crate::motion::program::{Ended, Progress};
 use crate::record::Abort;
@@ -34,7 +34,7 @@ pub enum HoldAction {
 }
 
 /// End of a watched hold.
-pub type HoldEnded = Ended<Result<HoldEnd, Doubt>>;
+pub type HoldEnded = Ended<Result<HoldEnd, GraspDoubt>>;
 
 /// A hold that has ended, for saving it.
 #[derive(Debug)]
@@ -118,13 +118,13 @@ impl HoldMotion {
     }
 
     /// The grasp of a hold that has ended; `None` while it runs.
-    pub(crate) fn grasp(&self, about: About) -> Option<Result<Grasp, NotSaved>> {
+    pub(crate) fn grasp(&self, about: GraspLabel) -> Option<Result<Grasp, NoGrasp>> {
         let done = self.done.as_ref()?;
         Some(done.program.grasp(about, done.at))
     }
 
     /// Reason why it is not saved as a grasp; `None` if it can be, or while it runs.
-    pub fn not_saved(&self) -> Option<NotSaved> {
+    pub fn not_saved(&self) -> Option<NoGrasp> {
         let done = self.done.as_ref()?;
         done.program.worked(done.at).err()
     }

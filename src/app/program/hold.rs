@@ -6,11 +6,12 @@ use crate::app::hand::grasps::RepeatedGrasp;
 use crate::app::hand::hold::{HoldAction, HoldMotion};
 use crate::app::hand::running::MotionRun;
 use crate::app::notices::NoticeKind;
+use crate::app::settings::Settings;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Angle, PerDof};
 use crate::motion::drive::Armed;
 use crate::motion::grasp::run::GraspStart;
-use crate::motion::grasp::seen::About;
+use crate::motion::grasp::seen::GraspLabel;
 use crate::motion::hold::{HoldClose, HoldStart};
 use crate::poses::library::free_name;
 use crate::poses::starter::starter;
@@ -21,11 +22,11 @@ use crate::store::calendar::{day, since_1970};
 const PINCH: &str = "Pinch";
 
 /// Carries out an action on a hold.
-pub(super) fn hold(hand: &mut Hand, action: HoldAction, ctx: &mut Ctx<'_>) {
+pub(super) fn hold(hand: &mut Hand, action: HoldAction, settings: &Settings, ctx: &mut Ctx<'_>) {
     match action {
         HoldAction::Forces(forces) => hand.controls.set_hold_forces(forces),
-        HoldAction::Start(close) => start(hand, close, None, ctx),
-        HoldAction::Repeat(name) => repeat(hand, &name, ctx),
+        HoldAction::Start(close) => start(hand, (close, None), settings, ctx),
+        HoldAction::Repeat(name) => repeat(hand, &name, settings, ctx),
         HoldAction::Save => save(hand, ctx),
         HoldAction::End => {
             if let Some(run) = hand.running.hold_mut() {
@@ -36,14 +37,17 @@ pub(super) fn hold(hand: &mut Hand, action: HoldAction, ctx: &mut Ctx<'_>) {
 }
 
 /// Holds as a grasp of the library; another hand confirms it first.
-fn repeat(hand: &mut Hand, name: &str, ctx: &mut Ctx<'_>) {
+fn repeat(hand: &mut Hand, name: &str, settings: &Settings, ctx: &mut Ctx<'_>) {
     let newtons = hand.newtons.all_per_g();
     let found = hand.grasps.all().iter().find(|grasp| grasp.name == name);
     let Some(repeated) = found.map(|grasp| hand.grasps.repeated(grasp, newtons)) else {
         return;
     };
     match repeated {
-        Ok(repeated) => start(hand, repeated.grasp.close.way, Some(repeated), ctx),
+        Ok(repeated) => {
+            let close = repeated.grasp.close.way;
+            start(hand, (close, Some(repeated)), settings, ctx);
+        }
         Err(doubt) => ctx.notify(NoticeKind::GraspDoubted(doubt)),
     }
 }
@@ -54,7 +58,7 @@ fn save(hand: &mut Hand, ctx: &Ctx<'_>) {
     let Some((run, endpoint)) = run.zip(endpoint) else {
         return;
     };
-    let about = About {
+    let about = GraspLabel {
         name: String::new(),
         note: String::new(),
         day: day(since_1970()),
@@ -84,8 +88,13 @@ fn pose_of(way: &HoldClose) -> Option<String> {
     pose.map(|pose| pose.name.clone())
 }
 
-/// Starts a hold, if the hand is armed.
-fn start(hand: &mut Hand, close: HoldClose, repeated: Option<RepeatedGrasp>, ctx: &Ctx<'_>) {
+/// Starts a hold that closes like this, perhaps as a grasp of the library, if the hand is armed.
+fn start(
+    hand: &mut Hand,
+    (close, repeated): (HoldClose, Option<RepeatedGrasp>),
+    settings: &Settings,
+    ctx: &Ctx<'_>,
+) {
     let Some(epoch) = hand.own_epoch() else {
         return;
     };
@@ -104,6 +113,7 @@ fn start(hand: &mut Hand, close: HoldClose, repeated: Option<RepeatedGrasp>, ctx
         reading_per_g,
         locked: hand.controls.locked(),
         overshoot: OvershootMap::clone(&hand.overshoot.map),
+        blocks: settings.size_blocks(hand.connection.endpoint.as_ref()),
         grip: hand.readings.grip.clone(),
     };
     let Some(open) = &mut hand.connection.open else {

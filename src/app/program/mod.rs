@@ -230,7 +230,9 @@ impl App {
             Action::MeasureBlock(size_mm) => pinch::measure_block(state, size_mm),
             Action::ForgetBlocks => pinch::forget_blocks(state),
             Action::Hold(action) => {
-                hands::with_shown(state, env, |hand, _, ctx| hold::hold(hand, action, ctx));
+                hands::with_shown(state, env, |hand, settings, ctx| {
+                    hold::hold(hand, action, settings, ctx);
+                });
             }
             Action::Gesture(gesture) => hands::with_shown(state, env, |hand, settings, ctx| {
                 hand.gesture(gesture, settings.gesture_route, ctx);

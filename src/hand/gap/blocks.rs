@@ -122,15 +122,19 @@ impl SizeBlocks {
         Ok(())
     }
 
+    /// Size at a gap of the model, mm, never negative; `None` until two blocks were measured.
+    pub fn corrected(&self, gap_mm: f32) -> Option<f32> {
+        let [one, two] = self.0.as_slice() else {
+            return None;
+        };
+        let own = Correction::of(*one, *two).ok()?;
+        Some((own.scale * gap_mm + own.offset_mm).max(0.0))
+    }
+
     /// Size of the object held at this gap, never negative; from the model alone until two blocks were measured.
     pub fn size(&self, gap: PinchGap) -> HeldSize {
-        let correction = match self.0.as_slice() {
-            [one, two] => Correction::of(*one, *two).ok(),
-            _ => None,
-        };
-        let block = correction.map(|own| own.scale * gap.mm + own.offset_mm);
-        match (block, gap.ball_mm) {
-            (Some(mm), _) => HeldSize::Block(mm.max(0.0)),
+        match (self.corrected(gap.mm), gap.ball_mm) {
+            (Some(mm), _) => HeldSize::Block(mm),
             (None, Some(mm)) => HeldSize::Ball(mm),
             (None, None) => HeldSize::Pads(gap.mm),
         }

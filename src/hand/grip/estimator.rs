@@ -420,6 +420,23 @@ mod tests {
     }
 
     #[test]
+    fn a_finger_that_closed_on_something_large_holds_it_without_its_threshold() {
+        let mut hand = Reading::new(Some(5.0));
+        (hand.angle, hand.status) = (930, Status::PositionReached);
+        assert_eq!(hand.after(300), GripState::Open, "the user touches it");
+        hand.status = Status::ForceReached;
+        assert_eq!(hand.after(300), GripState::Holding);
+        for angle in [930, 928, 931] {
+            (hand.angle, hand.status) = (angle, Status::PositionReached);
+            assert_eq!(hand.after(500), GripState::Holding, "at {angle}");
+        }
+        hand.status = Status::Releasing;
+        hand.after(50);
+        hand.status = Status::PositionReached;
+        assert_eq!(hand.after(300), GripState::Open, "let go, and touched");
+    }
+
+    #[test]
     fn a_pinch_holds_with_two_fingers_only() {
         let mut hand = Reading::new(Some(5.0));
         (hand.angle, hand.status) = (400, Status::ForceReached);

@@ -256,11 +256,14 @@ impl FingerEstimator {
     }
 
     fn touching(&mut self, now: &FingerNow, thresholds: &GripThresholds) -> GripState {
-        // The user touches the finger; it does not grip.
-        let is_idle = now.is_open(thresholds) && !now.is_stopped_by_force && !now.is_moving;
-        if now.is_releasing || is_idle {
+        if now.is_releasing {
             self.held = None;
         }
+        // The user touches the finger; it does not grip. What an open finger has closed on, it holds by its position as well.
+        let is_idle = self.held.is_none()
+            && now.is_open(thresholds)
+            && !now.is_stopped_by_force
+            && !now.is_moving;
         let is_held = self.held.is_some() || !(now.is_moving || is_idle);
         let slips = |last: f64| now.at.secs() - last <= SLIP_TOLD_S;
         let is_slipping = self.held.is_some() && self.slip.last().is_some_and(slips);

@@ -3,7 +3,7 @@
 
 use crate::hand::statistics::{count, mean, median, spread};
 use crate::hand::{Finger, PerDof};
-use crate::motion::grasp::doubt::Doubt;
+use crate::motion::grasp::doubt::GraspDoubt;
 use crate::motion::grasp::saved::{Grasp, GraspFinger};
 use crate::motion::grasp::seen::{CloseSeen, FingerSeen};
 use crate::trials::search::tolerance::{Assurance, tolerance_factor};
@@ -49,15 +49,15 @@ pub(super) struct ConfirmingHand<'a> {
 
 impl ConfirmingHand<'_> {
     /// Judges one close by itself, so that a hopeless confirmation ends early. `nth` counts from 1.
-    pub(super) fn judge_close(&self, nth: usize, seen: &CloseSeen) -> Result<(), Doubt> {
+    pub(super) fn judge_close(&self, nth: usize, seen: &CloseSeen) -> Result<(), GraspDoubt> {
         if seen.was_short {
-            return Err(Doubt::CouldNotHold { close: nth });
+            return Err(GraspDoubt::CouldNotHold { close: nth });
         }
         let missing = self
             .fingers()
             .find(|(finger, _)| seen.fingers[*finger].is_none());
         if let Some((finger, _)) = missing {
-            return Err(Doubt::NotHeld { finger });
+            return Err(GraspDoubt::NotHeld { finger });
         }
         let there = self.grasp.friction;
         let bounds = [there.held_ratio, there.slid_ratio].into_iter().flatten();
@@ -65,18 +65,21 @@ impl ConfirmingHand<'_> {
         if let Some((slid, held)) = seen.friction.slid_ratio.zip(held)
             && slid < SLIDES_BELOW * held
         {
-            return Err(Doubt::Slid { slid, held });
+            return Err(GraspDoubt::Slid { slid, held });
         }
-        let (there_n, here_n) = (self.grasp.load_n.ok_or(Doubt::LoadUnknown)?, seen.load_n);
-        let here_n = here_n.ok_or(Doubt::NoLoad { close: nth })?;
+        let (there_n, here_n) = (
+            self.grasp.load_n.ok_or(GraspDoubt::LoadUnknown)?,
+            seen.load_n,
+        );
+        let here_n = here_n.ok_or(GraspDoubt::NoLoad { close: nth })?;
         if here_n > LOAD_FACTOR * there_n {
-            return Err(Doubt::Heavier { here_n, there_n });
+            return Err(GraspDoubt::Heavier { here_n, there_n });
         }
         Ok(())
     }
 
     /// Judges all closes, each of which was judged by itself.
-    pub(super) fn judge(&self, closes: &[CloseSeen]) -> Result<Agreement, Doubt> {
+    pub(super) fn judge(&self, closes: &[CloseSeen]) -> Result<Agreement, GraspDoubt> {
         let mut peak_share: f64 = 0.0;
         for (finger, _) in self.fingers() {
             peak_share = peak_share.max(self.peak_share(finger, closes)?);
@@ -102,7 +105,7 @@ impl ConfirmingHand<'_> {
         f64::from(self.grasp.forces.at_most().get()) * self.reading_per_g[finger.bend()]
     }
 
-    fn peak_share(&self, finger: Finger, closes: &[CloseSeen]) -> Result<f64, Doubt> {
+    fn peak_share(&self, finger: Finger, closes: &[CloseSeen]) -> Result<f64, GraspDoubt> {
         let at_most_g = self.at_most_g(finger);
         let seen = || closes.iter().filter_map(|close| close.fingers[finger]);
         let peaks: Vec<f64> = seen().map(|own| own.close_peak_g).collect();
@@ -110,7 +113,7 @@ impl ConfirmingHand<'_> {
         let highest_g = largest(seen().map(|own| own.peak_g)).unwrap_or_default();
         let bound_g = bound_g.max(highest_g - NOISE_G);
         if bound_g > at_most_g {
-            return Err(Doubt::Peak {
+            return Err(GraspDoubt::Peak {
                 finger,
                 bound_g,
                 at_most_g,
@@ -119,7 +122,7 @@ impl ConfirmingHand<'_> {
         Ok(bound_g / at_most_g)
     }
 
-    fn stiffness_ratio(&self, closes: &[CloseSeen]) -> Result<Option<f64>, Doubt> {
+    fn stiffness_ratio(&self, closes: &[CloseSeen]) -> Result<Option<f64>, GraspDoubt> {
         let (mut ratios, mut is_known_once) = (Vec::new(), false);
         for (finger, there) in self.fingers() {
             let seen = closes.iter().filter_map(|close| close.fingers[finger]);
@@ -135,13 +138,13 @@ impl ConfirmingHand<'_> {
             Some(ratio) if (1.0 / STIFFNESS_FACTOR..=STIFFNESS_FACTOR).contains(&ratio) => {
                 Ok(Some(ratio))
             }
-            Some(ratio) => Err(Doubt::Stiffness { ratio }),
-            None if is_known_once => Err(Doubt::NoStiffness),
+            Some(ratio) => Err(GraspDoubt::Stiffness { ratio }),
+            None if is_known_once => Err(GraspDoubt::NoStiffness),
             None => Ok(None),
         }
     }
 
-    fn friction(&self, closes: &[CloseSeen]) -> Result<f64, Doubt> {
+    fn friction(&self, closes: &[CloseSeen]) -> Result<f64, GraspDoubt> {
         let held = closes.iter().filter_map(|close| close.friction.held_ratio);
         let shown = FRICTION_SHARE * largest(held).unwrap_or_default();
         let newtons = |finger: Finger| self.newtons[finger.bend()].unwrap_or_default();
@@ -151,7 +154,7 @@ impl ConfirmingHand<'_> {
             .sum();
         let needed = self.grasp.load_n.unwrap_or_default() / most_n;
         if shown < needed {
-            return Err(Doubt::NoFriction { shown, needed });
+            return Err(GraspDoubt::NoFriction { shown, needed });
         }
         Ok(shown)
     }
@@ -238,7 +241,7 @@ mod tests {
         }
     }
 
-    fn judged(closes: &[CloseSeen], newtons: f64) -> Result<Agreement, Doubt> {
+    fn judged(closes: &[CloseSeen], newtons: f64) -> Result<Agreement, GraspDoubt> {
         let hand = ConfirmingHand {
             grasp: &grasp(),
             newtons: &PerDof::splat(Some(newtons)),
@@ -338,7 +341,7 @@ mod tests {
                 }
             });
         };
-        assert_eq!(all(stiff), Err(Doubt::Stiffness { ratio: 4.0 }));
+        assert_eq!(all(stiff), Err(GraspDoubt::Stiffness { ratio: 4.0 }));
         let unknown = |own: &mut CloseSeen| {
             let fingers = own.fingers.iter_mut();
             fingers.for_each(|(_, own)| {
@@ -347,10 +350,10 @@ mod tests {
                 }
             });
         };
-        assert_eq!(all(unknown), Err(Doubt::NoStiffness));
+        assert_eq!(all(unknown), Err(GraspDoubt::NoStiffness));
         // 2 N on two fingers of 4 N need a quarter.
         let smooth = all(|own| own.friction.held_ratio = Some(0.28));
-        let Err(Doubt::NoFriction { shown, needed }) = smooth else {
+        let Err(GraspDoubt::NoFriction { shown, needed }) = smooth else {
             panic!("{smooth:?}");
         };
         assert!((shown - 0.238).abs() < 1e-9 && (needed - 0.25).abs() < 1e-9);

@@ -5,7 +5,7 @@ use crate::hand::hold_forces::NoRoom;
 
 /// Reason why a grasp that another hand made is not trusted on this one.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum Doubt {
+pub enum GraspDoubt {
     /// The file does not know its forces in newtons.
     #[error(
         "the grasp has no newtons of the {}: measure the hand that made it with 'handscope scale --joint {}', hold there again, and save it anew",

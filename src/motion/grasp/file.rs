@@ -479,7 +479,7 @@ mod tests {
     use crate::hand::hold_forces::NoRoom;
     use crate::motion::grasp::confirm::Agreement;
     use crate::motion::grasp::confirmed_file::{add, file_of, of};
-    use crate::motion::grasp::doubt::Doubt;
+    use crate::motion::grasp::doubt::GraspDoubt;
 
     fn finger(newtons_per_g: Option<f64>) -> GraspFinger {
         GraspFinger {
@@ -624,7 +624,7 @@ mod tests {
         let finger = Finger::Thumb;
         assert_eq!(
             grasp.reading_per_g_on(&newtons),
-            Err(Doubt::NoNewtonsHere { finger })
+            Err(GraspDoubt::NoNewtonsHere { finger })
         );
         newtons[Dof::Ring] = None;
         newtons[Dof::ThumbBend] = Some(0.01);
@@ -637,11 +637,11 @@ mod tests {
             at_least: 24,
             at_most: 61,
         };
-        let room = Doubt::NoRoom { finger, why };
+        let room = GraspDoubt::NoRoom { finger, why };
         assert_eq!(grasp.reading_per_g_on(&all(0.035)), Err(room));
         let mut bare = grasp;
         bare.fingers[Finger::Index] = Some(super::tests::finger(None));
-        let there = Doubt::NoNewtonsThere { finger };
+        let there = GraspDoubt::NoNewtonsThere { finger };
         assert_eq!(bare.reading_per_g_on(&all(0.01)), Err(there));
         assert!(there.to_string().contains("handscope scale --joint index"));
     }

@@ -2,18 +2,16 @@
 //! each of which the user lifts the object and puts it down again. The hand opens only once the load is off its fingertips.
 
 use crate::hand::grip::{Grip, GripEstimator, TightenCause, Tightened};
-use crate::hand::{
-    Angle, AngleReading, ArmEpoch, Dof, Groups, HandSample, Moment, PerDof, Setpoints, Speed,
-    Target,
-};
-use crate::link::PollRates;
+use crate::hand::{AngleReading, ArmEpoch, Groups, HandSample, Moment, PerDof};
+use crate::link::{ArmRequest, PollRates};
 use crate::motion::grasp::confirm::{Agreement, CLOSES, ConfirmingHand};
-use crate::motion::grasp::doubt::Doubt;
+use crate::motion::grasp::doubt::GraspDoubt;
 use crate::motion::grasp::saved::Grasp;
-use crate::motion::grasp::seen::{About, CloseSeen, Ending, GraspWatch, NotSaved, grasp};
+use crate::motion::grasp::seen::{CloseSeen, Ending, GraspLabel, GraspWatch, NoGrasp, grasp};
 use crate::motion::hold::{HoldEnd, HoldRun, HoldStart, HoldView, RATES};
+use crate::motion::move_to::{MoveEnd, MoveStart, Moving};
 use crate::motion::program::{Ended, Order, Program, Seen};
-use crate::poses::way::{Targets, way};
+use crate::poses::way::Targets;
 use crate::record::Abort;
 use serde::Serialize;
 use std::collections::VecDeque;
@@ -28,10 +26,6 @@ const DOWN_SHARE: f64 = 0.35;
 const DOWN_DURATION: Duration = Duration::from_millis(700);
 /// Maximum time for the user to lift it and put it down.
 const LIFT_TIMEOUT: Duration = Duration::from_secs(90);
-/// Speed at which the hand opens between two closes.
-const OPEN_SPEED: i16 = 200;
-/// Time that opening may take beyond the time its speed implies.
-const SPARE: Duration = Duration::from_secs(4);
 /// Time in which the user puts the object back in its place.
 const PLACE_DURATION: Duration = Duration::from_secs(2);
 
@@ -90,21 +84,20 @@ pub struct GraspView {
 
 /// A confirmation under way.
 #[derive(Debug)]
-struct Confirmation {
+struct ConfirmRun {
     unconfirmed: Unconfirmed,
     closes: Vec<CloseSeen>,
     /// Smallest load while the object was held, N.
     least_n: f64,
     /// Time since which the load is gone.
     down_since: Option<Moment>,
-    opening: Option<Opening>,
+    opening: Option<Reopening>,
 }
 
 /// The hand opens, and the user puts the object back.
 #[derive(Debug)]
-struct Opening {
-    legs: VecDeque<Targets>,
-    sent: Moment,
+struct Reopening {
+    motion: Moving,
     opened: Option<Moment>,
 }
 
@@ -119,11 +112,11 @@ pub struct GraspRun {
     grip: GripEstimator,
     /// Angles before the first close.
     open_at: Option<Targets>,
-    confirmation: Option<Confirmation>,
+    confirmation: Option<ConfirmRun>,
     agreement: Option<Agreement>,
     trusted: Option<Moment>,
     events: VecDeque<Tightened>,
-    end: Option<Ended<Result<HoldEnd, Doubt>>>,
+    end: Option<Ended<Result<HoldEnd, GraspDoubt>>>,
 }
 
 impl GraspRun {
@@ -131,7 +124,7 @@ impl GraspRun {
     pub fn new(epoch: ArmEpoch, start: GraspStart, now: Moment) -> Self {
         let mut hold = start.hold;
         let duration = hold.duration;
-        let confirmation = start.unconfirmed.map(Confirmation::of);
+        let confirmation = start.unconfirmed.map(ConfirmRun::of);
         if confirmation.is_some() {
             // Its time begins once it is trusted.
             hold.duration = None;
@@ -170,8 +163,8 @@ impl GraspRun {
     /// Checks that a hold that has ended can be saved.
     ///
     /// # Errors
-    /// [`NotSaved`]: it did not work, or not as a grasp can be repeated.
-    pub fn worked(&self, now: Moment) -> Result<(), NotSaved> {
+    /// [`NoGrasp`]: it did not work, or not as a grasp can be repeated.
+    pub fn worked(&self, now: Moment) -> Result<(), NoGrasp> {
         self.ending(now)
             .and_then(|ending| ending.worked(&self.watch.seen()))
     }
@@ -180,15 +173,15 @@ impl GraspRun {
     ///
     /// # Errors
     /// As [`worked`](Self::worked).
-    pub fn grasp(&self, about: About, now: Moment) -> Result<Grasp, NotSaved> {
+    pub fn grasp(&self, about: GraspLabel, now: Moment) -> Result<Grasp, NoGrasp> {
         grasp(&self.watch.seen(), &self.ending(now)?, about)
     }
 
-    fn ending(&self, now: Moment) -> Result<Ending<'_>, NotSaved> {
+    fn ending(&self, now: Moment) -> Result<Ending<'_>, NoGrasp> {
         let end = match self.end {
             Some(Ok(Ok(end))) => Ok(end),
             Some(Err(why)) => Err(why),
-            Some(Ok(Err(_))) | None => return Err(NotSaved::Failed),
+            Some(Ok(Err(_))) | None => return Err(NoGrasp::Failed),
         };
         Ok(Ending {
             end,
@@ -204,7 +197,7 @@ impl GraspRun {
 
 impl Program for GraspRun {
     type Input = Abort;
-    type Outcome = Result<HoldEnd, Doubt>;
+    type Outcome = Result<HoldEnd, GraspDoubt>;
     type View = GraspView;
     type Event = Tightened;
     const RATES: Option<PollRates> = Some(RATES);
@@ -216,10 +209,12 @@ impl Program for GraspRun {
 
     fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
         self.grip.apply(sample, fresh, now);
-        if !self.is_opening() {
-            self.hold.read(sample, fresh, now);
-            self.watch.read(&self.hold, sample, fresh, now);
+        if let Some(opening) = self.opening() {
+            opening.motion.read(sample, fresh, now);
+            return;
         }
+        self.hold.read(sample, fresh, now);
+        self.watch.read(&self.hold, sample, fresh, now);
     }
 
     fn tick(&mut self, seen: &Seen<'_>) -> Option<Order> {
@@ -284,7 +279,7 @@ impl Program for GraspRun {
         self.events.pop_front()
     }
 
-    fn ended(&self) -> Option<Ended<Result<HoldEnd, Doubt>>> {
+    fn ended(&self) -> Option<Ended<Result<HoldEnd, GraspDoubt>>> {
         self.end
     }
 }
@@ -297,9 +292,9 @@ impl GraspRun {
     }
 
     /// The outcome of a hold that ended by itself.
-    fn outcome(&self, end: HoldEnd) -> Result<HoldEnd, Doubt> {
+    fn outcome(&self, end: HoldEnd) -> Result<HoldEnd, GraspDoubt> {
         match (&self.confirmation, end) {
-            (Some(own), HoldEnd::Lost) => Err(Doubt::Lost { close: own.nth() }),
+            (Some(own), HoldEnd::Lost) => Err(GraspDoubt::Lost { close: own.nth() }),
             _ => Ok(end),
         }
     }
@@ -310,7 +305,7 @@ impl GraspRun {
         let held = self.hold.held_for(seen.now)?;
         if !own.is_put_down(&self.watch, seen.now) || held < HELD_LEAST {
             let close = own.nth();
-            return (held > LIFT_TIMEOUT).then(|| self.doubt(Doubt::NoLoad { close }));
+            return (held > LIFT_TIMEOUT).then(|| self.doubt(GraspDoubt::NoLoad { close }));
         }
         let nth = own.nth();
         let shown = self.watch.seen();
@@ -322,7 +317,7 @@ impl GraspRun {
         let judged = if self.hold.has_closed() {
             hand.judge_close(nth, &shown)
         } else {
-            Err(Doubt::NotClosed { close: nth })
+            Err(GraspDoubt::NotClosed { close: nth })
         };
         own.closes.push(shown);
         let judged = judged.and_then(|()| match own.closes.len() {
@@ -342,73 +337,51 @@ impl GraspRun {
     }
 
     /// Ends without trust. The hand keeps its position, and so what it holds.
-    fn doubt(&mut self, doubt: Doubt) -> Order {
+    fn doubt(&mut self, doubt: GraspDoubt) -> Order {
         self.end = Some(Ok(Err(doubt)));
         Order::Disarm
     }
 
     /// Opens the joints that closed, to where they were.
     fn begin_opening(&mut self, seen: &Seen<'_>) -> Option<Order> {
-        let angles = seen.angles()?.value;
-        let from = angles.map(|at| at.hold().map(Angle::get));
         let locked = self.start.locked;
         let open_at = self.open_at.unwrap_or_default();
-        let to = PerDof::from_fn(|dof| open_at[dof].filter(|_| !locked[dof]));
-        if let Some(own) = &mut self.confirmation {
-            own.opening = Some(Opening {
-                legs: way(&from, &to).into(),
-                sent: seen.now,
-                opened: None,
-            });
-        }
-        self.send_leg(seen.now)
+        let start = MoveStart {
+            targets: PerDof::from_fn(|dof| open_at[dof].filter(|_| !locked[dof])),
+            limits: ArmRequest::GENTLE,
+            settles: false,
+            grip: self.grip.clone(),
+        };
+        self.confirmation.as_mut()?.opening = Some(Reopening {
+            motion: Moving::new(self.epoch, start, seen.now),
+            opened: None,
+        });
+        self.open(seen)
     }
 
-    fn send_leg(&mut self, now: Moment) -> Option<Order> {
-        let opening = self.confirmation.as_mut()?.opening.as_mut()?;
-        let leg = opening.legs.front()?;
-        let mut setpoints = Setpoints::none(self.epoch);
-        for (dof, to) in leg.iter().filter_map(|(dof, to)| Some((dof, (*to)?))) {
-            setpoints.angle[dof] = Some(Target::Go(to));
-            setpoints.speed[dof] = Some(Speed::nearest(OPEN_SPEED));
-        }
-        opening.sent = now;
-        Some(Order::Set(setpoints))
+    fn opening(&mut self) -> Option<&mut Reopening> {
+        self.confirmation.as_mut()?.opening.as_mut()
     }
 
     /// Opens, waits for the user to put the object back, and closes again.
     fn open(&mut self, seen: &Seen<'_>) -> Option<Order> {
-        let angles = seen.angles().map(|angles| angles.value);
-        let opening = self.confirmation.as_mut()?.opening.as_mut()?;
+        let opening = self.opening()?;
         if let Some(opened) = opening.opened {
             if seen.now.since(opened) >= PLACE_DURATION {
                 self.close_again(seen.now);
             }
             return None;
         }
-        let is_there = |leg: &Targets| {
-            let arrived = |dof: Dof| {
-                let at = angles.and_then(|angles| angles[dof].hold());
-                let tolerance = Angle::ARRIVED_TOLERANCE;
-                let is_near =
-                    |to: Angle| at.is_some_and(|at| at.get().abs_diff(to.get()) <= tolerance);
-                leg[dof].is_none_or(is_near)
-            };
-            Dof::ALL.into_iter().all(arrived)
-        };
-        if opening.legs.front().is_none_or(is_there) {
-            opening.legs.pop_front();
-            if opening.legs.is_empty() {
-                opening.opened = Some(seen.now);
-                return None;
+        let order = opening.motion.tick(seen);
+        match opening.motion.ended() {
+            Some(Ok(MoveEnd::Reached)) => opening.opened = Some(seen.now),
+            Some(_) => {
+                self.end = Some(Ok(Ok(HoldEnd::Late)));
+                return Some(Order::Stop);
             }
-            return self.send_leg(seen.now);
+            None => {}
         }
-        let is_late = seen.now.since(opening.sent) > Speed::nearest(OPEN_SPEED).stroke() + SPARE;
-        is_late.then(|| {
-            self.end = Some(Ok(Ok(HoldEnd::Late)));
-            Order::Stop
-        })
+        order
     }
 
     fn close_again(&mut self, now: Moment) {
@@ -424,7 +397,7 @@ impl GraspRun {
     }
 }
 
-impl Confirmation {
+impl ConfirmRun {
     const fn of(unconfirmed: Unconfirmed) -> Self {
         Self {
             unconfirmed,

@@ -4,7 +4,7 @@ use crate::hand::hold_forces::HoldForces;
 use crate::hand::kinematics::{SegmentFrames, Side};
 use crate::hand::statistics::mean;
 use crate::hand::{Angle, Finger, Force, PerDof, PerFinger};
-use crate::motion::grasp::doubt::Doubt;
+use crate::motion::grasp::doubt::GraspDoubt;
 use crate::motion::hold::HoldClose;
 use crate::transport::Endpoint;
 
@@ -123,8 +123,11 @@ impl Grasp {
     /// The same on another hand with these newtons for a gram of its reading, so that the forces are equal in newtons.
     ///
     /// # Errors
-    /// [`Doubt`]: newtons are missing, or a force is impossible there.
-    pub fn reading_per_g_on(&self, newtons: &PerDof<Option<f64>>) -> Result<PerDof<f64>, Doubt> {
+    /// [`GraspDoubt`]: newtons are missing, or a force is impossible there.
+    pub fn reading_per_g_on(
+        &self,
+        newtons: &PerDof<Option<f64>>,
+    ) -> Result<PerDof<f64>, GraspDoubt> {
         let mut readings = PerFinger::splat(None);
         for finger in Finger::ALL {
             let Some(own) = self.fingers[finger] else {
@@ -132,8 +135,8 @@ impl Grasp {
             };
             let there = own
                 .newtons_of_force()
-                .ok_or(Doubt::NoNewtonsThere { finger })?;
-            let here = newtons[finger.bend()].ok_or(Doubt::NoNewtonsHere { finger })?;
+                .ok_or(GraspDoubt::NoNewtonsThere { finger })?;
+            let here = newtons[finger.bend()].ok_or(GraspDoubt::NoNewtonsHere { finger })?;
             let per_g = there / here;
             check_room(self.forces, finger, per_g)?;
             readings[finger] = Some(per_g);
@@ -175,12 +178,12 @@ fn spread_over(fingers: &PerFinger<Option<f64>>) -> PerDof<f64> {
 }
 
 /// Checks that a hold is possible between the forces, as the hand reads them at this finger.
-fn check_room(forces: HoldForces, finger: Finger, per_g: f64) -> Result<(), Doubt> {
+fn check_room(forces: HoldForces, finger: Finger, per_g: f64) -> Result<(), GraspDoubt> {
     #[expect(clippy::cast_possible_truncation, reason = "the range is checked next")]
     let reading = |force: Force| (f64::from(force.get()) * per_g).round() as i64;
     let [least, most] = [forces.at_least(), forces.at_most()].map(reading);
     // More than a threshold can be is more than the rated grip, too.
     let [at_least, at_most] = [least, most].map(Force::nearest);
     let room = HoldForces::new(at_least, at_most).map(|_| ());
-    room.map_err(|why| Doubt::NoRoom { finger, why })
+    room.map_err(|why| GraspDoubt::NoRoom { finger, why })
 }

@@ -52,7 +52,7 @@ pub struct CloseSeen {
 
 /// What the user says about a grasp that is saved, and what is known of the hand.
 #[derive(Debug, Clone)]
-pub struct About {
+pub struct GraspLabel {
     /// Its name.
     pub name: String,
     /// The user's text.
@@ -71,7 +71,7 @@ pub struct About {
 
 /// Reason why a hold is not saved.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum NotSaved {
+pub enum NoGrasp {
     /// It failed.
     #[error("it did not end well")]
     Failed,
@@ -258,23 +258,23 @@ pub(super) struct Ending<'a> {
 
 impl Ending<'_> {
     /// Checks that the hold can be saved.
-    pub(super) fn worked(&self, seen: &CloseSeen) -> Result<(), NotSaved> {
+    pub(super) fn worked(&self, seen: &CloseSeen) -> Result<(), NoGrasp> {
         if !matches!(self.end, Ok(HoldEnd::Held) | Err(Abort::Person)) {
-            return Err(NotSaved::Failed);
+            return Err(NoGrasp::Failed);
         }
         let held = self.held.unwrap_or_default();
         if held < HELD_LEAST {
             let held_s = held.as_secs_f64();
-            return Err(NotSaved::Short { held_s });
+            return Err(NoGrasp::Short { held_s });
         }
         if !self.has_closed {
-            return Err(NotSaved::TookOver);
+            return Err(NoGrasp::TookOver);
         }
         if seen.was_short {
-            return Err(NotSaved::CouldNotHold);
+            return Err(NoGrasp::CouldNotHold);
         }
         let is_read = seen.fingers.as_array().iter().any(Option::is_some);
-        is_read.then_some(()).ok_or(NotSaved::NotRead)
+        is_read.then_some(()).ok_or(NoGrasp::NotRead)
     }
 }
 
@@ -282,8 +282,8 @@ impl Ending<'_> {
 pub(super) fn grasp(
     seen: &CloseSeen,
     ending: &Ending<'_>,
-    about: About,
-) -> Result<Grasp, NotSaved> {
+    about: GraspLabel,
+) -> Result<Grasp, NoGrasp> {
     ending.worked(seen)?;
     let fingers = PerFinger::from_fn(|finger: Finger| {
         let own = seen.fingers[finger]?;

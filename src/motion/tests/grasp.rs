@@ -3,10 +3,10 @@
 use crate::hand::newtons::N_PER_G;
 use crate::hand::{HandCommand, PerDof};
 use crate::link::LinkStatus;
-use crate::motion::grasp::doubt::Doubt;
+use crate::motion::grasp::doubt::GraspDoubt;
 use crate::motion::grasp::run::{ConfirmStep, Confirming, GraspRun, GraspStart, Unconfirmed};
 use crate::motion::grasp::saved::Grasp;
-use crate::motion::grasp::seen::{About, NotSaved};
+use crate::motion::grasp::seen::{GraspLabel, NoGrasp};
 use crate::motion::hold::{HoldEnd, HoldStart};
 use crate::motion::program::{Ended, Order, Program, Seen};
 use crate::motion::tests::hold::{EPOCH, Hand, ball, start};
@@ -46,7 +46,7 @@ impl Bench {
         }
     }
 
-    fn run(&mut self) -> Ended<Result<HoldEnd, Doubt>> {
+    fn run(&mut self) -> Ended<Result<HoldEnd, GraspDoubt>> {
         let status = LinkStatus {
             state: LinkState::Armed,
             armed: Some(EPOCH),
@@ -88,8 +88,8 @@ impl Bench {
         panic!("{:?}", self.steps);
     }
 
-    fn grasp(&self) -> Result<Grasp, NotSaved> {
-        let about = About {
+    fn grasp(&self) -> Result<Grasp, NoGrasp> {
+        let about = GraspLabel {
             name: "ball".into(),
             note: String::new(),
             day: "2026-11-30".into(),
@@ -131,19 +131,19 @@ fn a_hold_is_saved_only_if_it_worked() {
     assert!(grasp.friction.held_ratio.unwrap() > 0.05, "{grasp:?}");
     let mut empty = Bench::of(Object::none(), None, 6);
     assert_eq!(empty.run(), Ok(Ok(HoldEnd::Nothing)));
-    assert_eq!(empty.grasp(), Err(NotSaved::Failed));
+    assert_eq!(empty.grasp(), Err(NoGrasp::Failed));
     let mut brief = Bench::of(ball(10.0), None, 1);
     brief.run().unwrap().unwrap();
-    assert!(matches!(brief.grasp(), Err(NotSaved::Short { .. })));
+    assert!(matches!(brief.grasp(), Err(NoGrasp::Short { .. })));
     let mut heavy = ball(10.0);
     heavy.mass_g = 1150.0;
     let mut heavy = Bench::of(heavy, None, 6);
     heavy.run().unwrap().unwrap();
     let why = heavy.grasp().unwrap_err();
-    assert!(matches!(why, NotSaved::CouldNotHold | NotSaved::Failed));
+    assert!(matches!(why, NoGrasp::CouldNotHold | NoGrasp::Failed));
     let mut aborted = Bench::of(ball(10.0), None, 6);
     aborted.program.abort(Abort::TakenOver, aborted.hand.now);
-    assert_eq!(aborted.grasp(), Err(NotSaved::Failed));
+    assert_eq!(aborted.grasp(), Err(NoGrasp::Failed));
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn five_closes_confirm_it_and_the_fifth_holds_on() {
 #[test]
 fn an_object_that_stays_lifted_is_kept_and_not_trusted() {
     let mut bench = Bench::of(ball(10.0), Some(unconfirmed()), 2);
-    assert_eq!(bench.run(), Ok(Err(Doubt::NoLoad { close: 1 })));
+    assert_eq!(bench.run(), Ok(Err(GraspDoubt::NoLoad { close: 1 })));
     let opens = |own: &Confirming| own.step == ConfirmStep::Open;
     assert!(!bench.steps.iter().any(opens), "{:?}", bench.steps);
     assert!(bench.hand.sim.held().held);
@@ -174,7 +174,10 @@ fn an_object_that_stays_lifted_is_kept_and_not_trusted() {
 fn a_stiffer_object_is_not_trusted() {
     let mut bench = Bench::of(put_down(45.0), Some(unconfirmed()), 2);
     let end = bench.run();
-    assert!(matches!(end, Ok(Err(Doubt::Stiffness { .. }))), "{end:?}");
+    assert!(
+        matches!(end, Ok(Err(GraspDoubt::Stiffness { .. }))),
+        "{end:?}"
+    );
     assert_eq!(bench.program.agreement(), None);
     assert!(!bench.is_dropped);
 }

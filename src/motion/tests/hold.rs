@@ -1,5 +1,6 @@
 //! What a hold sends and how it ends, on a simulated hand in virtual time.
 
+use crate::hand::gap::{Gap, SizeBlocks};
 use crate::hand::grip::{GripEstimator, TightenCause};
 use crate::hand::hold_forces::{HoldForces, NoRoom};
 use crate::hand::overshoot::OvershootMap;
@@ -250,6 +251,7 @@ pub(super) fn start() -> HoldStart {
         reading_per_g: PerDof::splat(1.0),
         locked: PerDof::splat(false),
         overshoot: OvershootMap::default(),
+        blocks: SizeBlocks::default(),
         grip: GripEstimator::default(),
     }
 }
@@ -444,6 +446,27 @@ fn a_slip_tightens_the_fingers_at_once() {
     bench.run_for(Duration::from_secs(2));
     let held = bench.hand.sim.held();
     assert!(held.held && !held.slides, "{held:?}");
+}
+
+#[test]
+fn a_thumb_whose_drive_counts_its_zero_is_turned_before_the_pinch_closes() {
+    let mut config = SimConfig {
+        object: Some(Object::touched_at(Object::contacts_of_size(
+            60.0,
+            Obstacle::at(0.0, 10.0),
+        ))),
+        ..SimConfig::default()
+    };
+    config.personality.force_compared = ForceCompared::AsRead;
+    config.body.joints[Dof::ThumbRotate].force_zero_g = 200.0;
+    let hold = HoldStart {
+        close: HoldClose::Pinch(Gap::MIN),
+        ..start()
+    };
+    let mut bench = Bench::of(Hand::new(config), hold);
+    bench.run_until(|own| own.hand.sim.true_angles()[Dof::Index] < 780.0);
+    let rotation = bench.hand.sim.true_angles()[Dof::ThumbRotate];
+    assert!(rotation < 40.0, "{rotation}");
 }
 
 #[test]

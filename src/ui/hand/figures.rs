@@ -209,6 +209,12 @@ pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
         words = hold::state(look, &run.view);
         let is_short = run.view.phase == HoldPhase::CannotHold;
         color = if is_short { look.palette.warn } else { color };
+        if let Some(object) = &run.view.object {
+            let above = place.translate(vec2(0.0, -theme::PAD));
+            let words = hold::object(look, object);
+            let label = Label::new(&words, look.palette.text).small();
+            label.put(ui, above.with_min_y(above.bottom() - theme::PAD));
+        }
     }
     let line = place.with_min_y(place.bottom() - theme::PAD);
     let label = Label::new(&words, color).small();

@@ -1,9 +1,11 @@
 //! Sentences of a hold between two forces.
 
 use crate::hand::grip::{TightenCause, Tightened};
-use crate::motion::grasp::doubt::Doubt;
+use crate::hand::overshoot::Stiffness;
+use crate::motion::grasp::doubt::GraspDoubt;
 use crate::motion::grasp::run::{ConfirmStep, Confirming};
-use crate::motion::grasp::seen::NotSaved;
+use crate::motion::grasp::seen::NoGrasp;
+use crate::motion::held_object::{Bounded, HeldObject};
 use crate::motion::hold::{HoldEnd, HoldPhase, HoldView};
 use crate::motion::program::Ended;
 use crate::record::Abort;
@@ -27,6 +29,15 @@ texts! {
     CANNOT_HOLD_NOTICE: "The hold needs more force than allowed: raise At most, or support the object.", "所需的力超过最大力：请提高最大力或托住物体。";
     TIGHTENED: "tightened {} times, last: {}", "加力 {} 次，最近：{}";
     WARM: "a drive is warm", "驱动器温度偏高";
+    OBJECT: "In the hand: {}", "手中物体：{}";
+    OBJECT_SIZE: "{} ±{} mm", "尺寸 {} ±{} mm";
+    OBJECT_NO_SIZE: "size: cannot tell", "尺寸未知";
+    OBJECT_STIFFNESS: "stiffness: cannot tell", "刚度未知";
+    OBJECT_YIELDS: "yields", "会变形";
+    OBJECT_KEEPS: "does not yield", "不变形";
+    OBJECT_NO_YIELD: "yields: cannot tell", "是否变形未知";
+    OBJECT_WEIGHT: "{} ±{} g", "重量 {} ±{} g";
+    OBJECT_NO_WEIGHT: "weight: cannot tell", "重量未知";
     TOO_LITTLE: "too little force", "力过小";
     MARGIN: "little margin", "裕量不足";
     LOAD: "rising load", "负载上升";
@@ -108,6 +119,33 @@ pub(crate) fn state(look: Look, view: &HoldView) -> String {
     look.list(&all)
 }
 
+/// What is in the hand, in one line.
+pub(crate) fn object(look: Look, own: &HeldObject) -> String {
+    let bounded = |value: Option<Bounded>, known: Text, unknown: Text| match value {
+        Some(own) => look.fill(
+            known,
+            &[&format!("{:.0}", own.value), &format!("{:.0}", own.bound)],
+        ),
+        None => look.tr(unknown).to_owned(),
+    };
+    let stiffness = match own.stiffness {
+        Stiffness::Unknown => OBJECT_STIFFNESS,
+        known => tune::stiffness(known),
+    };
+    let yields = match own.yields {
+        Some(true) => OBJECT_YIELDS,
+        Some(false) => OBJECT_KEEPS,
+        None => OBJECT_NO_YIELD,
+    };
+    let all = look.list(&[
+        &bounded(own.size_mm, OBJECT_SIZE, OBJECT_NO_SIZE),
+        look.tr(stiffness),
+        look.tr(yields),
+        &bounded(own.weight_g, OBJECT_WEIGHT, OBJECT_NO_WEIGHT),
+    ]);
+    look.fill(OBJECT, &[&all])
+}
+
 /// Progress of a confirmation.
 pub(crate) fn confirming(look: Look, own: Confirming) -> String {
     let step = look.tr(match own.step {
@@ -120,34 +158,34 @@ pub(crate) fn confirming(look: Look, own: Confirming) -> String {
 }
 
 /// Reason why a hold is not saved.
-pub(crate) const fn not_saved(why: NotSaved) -> Text {
+pub(crate) const fn not_saved(why: NoGrasp) -> Text {
     match why {
-        NotSaved::Failed => NOT_SAVED_FAILED,
-        NotSaved::Short { .. } => NOT_SAVED_SHORT,
-        NotSaved::CouldNotHold => NOT_SAVED_FORCE,
-        NotSaved::TookOver => NOT_SAVED_TAKEN,
-        NotSaved::NotRead => NOT_SAVED_READ,
+        NoGrasp::Failed => NOT_SAVED_FAILED,
+        NoGrasp::Short { .. } => NOT_SAVED_SHORT,
+        NoGrasp::CouldNotHold => NOT_SAVED_FORCE,
+        NoGrasp::TookOver => NOT_SAVED_TAKEN,
+        NoGrasp::NotRead => NOT_SAVED_READ,
     }
 }
 
 /// Reason why a grasp is not trusted.
-pub(crate) fn doubt(look: Look, doubt: Doubt) -> String {
+pub(crate) fn doubt(look: Look, doubt: GraspDoubt) -> String {
     let finger = |finger| look.tr(words::finger(finger));
     let whole = |value: f64| format!("{value:.0}");
     let ratio = |value: f64| format!("{value:.2}");
     let tenths = |value: f64| format!("{value:.1}");
     match doubt {
-        Doubt::NoNewtonsThere { finger: own } => look.fill(DOUBT_THERE, &[&finger(own)]),
-        Doubt::NoNewtonsHere { finger: own } => look.fill(DOUBT_HERE, &[&finger(own)]),
-        Doubt::NoRoom { finger: own, why } => {
+        GraspDoubt::NoNewtonsThere { finger: own } => look.fill(DOUBT_THERE, &[&finger(own)]),
+        GraspDoubt::NoNewtonsHere { finger: own } => look.fill(DOUBT_HERE, &[&finger(own)]),
+        GraspDoubt::NoRoom { finger: own, why } => {
             look.fill(DOUBT_ROOM, &[&finger(own), &why.at_least, &why.at_most])
         }
-        Doubt::NoLoad { close } => look.fill(DOUBT_NO_LOAD, &[&close]),
-        Doubt::NotClosed { close } => look.fill(DOUBT_NOT_CLOSED, &[&close]),
-        Doubt::Lost { close } => look.fill(DOUBT_LOST, &[&close]),
-        Doubt::CouldNotHold { close } => look.fill(DOUBT_FORCE, &[&close]),
-        Doubt::NotHeld { finger: own } => look.fill(DOUBT_NOT_HELD, &[&finger(own)]),
-        Doubt::Peak {
+        GraspDoubt::NoLoad { close } => look.fill(DOUBT_NO_LOAD, &[&close]),
+        GraspDoubt::NotClosed { close } => look.fill(DOUBT_NOT_CLOSED, &[&close]),
+        GraspDoubt::Lost { close } => look.fill(DOUBT_LOST, &[&close]),
+        GraspDoubt::CouldNotHold { close } => look.fill(DOUBT_FORCE, &[&close]),
+        GraspDoubt::NotHeld { finger: own } => look.fill(DOUBT_NOT_HELD, &[&finger(own)]),
+        GraspDoubt::Peak {
             finger: own,
             bound_g,
             at_most_g,
@@ -155,21 +193,21 @@ pub(crate) fn doubt(look: Look, doubt: Doubt) -> String {
             DOUBT_PEAK,
             &[&finger(own), &whole(bound_g), &whole(at_most_g)],
         ),
-        Doubt::Stiffness { ratio } => look.fill(DOUBT_STIFF, &[&tenths(ratio)]),
-        Doubt::NoStiffness => look.tr(DOUBT_NO_STIFF).to_owned(),
-        Doubt::Slid { slid, held } => look.fill(DOUBT_SLID, &[&ratio(slid), &ratio(held)]),
-        Doubt::NoFriction { shown, needed } => {
+        GraspDoubt::Stiffness { ratio } => look.fill(DOUBT_STIFF, &[&tenths(ratio)]),
+        GraspDoubt::NoStiffness => look.tr(DOUBT_NO_STIFF).to_owned(),
+        GraspDoubt::Slid { slid, held } => look.fill(DOUBT_SLID, &[&ratio(slid), &ratio(held)]),
+        GraspDoubt::NoFriction { shown, needed } => {
             look.fill(DOUBT_FRICTION, &[&ratio(shown), &ratio(needed)])
         }
-        Doubt::Heavier { here_n, there_n } => {
+        GraspDoubt::Heavier { here_n, there_n } => {
             look.fill(DOUBT_HEAVIER, &[&tenths(here_n), &tenths(there_n)])
         }
-        Doubt::LoadUnknown => look.tr(DOUBT_UNKNOWN).to_owned(),
+        GraspDoubt::LoadUnknown => look.tr(DOUBT_UNKNOWN).to_owned(),
     }
 }
 
 /// A grasp that is not trusted, as a sentence.
-pub(crate) fn doubted(look: Look, why: Doubt) -> String {
+pub(crate) fn doubted(look: Look, why: GraspDoubt) -> String {
     look.fill(DOUBTED, &[&doubt(look, why)])
 }
 

@@ -6,9 +6,13 @@ mod hold_table;
 #[path = "../../bench/grasp_table.rs"]
 mod grasp_table;
 
+#[path = "../../bench/object_table.rs"]
+mod object_table;
+
 use grasp_table::grasps;
 use handscope::motion::hold::HoldEnd;
 use hold_table::{Outcome, holds};
+use object_table::objects;
 
 /// Peaks above *at most*, g: what a drive at speed 25 may run on, on the hardest objects.
 const PEAK_MAX_G: f64 = 150.0;
@@ -29,6 +33,20 @@ fn objects_are_held_between_the_two_forces() {
         }
     }
     assert!(table.count(|own| own.plan.is_quiet) * 8 >= seen, "{told}");
+}
+
+#[test]
+fn what_is_in_the_hand_is_told_within_its_bounds() {
+    let table = objects(0..40);
+    let told = table.line();
+    eprintln!("{told}");
+    assert!(table.held >= 30, "{told}");
+    assert!(table.size_mm.len() * 10 >= table.held * 9, "{told}");
+    assert!(table.size_outside * 10 <= table.size_mm.len(), "{told}");
+    assert!(table.class_share() >= 0.9, "{told}");
+    assert!(table.weight.len() * 2 >= table.held, "{told}");
+    assert_eq!(table.weight_outside, 0, "{told}");
+    assert!(table.yield_wrong * 20 <= table.yield_right, "{told}");
 }
 
 #[test]
