@@ -8,6 +8,11 @@ pub fn joint_column(quantity: Quantity, dof: Dof) -> String {
     named(quantity.row(), dof.name())
 }
 
+/// Column of a joint's force in newtons.
+pub fn newton_column(dof: Dof) -> String {
+    format!("force_{}_N", dof.name())
+}
+
 /// Column of a fingertip's quantity.
 pub fn tip_column(touch: Touch, finger: Finger) -> String {
     named(touch.row(), finger.name())

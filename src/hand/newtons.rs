@@ -30,6 +30,11 @@ const STUDENT_95: f64 = 2.776;
 /// Newtons of a gram on a scale.
 pub const N_PER_G: f64 = 0.009_806_65;
 
+/// A force in newtons, at these newtons for a gram; rounded to millinewtons.
+pub fn newtons(force_g: f64, per_g: f64) -> f64 {
+    (force_g * per_g * 1000.0).round() / 1000.0
+}
+
 /// Expected noise of the force reading, g: the noisiest of the known sensors.
 const FORCE_NOISE_G: f64 = 8.0;
 /// Standard deviation of a scale that rounds to 5 g.

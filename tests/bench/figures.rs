@@ -121,7 +121,7 @@ mod gateway {
 /// One part of the table: its name, by which it can be chosen, and what measures it.
 type Part = (&'static str, fn(&mut Report) -> Result<(), Failure>);
 
-const PARTS: [Part; 21] = [
+const PARTS: [Part; 22] = [
     ("codec", codec::run),
     ("cycles", cycles::run),
     ("line", line::run),

@@ -7,7 +7,7 @@ use crate::memory::mib;
 use crate::report::{Aim, Failure, Report, line};
 use handscope::app::connect::SimDial;
 use handscope::hand::kinematics::Side;
-use handscope::hand::{HandSample, Moment, Timed};
+use handscope::hand::{HandSample, Moment, PerDof, Timed};
 use handscope::link::{Clock, LinkConfig, PollRates, open};
 use handscope::record::file::reader::{RecordingFile, TimeRange};
 use handscope::record::file::writer::RecordingWriter;
@@ -68,6 +68,7 @@ fn opening() -> Opening {
         hand: "sim:".into(),
         simulated: true,
         side: Side::Right,
+        newtons_per_g: PerDof::splat(None),
         version: "bench".into(),
         part: None,
     }

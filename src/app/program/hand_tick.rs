@@ -317,6 +317,7 @@ fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
                     folder,
                     endpoint,
                     side: hand.side,
+                    newtons_per_g: hand.newtons.all_per_g(),
                 };
                 HandRecording::begin(&target, link.observe(), ctx.env)
             });

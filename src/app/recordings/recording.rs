@@ -6,8 +6,8 @@ use crate::app::files::settings_file;
 use crate::app::layout::Layout;
 use crate::app::notices::{HandNotices, NoticeKind};
 use crate::app::settings::{Settings, Zoom};
-use crate::hand::Moment;
 use crate::hand::kinematics::Side;
+use crate::hand::{Moment, PerDof};
 use crate::history::History;
 use crate::link::entries;
 use crate::link::{LinkHandle, LinkObserver};
@@ -66,6 +66,8 @@ pub(crate) struct RecordingTarget<'a> {
     pub(crate) endpoint: &'a Endpoint,
     /// Side of the hand, as configured by the user.
     pub(crate) side: Side,
+    /// Newtons of a gram of each joint, where they are known.
+    pub(crate) newtons_per_g: PerDof<Option<f64>>,
 }
 
 impl HandRecording {
@@ -78,7 +80,8 @@ impl HandRecording {
         let wall = since_1970();
         let now = env.clock.now();
         let moments = (now, wall);
-        let opening = Opening::begin(target.endpoint.to_string(), moments, target.side);
+        let opening = Opening::begin(target.endpoint.to_string(), moments, target.side)
+            .with_newtons(target.newtons_per_g);
         let name = opening.file_name(&stamp(wall));
         let plan = RecordingPlan {
             path: target.folder.join(day(wall)).join(name),

@@ -3,6 +3,7 @@
 use crate::cli::out::file::nothing_at;
 use crate::cli::out::notify;
 use crate::cli::recordings::record::{FileReporter, record_parameters};
+use crate::cli::session;
 use crate::hand::kinematics::Side;
 use crate::link::entries;
 use crate::link::{Clock, LinkHandle};
@@ -47,7 +48,8 @@ impl SideRecording {
         let moments = (clock.now(), calendar::since_1970());
         let recorder = Recorder::start(RecordingPlan {
             path: path.to_path_buf(),
-            opening: Opening::begin(hand.to_string(), moments, side),
+            opening: Opening::begin(hand.to_string(), moments, side)
+                .with_newtons(session::newtons_per_g(hand)),
             disk: Arc::new(SystemDisk),
             part_length: PART_LENGTH,
         })

@@ -58,7 +58,8 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
     let mut interrupt = Interrupt::listen()?;
     let clock = Clock::start();
     let moments = (clock.now(), calendar::since_1970());
-    let opening = Opening::begin(args.hand.to_string(), moments, Side::Right);
+    let opening = Opening::begin(args.hand.to_string(), moments, Side::Right)
+        .with_newtons(session::newtons_per_g(&args.hand));
     let path = path(args, &opening)?;
     let rates = if args.full_rate {
         PollRates::FULL

@@ -183,7 +183,8 @@ fn show(
     let moments = (link.clock().now(), calendar::since_1970());
     let config = FoxgloveConfig {
         address,
-        opening: Opening::begin(args.hand.to_string(), moments, args.side),
+        opening: Opening::begin(args.hand.to_string(), moments, args.side)
+            .with_newtons(session::newtons_per_g(&args.hand)),
     };
     let mut server = FoxgloveServer::open(config, &Handle::current())
         .map_err(|error| listen::refused(address, &error))?;

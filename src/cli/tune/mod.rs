@@ -6,6 +6,7 @@ mod output;
 pub(crate) use args::TuneArgs;
 
 use crate::cli::out::{Out, WrongUsage};
+use crate::cli::session;
 use crate::cli::trial::drive::ArmedHand;
 use crate::cli::trial::output::joints;
 use crate::cli::trial::results::ResultsRequest;
@@ -62,6 +63,7 @@ async fn run_search(
         series: ended,
         finding: search.and_then(SettingsSearch::finding),
         tried: search.map(|own| own.tried().to_vec()).unwrap_or_default(),
+        newtons_per_g: session::newtons_per_g(&args.series.hand),
     };
     let note = output::table(args, &report);
     results.close(ended, Some(("tune", note)))?;

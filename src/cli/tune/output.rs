@@ -1,6 +1,7 @@
 //! Result of a search as JSON, a contract with scripts, and as lines of text. Pure.
 
 use crate::cli::tune::args::TuneArgs;
+use crate::hand::PerDof;
 use crate::motion::drive::{EndReport, stop_words};
 use crate::trials::search::{
     Claim, ComparedThreshold, Finding, FoundApproach, OpenQuestion, Tried,
@@ -15,6 +16,8 @@ pub(crate) struct SearchReport {
     pub(crate) finding: Option<Finding>,
     /// All closes that were tried, also if the search ended early.
     pub(crate) tried: Vec<Tried>,
+    /// Newtons of a gram of each joint, where they are known.
+    pub(crate) newtons_per_g: PerDof<Option<f64>>,
 }
 
 /// The last line: `{"tune": {…}}`. Unknown values are null.
@@ -34,6 +37,7 @@ pub(crate) fn json(args: &TuneArgs, report: &SearchReport) -> Value {
         "contact_angle": claim.and_then(|claim| Some(claim.joints.first()?.contact_angle)),
         "close_s": claim.map(|claim| claim.close_s),
         "peak_bound_g": claim.map(Claim::peak_bound_g),
+        "peak_bound_n": peak_bound_n(report),
         "confidence": claim.map(|claim| claim.assurance.confidence),
         "coverage": claim.map(|claim| claim.assurance.coverage),
         "distribution_free": claim.map_or(goal.distribution_free, |claim| claim.distribution_free),
@@ -101,6 +105,10 @@ pub(crate) fn lines(report: &SearchReport) -> Vec<String> {
             report.tried.len()
         ),
     ];
+    lines.extend(
+        peak_bound_n(report)
+            .map(|newtons| format!("in newtons of this hand, the peak is at most {newtons:.1} N")),
+    );
     lines.extend(compared(report).map(ToString::to_string));
     lines.extend(
         open_questions(report)
@@ -123,6 +131,11 @@ pub(crate) fn no_claim(report: &SearchReport) -> Option<String> {
         .as_ref()
         .and_then(|finding| finding.result.as_ref().err());
     early.or_else(|| none.map(ToString::to_string))
+}
+
+/// Bound of the peak in newtons, where they are known.
+fn peak_bound_n(report: &SearchReport) -> Option<f64> {
+    claim(report)?.peak_bound_n(&report.newtons_per_g)
 }
 
 fn claim(report: &SearchReport) -> Option<&Claim> {

@@ -3,6 +3,7 @@
 use crate::hand::feedback::tactile::NO_DIRECTION;
 use crate::hand::grip::{Grip, GripEstimate};
 use crate::hand::kinematics::driven_radians;
+use crate::hand::newtons::newtons;
 use crate::hand::units::decimal;
 use crate::hand::{
     Fault, Faults, Finger, Force, Group, HandSample, Moment, PerDof, PositionReading, Quantity,
@@ -60,14 +61,14 @@ pub(crate) fn watch_json(
 ) -> Value {
     let mut object = sample_json(sample, grip, at);
     let force = sample.force.map(|force| force.value);
-    let newtons = force.map(|force| {
+    let force_n = force.map(|force| {
         PerDof::from_fn(|dof| {
             let grams = f64::from(force[dof].documented()?);
-            Some(rounded_mn(grams * newtons_per_g[dof]?))
+            Some(newtons(grams, newtons_per_g[dof]?))
         })
     });
     if let Value::Object(fields) = &mut object {
-        fields.insert("force_n".into(), json!(newtons));
+        fields.insert("force_n".into(), json!(force_n));
     }
     object
 }
@@ -119,11 +120,6 @@ const fn field(group: Group) -> &'static str {
         Group::Status => "status_raw",
         Group::Tactile(_) => "tactile",
     }
-}
-
-/// Rounds newtons to millinewtons.
-fn rounded_mn(newtons: f64) -> f64 {
-    (newtons * 1000.0).round() / 1000.0
 }
 
 /// A grip as JSON: state, start and age of the grasp and of each finger.

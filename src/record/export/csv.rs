@@ -1,8 +1,11 @@
 //! A recording as comma-separated values: one line for each moment of receipt, the columns of the history's tables, the event
 //! last.
 
-use crate::hand::column::{channel_column, grip_columns, joint_column, text_cell, tip_column};
+use crate::hand::column::{
+    channel_column, grip_columns, joint_column, newton_column, text_cell, tip_column,
+};
 use crate::hand::grip::Grip;
+use crate::hand::newtons::newtons;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity, Touch};
 use crate::record::export::output::{Destination, ExportError, Exported, Unfinished};
 use crate::record::export::source::ExportSource;
@@ -32,6 +35,7 @@ pub(crate) fn write(source: ExportSource<'_>, to: &Destination) -> Result<Export
     let mut lines = Lines {
         to: &mut to,
         start: source.file.first(),
+        newtons_per_g: source.newtons_per_g(),
         marks: marks.peekable(),
         line: Line::default(),
         rows: 0,
@@ -72,6 +76,8 @@ struct Line {
 struct Lines<'a, W: Write, M: Iterator<Item = &'a FileMark>> {
     to: &'a mut W,
     start: Moment,
+    /// Joints with a column in newtons.
+    newtons_per_g: Vec<(Dof, f64)>,
     marks: Peekable<M>,
     line: Line,
     rows: u64,
@@ -79,8 +85,8 @@ struct Lines<'a, W: Write, M: Iterator<Item = &'a FileMark>> {
 
 impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
     fn head(&mut self) -> io::Result<()> {
-        self.line.cells = vec![String::new(); columns().count()];
-        let names: Vec<String> = columns().collect();
+        let names: Vec<String> = columns(&self.newtons_per_g).collect();
+        self.line.cells = vec![String::new(); names.len()];
         let names = names.join(",");
         writeln!(self.to, "time_s,{names},{UNDOCUMENTED},event")
     }
@@ -94,7 +100,12 @@ impl<'a, W: Write, M: Iterator<Item = &'a FileMark>> Lines<'a, W, M> {
             self.line.at = Some(at);
         }
         self.line.taken = self.line.taken.and(fresh);
-        for (cell, value) in self.line.cells.iter_mut().zip(values(sample, fresh)) {
+        for (cell, value) in
+            self.line
+                .cells
+                .iter_mut()
+                .zip(values(sample, fresh, &self.newtons_per_g))
+        {
             if let Some(value) = value {
                 *cell = value;
             }
@@ -180,7 +191,7 @@ fn words(mark: &FileMark) -> String {
 }
 
 /// Headers of the columns between time and event.
-fn columns() -> impl Iterator<Item = String> {
+fn columns(newtons_per_g: &[(Dof, f64)]) -> impl Iterator<Item = String> {
     let joints = Quantity::ALL
         .into_iter()
         .flat_map(|quantity| Dof::ALL.map(|dof| joint_column(quantity, dof)));
@@ -190,7 +201,12 @@ fn columns() -> impl Iterator<Item = String> {
     let channels = Finger::ALL
         .into_iter()
         .flat_map(|finger| (0..CHANNELS).map(move |channel| channel_column(channel, finger)));
-    joints.chain(tips).chain(channels).chain(grip_columns())
+    let in_newtons = newtons_per_g.iter().map(|(dof, _)| newton_column(*dof));
+    joints
+        .chain(tips)
+        .chain(channels)
+        .chain(in_newtons)
+        .chain(grip_columns())
 }
 
 /// Formats a number with a decimal point, so that no reader infers a column of integers.
@@ -204,7 +220,11 @@ fn decimal(value: f32) -> String {
 }
 
 /// Fresh and known values of those columns.
-fn values(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = Option<String>> {
+fn values(
+    sample: &HandSample,
+    fresh: Groups,
+    newtons_per_g: &[(Dof, f64)],
+) -> impl Iterator<Item = Option<String>> {
     let joints = Quantity::ALL.into_iter().flat_map(move |quantity| {
         let six = quantity.documented(sample);
         let six = six.filter(|_| fresh.contains(quantity.group()));
@@ -229,5 +249,11 @@ fn values(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = Option<Str
         let all = (0..usize::from(CHANNELS)).map(move |channel| raw?.get(channel).copied());
         all.map(|count| count.map(|count| count.to_string()))
     });
-    joints.chain(tips).chain(channels)
+    let forces = Quantity::Force.documented(sample);
+    let forces = forces.filter(|_| fresh.contains(Group::Force));
+    let in_newtons = newtons_per_g.iter().map(move |(dof, per_g)| {
+        let force_g = forces?.value[*dof]?;
+        Some(format!("{:.3}", newtons(force_g.into(), *per_g)))
+    });
+    joints.chain(tips).chain(channels).chain(in_newtons)
 }

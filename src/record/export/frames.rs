@@ -1,6 +1,7 @@
 //! Frames at an even rate, from readings and commands that arrive at any time.
 
 use crate::hand::grip::Grip;
+use crate::hand::newtons::newtons;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, Quantity};
 use crate::record::export::targets::CommandedTargets;
 use crate::record::file::RecordingFile;
@@ -43,21 +44,35 @@ pub(crate) struct DatasetFrame {
     pub(crate) action: [f32; 6],
     /// Forces of the joints, then of the fingertips, if included.
     pub(crate) environment: [f32; FORCE_WIDTH + TOUCH_WIDTH],
+    /// Forces in newtons of the joints for which they are known.
+    pub(crate) force_n: Vec<f32>,
     /// State numbers of the grasp and the fingers.
     pub(crate) grip: [f32; GRIP_WIDTH],
 }
 
+/// Values that only some recordings contain.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct FrameExtras {
+    /// True if a frame requires the fingertips.
+    pub(crate) with_touch: bool,
+    /// Joints whose forces are also in newtons.
+    pub(crate) in_newtons: Vec<Dof>,
+}
+
 /// Names and lengths of the parts of a frame.
-pub(crate) fn frame_parts(with_touch: bool) -> Vec<(&'static str, usize)> {
-    let touch = if with_touch { TOUCH_WIDTH } else { 0 };
+pub(crate) fn frame_parts(extras: &FrameExtras) -> Vec<(&'static str, usize)> {
+    let touch = if extras.with_touch { TOUCH_WIDTH } else { 0 };
     let mut parts = vec![
         ("observation.state", 6),
         ("action", 6),
         ("observation.environment_state", FORCE_WIDTH + touch),
         ("observation.force", FORCE_WIDTH),
     ];
-    if with_touch {
+    if extras.with_touch {
         parts.push(("observation.touch", TOUCH_WIDTH));
+    }
+    if !extras.in_newtons.is_empty() {
+        parts.push(("observation.force_n", extras.in_newtons.len()));
     }
     parts.push(("observation.grip", GRIP_WIDTH));
     parts
@@ -73,9 +88,17 @@ impl DatasetFrame {
         } else {
             parts.extend([force, force]);
         }
+        if !self.force_n.is_empty() {
+            parts.push(&self.force_n);
+        }
         parts.push(&self.grip);
         parts
     }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a force in newtons")]
+const fn single(value: f64) -> f32 {
+    value as f32
 }
 
 /// True if the fingertips of a recording were read often enough for frames.
@@ -92,6 +115,8 @@ pub(crate) struct FramePlan {
     pub(crate) fps: u32,
     /// True if a frame requires the fingertips.
     pub(crate) with_touch: bool,
+    /// Joints whose forces are also in newtons, each with those of a gram.
+    pub(crate) newtons_per_g: Vec<(Dof, f64)>,
     /// Time before which there are no frames; earlier entries only provide the commands.
     pub(crate) from: Moment,
     /// Starts of the episodes, ordered by time; `None` if an episode begins as soon as all values are known.
@@ -223,6 +248,7 @@ impl DatasetFrames {
             state: [0.0; 6],
             action: [0.0; 6],
             environment: [0.0; FORCE_WIDTH + TOUCH_WIDTH],
+            force_n: Vec::with_capacity(self.plan.newtons_per_g.len()),
             grip: states(&self.grip.at(at)).map(|state| state.number().into()),
         };
         let (forces, touch) = frame.environment.split_at_mut(FORCE_WIDTH);
@@ -232,6 +258,11 @@ impl DatasetFrames {
             *state = f32::from(angle) / FULL_SCALE;
             *action = f32::from(self.targets.angle(dof).unwrap_or(angle)) / FULL_SCALE;
             *grams = f32::from(force.value[dof]?);
+        }
+        for (dof, per_g) in &self.plan.newtons_per_g {
+            frame
+                .force_n
+                .push(single(newtons(force.value[*dof]?.into(), *per_g)));
         }
         if self.plan.with_touch {
             let (normal, tangential) = touch.split_at_mut(Finger::ALL.len());
@@ -265,6 +296,7 @@ mod tests {
         DatasetFrames::new(FramePlan {
             fps: 10,
             with_touch: false,
+            newtons_per_g: Vec::new(),
             from: Moment::ZERO,
             notes: None,
         })

@@ -7,7 +7,7 @@ use crate::hand::{Dof, Moment};
 use crate::record::EventKind;
 use crate::record::export::columns::{self, ParquetCell, ParquetColumn, Values};
 use crate::record::export::frames::{
-    DatasetFrame, DatasetFrames, FramePlan, frame_parts, has_touch,
+    DatasetFrame, DatasetFrames, FrameExtras, FramePlan, frame_parts, has_touch,
 };
 use crate::record::export::output::{
     Destination, EpisodeCounts, ExportError, ExportSummary, Exported, Sink, Unfinished,
@@ -98,8 +98,15 @@ pub(crate) fn write(
     }
     let data = folder.join("data").join(FILE);
     let data = Sink::File(File::create_new(data).map_err(error)?);
-    let with_touch = sources.iter().all(|source| has_touch(source.file));
-    let set = DataSet::new(BufWriter::new(data), with_touch);
+    let is_known = |dof: &Dof| {
+        let known = |source: &ExportSource<'_>| source.file.opening().newtons_per_g[*dof];
+        sources.iter().all(|source| known(source).is_some())
+    };
+    let extras = FrameExtras {
+        with_touch: sources.iter().all(|source| has_touch(source.file)),
+        in_newtons: Dof::ALL.into_iter().filter(is_known).collect(),
+    };
+    let set = DataSet::new(BufWriter::new(data), extras.clone());
     let mut set = set.map_err(|error| output.parquet_error(error))?;
     let mut recordings = Vec::new();
     for (number, source) in sources.iter().enumerate() {
@@ -122,7 +129,7 @@ pub(crate) fn write(
     let meta = Meta {
         sources,
         side,
-        with_touch,
+        extras,
         plan,
         ended: &ended,
     };
@@ -143,7 +150,13 @@ fn add(
 ) -> Result<Exported, Broken> {
     let mut frames = DatasetFrames::new(FramePlan {
         fps: plan.fps,
-        with_touch: set.with_touch,
+        with_touch: set.extras.with_touch,
+        newtons_per_g: {
+            let newtons = source.file.opening().newtons();
+            newtons
+                .filter(|(dof, _)| set.extras.in_newtons.contains(dof))
+                .collect()
+        },
         from: source.stretch.from,
         notes: match plan.episodes {
             EpisodeStart::Gap => None,
@@ -195,7 +208,7 @@ struct Episode {
 struct DataSet {
     to: SerializedFileWriter<BufWriter<Sink>>,
     columns: Vec<ParquetColumn>,
-    with_touch: bool,
+    extras: FrameExtras,
     statistics: Statistics,
     tasks: Vec<String>,
     episodes: Vec<Episode>,
@@ -235,8 +248,8 @@ fn long(number: impl TryInto<i64>) -> ParquetCell {
 }
 
 impl DataSet {
-    fn new(to: BufWriter<Sink>, with_touch: bool) -> Result<Self, ParquetError> {
-        let parts = frame_parts(with_touch);
+    fn new(to: BufWriter<Sink>, extras: FrameExtras) -> Result<Self, ParquetError> {
+        let parts = frame_parts(&extras);
         let list = |(name, width): &(&str, usize)| {
             ParquetColumn::new(*name, "", Values::Floats(*width, vec![]))
         };
@@ -253,7 +266,7 @@ impl DataSet {
             to: writer(to, &columns, Vec::new())?,
             columns,
             statistics: Statistics::new(parts.into_iter()),
-            with_touch,
+            extras,
             tasks: Vec::new(),
             episodes: Vec::new(),
             unfollowed: UnfollowedMotion::new(),
@@ -303,7 +316,7 @@ impl DataSet {
             long(self.index),
             long(task),
         ];
-        let parts = frame.parts(self.with_touch);
+        let parts = frame.parts(self.extras.with_touch);
         let (lists, rest) = self.columns.split_at_mut(parts.len());
         for (column, values) in lists.iter_mut().zip(&parts) {
             column.push_list(values);
@@ -365,7 +378,7 @@ fn writer<W: Write + Send>(
 struct Meta<'a> {
     sources: &'a [ExportSource<'a>],
     side: Side,
-    with_touch: bool,
+    extras: FrameExtras,
     plan: &'a LeRobotPlan,
     ended: &'a WrittenFrames,
 }
@@ -489,14 +502,21 @@ impl Meta<'_> {
             .each_ref()
             .map(|joint| format!("{joint}Force"))
             .to_vec();
-        if self.with_touch {
+        if self.extras.with_touch {
             environment.extend(touch.iter().cloned());
         }
+        let in_newtons: Vec<String> = Dof::ALL
+            .into_iter()
+            .zip(joints.iter())
+            .filter(|(dof, _)| self.extras.in_newtons.contains(dof))
+            .map(|(_, joint)| joint.clone())
+            .collect();
         let mut features = Map::new();
-        for (part, width) in frame_parts(self.with_touch) {
+        for (part, width) in frame_parts(&self.extras) {
             let names = match part {
                 "observation.environment_state" => environment.as_slice(),
                 "observation.touch" => touch.as_slice(),
+                "observation.force_n" => in_newtons.as_slice(),
                 "observation.grip" => grip.as_slice(),
                 _ => joints.as_slice(),
             };

@@ -1,8 +1,9 @@
 //! A recording as a Parquet table: one row for each reading, null for values that were not part of it. Units, the hand and events
 //! are in the file's metadata.
 
-use crate::hand::column::{channel_column, grip_columns, joint_column, tip_column};
+use crate::hand::column::{channel_column, grip_columns, joint_column, newton_column, tip_column};
 use crate::hand::grip::Grip;
+use crate::hand::newtons::newtons;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Quantity, TactileBlock};
 use crate::hand::{Timed, Touch};
 use crate::record::export::arrow_schema::{ARROW_SCHEMA, arrow_schema};
@@ -60,6 +61,8 @@ pub(crate) fn write(source: ExportSource<'_>, to: &Destination) -> Result<Export
 struct ParquetTable {
     /// The last column names values outside the manual's ranges; those before it hold the grip.
     columns: Vec<ParquetColumn>,
+    /// Joints with a column in newtons.
+    newtons_per_g: Vec<(Dof, f64)>,
     to: SerializedFileWriter<BufWriter<Sink>>,
     start: Moment,
     base_nanos: u64,
@@ -68,7 +71,8 @@ struct ParquetTable {
 
 impl ParquetTable {
     fn new(source: ExportSource<'_>, to: BufWriter<Sink>) -> Result<Self, ParquetError> {
-        let columns = all_columns();
+        let newtons_per_g = source.newtons_per_g();
+        let columns = all_columns(&newtons_per_g);
         let fields: Result<Vec<_>, _> = columns.iter().map(ParquetColumn::schema).collect();
         let schema = Type::group_type_builder("reading").with_fields(fields?);
         let properties = WriterProperties::builder()
@@ -80,6 +84,7 @@ impl ParquetTable {
             SerializedFileWriter::new(to, Arc::new(schema.build()?), Arc::new(properties.build()))?;
         Ok(Self {
             columns,
+            newtons_per_g,
             to,
             start: source.file.first(),
             base_nanos: source.file.opening().base_nanos,
@@ -119,8 +124,10 @@ impl ParquetTable {
             nanos(at),
             asked.map_or(ParquetCell::Null, nanos),
         ];
-        let cells = head.into_iter().chain(cells(sample, fresh));
         if let Some((last, columns)) = self.columns.split_last_mut() {
+            let cells = head
+                .into_iter()
+                .chain(cells(sample, fresh, &self.newtons_per_g));
             for (column, cell) in columns.iter_mut().zip(cells) {
                 column.push(cell);
             }
@@ -187,7 +194,7 @@ fn metadata(source: ExportSource<'_>, columns: &[ParquetColumn]) -> Vec<KeyValue
         .collect()
 }
 
-fn all_columns() -> Vec<ParquetColumn> {
+fn all_columns(newtons_per_g: &[(Dof, f64)]) -> Vec<ParquetColumn> {
     let mut all = vec![
         ParquetColumn::new("time_s", "s", Values::Double(Vec::new())),
         ParquetColumn::new("received", "", Values::Time(Vec::new())),
@@ -232,6 +239,8 @@ fn all_columns() -> Vec<ParquetColumn> {
         let channels = (0..CHANNELS).map(|channel| channel_column(channel, finger));
         all.extend(channels.map(|name| ParquetColumn::new(name, "", Values::Long(Vec::new()))));
     }
+    let in_newtons = newtons_per_g.iter().map(|(dof, _)| newton_column(*dof));
+    all.extend(in_newtons.map(|name| ParquetColumn::new(name, "N", Values::Double(Vec::new()))));
     all.extend(grip_columns().map(|name| ParquetColumn::new(name, "", Values::Text(Vec::new()))));
     all.push(ParquetColumn::new(
         UNDOCUMENTED,
@@ -242,7 +251,11 @@ fn all_columns() -> Vec<ParquetColumn> {
 }
 
 /// Cells of a row between its times and its texts, in the order of the columns.
-fn cells(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = ParquetCell> {
+fn cells(
+    sample: &HandSample,
+    fresh: Groups,
+    newtons_per_g: &[(Dof, f64)],
+) -> impl Iterator<Item = ParquetCell> {
     let measured = Quantity::ALL.into_iter().flat_map(move |quantity| {
         let six = quantity.documented(sample);
         six_cells(six.filter(|_| fresh.contains(quantity.group())), |value| {
@@ -266,7 +279,18 @@ fn cells(sample: &HandSample, fresh: Groups) -> impl Iterator<Item = ParquetCell
         let block = sample.tactile[finger].filter(|_| is(Group::Tactile(finger)));
         tip_cells(block.map(|block| block.value))
     });
-    measured.chain(others.into_iter().flatten()).chain(tips)
+    let forces = Quantity::Force.documented(sample);
+    let forces = forces.filter(|_| is(Group::Force));
+    let in_newtons = newtons_per_g.iter().map(move |(dof, per_g)| {
+        let force_g = forces.and_then(|six| six.value[*dof]);
+        force_g.map_or(ParquetCell::Null, |force_g| {
+            ParquetCell::Double(newtons(force_g.into(), *per_g))
+        })
+    });
+    measured
+        .chain(others.into_iter().flatten())
+        .chain(tips)
+        .chain(in_newtons)
 }
 
 fn six_cells<T: Copy>(

@@ -1,6 +1,6 @@
 //! A time range of a recording as the input of an export: read entry by entry, with progress and cancellation.
 
-use crate::hand::Moment;
+use crate::hand::{Dof, Moment};
 use crate::record::Entry;
 use crate::record::export::output::{ExportError, Unfinished};
 use crate::record::file::RecordingFile;
@@ -72,6 +72,11 @@ impl From<ParquetError> for Broken {
 }
 
 impl<'a> ExportSource<'a> {
+    /// Joints whose newtons were known, each with those of a gram.
+    pub(crate) fn newtons_per_g(&self) -> Vec<(Dof, f64)> {
+        self.file.opening().newtons().collect()
+    }
+
     /// A time range without progress reports.
     pub fn new(file: &'a RecordingFile, stretch: TimeRange) -> Self {
         let watch = &|_| ControlFlow::Continue(());

@@ -1,7 +1,7 @@
 //! Imports a recording from comma-separated values as `export::csv` writes them, with columns identified by name, in any order.
 //! Data without a column stays unknown: the date, the hand, its settings, the bytes on the wire.
 
-use crate::hand::column::{channel_column, grip_columns, joint_column, tip_column};
+use crate::hand::column::{channel_column, grip_columns, joint_column, newton_column, tip_column};
 use crate::hand::feedback::sample::SET_OUT_OF_RANGE;
 use crate::hand::feedback::tactile::{BLOCK_LEN, TactileBlock};
 use crate::hand::kinematics::Side;
@@ -263,6 +263,7 @@ fn imported_opening() -> Opening {
         hand: String::new(),
         simulated: false,
         side: Side::Right,
+        newtons_per_g: PerDof::splat(None),
         version: format!("{} {}", env!("CARGO_PKG_VERSION"), Opening::IMPORTED),
         part: None,
     }
@@ -279,6 +280,8 @@ enum CsvColumn {
     Event,
     /// The grip of the grasp or of a finger; ignored, as it is derived from the readings.
     Grip(usize),
+    /// A force in newtons; ignored, as it is derived from the one in grams.
+    Newtons(Dof),
     Unknown,
 }
 
@@ -318,7 +321,7 @@ impl CsvColumns {
         if !has(|column| {
             !matches!(
                 column,
-                CsvColumn::Time | CsvColumn::Grip(_) | CsvColumn::Unknown
+                CsvColumn::Time | CsvColumn::Grip(_) | CsvColumn::Newtons(_) | CsvColumn::Unknown
             )
         }) {
             return Err(CsvFault::NothingKnown);
@@ -374,6 +377,7 @@ fn known() -> BTreeMap<String, CsvColumn> {
     known.insert(UNDOCUMENTED.to_owned(), CsvColumn::Undocumented);
     let grips = grip_columns().into_iter().enumerate();
     known.extend(grips.map(|(nth, name)| (name, CsvColumn::Grip(nth))));
+    known.extend(Dof::ALL.map(|dof| (newton_column(dof), CsvColumn::Newtons(dof))));
     known.insert("event".to_owned(), CsvColumn::Event);
     for quantity in Quantity::ALL {
         for dof in Dof::ALL {
@@ -452,7 +456,7 @@ impl CsvRow {
     /// Parses one cell; `None` if its text is not valid in the column.
     fn parse_cell(&mut self, column: CsvColumn, cell: &str) -> Option<()> {
         match column {
-            CsvColumn::Unknown | CsvColumn::Grip(_) => {}
+            CsvColumn::Unknown | CsvColumn::Grip(_) | CsvColumn::Newtons(_) => {}
             CsvColumn::Time => {
                 let time_s: f64 = cell.parse().ok()?;
                 self.time_s =

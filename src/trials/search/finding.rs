@@ -1,6 +1,7 @@
 //! The result of a search: a justified claim, or the reason for its absence; the closes tried, and open questions. Pure.
 
-use crate::hand::Dof;
+use crate::hand::newtons::newtons;
+use crate::hand::{Dof, PerDof};
 use crate::trials::plan::TrialSetting;
 use crate::trials::search::offset::ThresholdReference;
 use crate::trials::search::tolerance::Assurance;
@@ -81,6 +82,14 @@ impl Claim {
     pub fn peak_bound_g(&self) -> f64 {
         let bounds = self.joints.iter().map(|joint| joint.peak_bound_g);
         bounds.fold(0.0, f64::max)
+    }
+
+    /// The same in newtons, with these for a gram of each joint; `None` unless all of its joints were measured.
+    pub fn peak_bound_n(&self, newtons_per_g: &PerDof<Option<f64>>) -> Option<f64> {
+        let bound =
+            |joint: &JointClaim| Some(newtons(joint.peak_bound_g, newtons_per_g[joint.dof]?));
+        let bounds: Option<Vec<f64>> = self.joints.iter().map(bound).collect();
+        bounds?.into_iter().reduce(f64::max)
     }
 }
 

@@ -134,7 +134,12 @@ fn search_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search) {
 /// Draws the result, with its actions.
 fn claim_ui(ui: &mut Ui, pane: &mut Pane<'_>, search: &Search, claim: &Claim) {
     let (look, palette) = (pane.look, pane.look.palette);
+    let newtons = claim.peak_bound_n(&pane.hand().newtons.all_per_g());
     kit::small_text_ui(ui, &search::claim(look, claim), palette.ok);
+    if let Some(newtons) = newtons {
+        let words = look.fill(search::CLAIM_N, &[&format!("{newtons:.1}")]);
+        kit::small_text_ui(ui, &words, palette.muted);
+    }
     let setting = claim.setting;
     let (speed, force) = (setting.speed.get(), setting.force.get());
     let words = match claim.approach {

@@ -16,7 +16,7 @@ use handscope::record::{
 use nix::sys::signal::Signal;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::record::Field;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -113,12 +113,18 @@ impl Script {
     }
 
     fn write(&self, path: &Path, side: Side) {
+        self.write_of(path, side, PerDof::splat(None));
+    }
+
+    /// Writes the recording of a hand with these newtons.
+    fn write_of(&self, path: &Path, side: Side, newtons_per_g: PerDof<Option<f64>>) {
         let opening = Opening {
             base_nanos: 1_795_219_200_000_000_000,
             began: at(0),
             hand: "tcp:127.0.0.1:6000".into(),
             simulated: false,
             side,
+            newtons_per_g,
             version: "0.1.0".into(),
             part: None,
         };
@@ -241,6 +247,64 @@ fn target_at(millis: u64) -> u64 {
         1000..3000 => 700 - (millis - 1000) / 100 * 10,
         _ => 444,
     }
+}
+
+#[test]
+fn a_hand_of_known_newtons_exports_them_beside_its_grams() {
+    let place = Place::new();
+    let mut newtons = PerDof::splat(None);
+    (newtons[Dof::Index], newtons[Dof::ThumbBend]) = (Some(0.0071), Some(0.0129));
+    let script = commanded();
+    script.write_of(&place.path("known.mcap"), Side::Right, newtons);
+    script.write(&place.path("plain.mcap"), Side::Right);
+
+    place.export(&["known.mcap"], &["--csv"], "known.csv").ok();
+    let csv = std::fs::read_to_string(place.path("known.csv")).unwrap();
+    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let head = lines.next().unwrap();
+    let column = |name: &str| head.iter().position(|own| *own == name);
+    let (grams, in_newtons) = (column("force_index_g"), column("force_index_N"));
+    assert!(column("force_thumb_bend_N").is_some() && column("force_ring_N").is_none());
+    let mut read = 0;
+    for line in lines {
+        let (grams, in_newtons) = (line[grams.unwrap()], line[in_newtons.unwrap()]);
+        assert_eq!(grams.is_empty(), in_newtons.is_empty());
+        if let Ok(grams) = grams.parse::<f64>() {
+            let force_n: f64 = in_newtons.parse().unwrap();
+            assert!((force_n - 0.0071 * grams).abs() <= 0.0006, "{line:?}");
+            read += 1;
+        }
+    }
+    assert!(read > 100, "{read}");
+    let known = place.path("known.csv");
+    let imported = place.path("again.mcap");
+    let told = run(&["import", text(&known), "--out", text(&imported)]).ok();
+    assert!(!told.err.contains("force_index_N"), "{}", told.err);
+
+    place
+        .export(&["known.mcap"], &["--parquet"], "t.parquet")
+        .ok();
+    let table = File::open(place.path("t.parquet")).unwrap();
+    let table = SerializedFileReader::new(table).unwrap();
+    let schema = table.metadata().file_metadata().schema_descr();
+    let names: Vec<&str> = schema
+        .columns()
+        .iter()
+        .map(|column| column.name())
+        .collect();
+    assert!(names.contains(&"force_index_N") && !names.contains(&"force_ring_N"));
+
+    let lerobot = ["--lerobot", "--task", "hold"];
+    place.export(&["known.mcap"], &lerobot, "set").ok();
+    let feature = &place.info("set")["features"]["observation.force_n"];
+    let joints = ["kRightHandIndex", "kRightHandThumbBend"];
+    assert_eq!(feature["names"], json!(joints), "{feature}");
+    assert!(!place.frames("set").is_empty());
+    place
+        .export(&["known.mcap", "plain.mcap"], &lerobot, "both")
+        .ok();
+    let both = place.info("both");
+    assert!(both["features"]["observation.force_n"].is_null(), "{both}");
 }
 
 #[test]

@@ -21,7 +21,7 @@ use handscope::exhibit::file::ExhibitFile;
 use handscope::exhibit::plan::TILES;
 use handscope::hand::kinematics::Side;
 use handscope::hand::register::BytePacking;
-use handscope::hand::{HandId, Moment, REGISTERS, Span, TactileBlock};
+use handscope::hand::{HandId, Moment, PerDof, REGISTERS, Span, TactileBlock};
 use handscope::hand::{HandSample, Reply, register};
 use handscope::link::traffic::cut::WAITING_MAX;
 use handscope::link::traffic::decode::TrafficEvent;
@@ -603,6 +603,7 @@ fn session() -> Vec<u8> {
         hand: "sim:?seed=3".into(),
         simulated: true,
         side: Side::Left,
+        newtons_per_g: PerDof::splat(None),
         version: "0.1.0".into(),
         part: None,
     };

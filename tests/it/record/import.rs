@@ -5,7 +5,7 @@ use handscope::hand::command::HandCommand;
 use handscope::hand::feedback::tactile::TactileBlock;
 use handscope::hand::kinematics::Side;
 use handscope::hand::{
-    Dof, Finger, Group, Groups, HandSample, Moment, Reply, Span, Target, register,
+    Dof, Finger, Group, Groups, HandSample, Moment, PerDof, Reply, Span, Target, register,
 };
 use handscope::record::export::cut;
 use handscope::record::export::{Destination, ExportFormat, ExportOptions, ExportSource};
@@ -107,6 +107,7 @@ fn write(path: &Path, entries: &[Entry]) {
         hand: "tcp:10.0.0.9".into(),
         simulated: false,
         side: Side::Left,
+        newtons_per_g: PerDof::splat(None),
         version: "0.1.0".into(),
         part: None,
     };

@@ -8,7 +8,7 @@ use crate::setup::process::{Running, listen};
 use crate::setup::soak;
 use crate::setup::time::Time;
 use handscope::hand::kinematics::Side;
-use handscope::hand::{Group, Moment, Span, register};
+use handscope::hand::{Group, Moment, PerDof, Span, register};
 use handscope::link::{Clock, LinkConfig, PollRates, open};
 use handscope::record::file::reader::{RecordingFile, TimeRange};
 use handscope::record::file::{Opening, PART_LENGTH, Recorder, RecordingPlan, SystemDisk};
@@ -60,6 +60,7 @@ fn child_records_until_it_is_killed() {
             hand: endpoint.into(),
             simulated: false,
             side: Side::Right,
+            newtons_per_g: PerDof::splat(None),
             version: "test".into(),
             part: None,
         },

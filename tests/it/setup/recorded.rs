@@ -83,6 +83,7 @@ fn write(folder: &Path, script: &Script) -> PathBuf {
             hand: HAND.into(),
             simulated: false,
             side: Side::Right,
+            newtons_per_g: PerDof::splat(None),
             version: "test".into(),
             part: None,
         },

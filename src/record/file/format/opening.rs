@@ -1,7 +1,7 @@
 //! The opening of a recording file, which describes the recording.
 
-use crate::hand::Moment;
 use crate::hand::kinematics::Side;
+use crate::hand::{Dof, Moment, PerDof};
 use mcap::records::{Record, op};
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -19,7 +19,7 @@ pub struct Part {
 }
 
 /// The opening of a recording.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Opening {
     /// Time of [`Moment::ZERO`], nanoseconds since 1970.
     pub base_nanos: u64,
@@ -31,6 +31,8 @@ pub struct Opening {
     pub simulated: bool,
     /// Side of the hand, as set by the user.
     pub side: Side,
+    /// Newtons of a gram of each joint; `None` where they were not measured.
+    pub newtons_per_g: PerDof<Option<f64>>,
     /// Version of the program.
     pub version: String,
     /// `None` if the file is the whole recording: from a version without parts, or not recorded, but converted.
@@ -51,6 +53,7 @@ impl Opening {
             hand: String::new(),
             simulated: false,
             side: Side::Right,
+            newtons_per_g: PerDof::splat(None),
             version: String::new(),
             part: None,
         }
@@ -79,9 +82,26 @@ impl Opening {
             simulated: hand.starts_with("sim:"),
             hand,
             side,
+            newtons_per_g: PerDof::splat(None),
             version: env!("CARGO_PKG_VERSION").into(),
             part: None,
         }
+    }
+
+    /// The same for a hand with these newtons.
+    #[must_use]
+    pub fn with_newtons(self, newtons_per_g: PerDof<Option<f64>>) -> Self {
+        Self {
+            newtons_per_g,
+            ..self
+        }
+    }
+
+    /// Joints with known newtons, each with those of a gram.
+    pub fn newtons(&self) -> impl Iterator<Item = (Dof, f64)> + Clone {
+        let all = Dof::ALL.map(|dof| (dof, self.newtons_per_g[dof]));
+        all.into_iter()
+            .filter_map(|(dof, newtons)| Some((dof, newtons?)))
     }
 
     /// Start of the file, by the computer's clock.
@@ -137,6 +157,13 @@ impl Opening {
             map.insert(RECORDING.into(), began.to_string());
             map.insert(PART.into(), part.number.to_string());
         }
+        if self.newtons().next().is_some() {
+            let newtons = self.newtons();
+            let words: Vec<String> = newtons
+                .map(|(dof, newtons)| format!("{}={newtons}", dof.name()))
+                .collect();
+            map.insert(NEWTONS.into(), words.join(" "));
+        }
         map.insert(CHECK.into(), check(&map));
         map
     }
@@ -167,6 +194,7 @@ impl Opening {
                 "left" => Side::Left,
                 _ => Side::Right,
             },
+            newtons_per_g: newtons(&text(NEWTONS)),
             version: text("version"),
             part: part(map),
         })
@@ -194,6 +222,20 @@ fn part(map: &BTreeMap<String, String>) -> Option<Part> {
     })
 }
 
+/// Key of the newtons of a gram: `index=0.0071 thumb_bend=0.0129`.
+const NEWTONS: &str = "newtons_per_g";
+
+fn newtons(words: &str) -> PerDof<Option<f64>> {
+    let mut all = PerDof::splat(None);
+    for (name, value) in words.split(' ').filter_map(|word| word.split_once('=')) {
+        let dof = Dof::ALL.into_iter().find(|dof| dof.name() == name);
+        if let (Some(dof), Ok(value)) = (dof, value.parse::<f64>()) {
+            all[dof] = Some(value).filter(|value| value.is_finite() && *value > 0.0);
+        }
+    }
+    all
+}
+
 /// Key of the checksum over all other entries, which MCAP lacks for metadata.
 const CHECK: &str = "crc32";
 
@@ -208,6 +250,20 @@ fn check(map: &BTreeMap<String, String>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn newtons_are_read_back_and_a_hand_without_them_has_no_key() {
+        let moments = (Moment::ZERO, Duration::from_secs(1));
+        let plain = Opening::begin("sim:".into(), moments, Side::Left);
+        assert!(!plain.metadata().contains_key(NEWTONS));
+        let mut newtons = PerDof::splat(None);
+        (newtons[Dof::Index], newtons[Dof::ThumbBend]) = (Some(0.0071), Some(0.012_93));
+        let known = plain.with_newtons(newtons);
+        let read = Opening::of_metadata(&known.metadata()).unwrap();
+        assert_eq!(read, known);
+        let joints: Vec<(Dof, f64)> = read.newtons().collect();
+        assert_eq!(joints, [(Dof::Index, 0.0071), (Dof::ThumbBend, 0.012_93)]);
+    }
 
     #[test]
     fn a_file_is_named_after_the_hand_without_what_file_systems_object_to() {

@@ -32,6 +32,7 @@ pub(crate) fn opening() -> Opening {
         hand: "sim:?seed=3".into(),
         simulated: true,
         side: Side::Left,
+        newtons_per_g: PerDof::splat(None),
         version: "0.1.0".into(),
         part: None,
     }

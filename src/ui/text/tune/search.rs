@@ -24,6 +24,7 @@ texts! {
     OVER: "Search over.", "寻找结束。";
     LEFT: "{} closes so far, about {} more.", "已闭合 {} 次，约还需 {} 次。";
     NONE: "The search was ended: there is no result.", "寻找被中止，没有结果。";
+    CLAIM_N: "In newtons of this hand: at most {} N.", "按此手的牛顿标定：不超过 {} N。";
     CLAIM: "{} on this object: {} s to close, peak at most {} g in {} of 100 closes ({} % sure {}, {} closes).", "{}（此物体）：闭合用时 {} 秒，峰值不超过 {} g，100 次闭合中至少 {} 次成立（置信度 {} %，{}，试验 {} 次）。";
     IF_NORMAL: "if the peaks vary normally", "假设峰值服从正态分布";
     HOWEVER: "however the peaks vary", "不假设峰值的分布";
