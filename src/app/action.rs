@@ -5,6 +5,7 @@ use crate::app::controls::HoldKey;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::files::export::Export;
 use crate::app::hand::hold::HoldAction;
+use crate::app::hand::scale::ScaleAction;
 use crate::app::hand::list::HandsAction;
 use crate::app::inputs::InputAction;
 use crate::app::layout::Layout;
@@ -64,6 +65,8 @@ pub enum Action {
     ForgetBlocks,
     /// An action on a hold between two forces.
     Hold(HoldAction),
+    /// Calibrate the force of a joint of the shown hand with a kitchen scale.
+    Scale(ScaleAction),
     /// Start a gesture stored in the hand. Needs arming.
     Gesture(Gesture),
     /// Store the current pose of the hand, by this name or the next unused one.
@@ -191,7 +194,9 @@ impl Action {
             Self::Hold(HoldAction::Start(_) | HoldAction::Repeat(_)) => {
                 UserAct::Pose("hold".into())
             }
+            Self::Scale(ScaleAction::Start(..)) => UserAct::Pose("calibration on a scale".into()),
             Self::Stop
+            | Self::Scale(_)
             | Self::Arm
             | Self::HoldToRun(_)
             | Self::HoldKey(_)

@@ -4,6 +4,7 @@ use crate::app::action::Action;
 use crate::app::checkup::CheckupAction;
 use crate::app::controls::HoldKey;
 use crate::app::hand::hold::HoldAction;
+use crate::app::hand::scale::ScaleAction;
 use crate::app::hand::list::HandsAction;
 use crate::app::inputs::InputAction;
 use crate::app::params::state::ParamAction;
@@ -113,6 +114,13 @@ impl Action {
             | Self::Preset(_)
             | Self::Pinch(_)
             | Self::Hold(HoldAction::Start(_) | HoldAction::Repeat(_))
+            | Self::Scale(
+                ScaleAction::Start(..)
+                | ScaleAction::Reading(_)
+                | ScaleAction::Again
+                | ScaleAction::Skip
+                | ScaleAction::Finish,
+            )
             | Self::Gesture(_)
             | Self::Recall(_)
             | Self::Play(Play::Start(_) | Play::Step(_) | Play::Resume)
@@ -165,6 +173,7 @@ impl Action {
             | Self::DisarmIdle(_)
             | Self::Capture(_)
             | Self::Hold(HoldAction::Save)
+            | Self::Scale(ScaleAction::Forget(_))
             | Self::Recapture(_)
             | Self::Library(_)
             | Self::HideShipped(..)

@@ -7,7 +7,7 @@ use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::parse::{dof, hand, number};
 use crate::cli::trial::drive::{ArmedHand, by_user};
 use crate::hand::newtons::{
-    Contradiction, ForceScale, JointPoints, LEAST_LIMIT_G, LOADS, NewtonsMap, ScalePoint,
+    Contradiction, ForceScale, JointPoints, LEAST_LIMIT_G, LOADS, MOST_LIMIT_G, NewtonsMap, READING_MAX_G, ScalePoint,
 };
 use crate::hand::{Dof, Finger, Force};
 use crate::link::{ArmRequest, Stop};
@@ -25,10 +25,6 @@ use std::io::{BufRead as _, Read as _};
 use std::path::{Path, PathBuf};
 use tokio::sync::mpsc;
 
-/// Largest limit, g: more presses a finger into a scale harder than needed.
-const MOST_LIMIT_G: i16 = 1000;
-/// Largest reading of a scale, g, that is passed on: the rating of a finger, and a digit typed twice.
-const READING_MAX_G: f64 = 100_000.0;
 /// Capacity of the queue of typed lines.
 const LINES_MAX: usize = 8;
 /// Maximum length of a typed line, bytes; the rest is read as another one.

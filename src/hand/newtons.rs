@@ -17,6 +17,10 @@ pub const LOADS: usize = 5;
 pub const LEAST_LOAD_G: i16 = 100;
 /// Smallest limit: below it five loads are too close to each other.
 pub const LEAST_LIMIT_G: i16 = 250;
+/// Largest limit, g: what a finger may press a kitchen scale with.
+pub const MOST_LIMIT_G: i16 = 1000;
+/// Largest reading of a scale that can be typed, g.
+pub const READING_MAX_G: f64 = 100_000.0;
 /// Share of newtons by which the fit may be uncertain.
 pub const BOUND_MAX: f64 = 0.08;
 /// Deviation of the fingertip's normal force from the fit that is reported, as a share.

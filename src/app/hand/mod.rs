@@ -11,6 +11,7 @@ pub mod mover;
 mod news_tests;
 pub mod newtons;
 pub mod running;
+pub mod scale;
 
 use crate::app::activity::{Activity, RecordedMover};
 use crate::app::checkup::HandCheckup;
@@ -112,6 +113,7 @@ impl Hand {
             Activity::Following(owner)
         } else if self.running.sequence().is_some_and(SequenceRun::is_running)
             || self.running.holds()
+            || self.running.calibrates()
         {
             Activity::Playing
         } else {
@@ -475,6 +477,9 @@ impl Hand {
             run.leave();
         }
         if let Some(run) = self.running.hold_mut() {
+            run.leave();
+        }
+        if let Some(run) = self.running.scale_mut() {
             run.leave();
         }
         self.connection.take_over();

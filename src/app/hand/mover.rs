@@ -24,6 +24,8 @@ pub enum Mover {
     Playing(EntryId, usize),
     /// A hold between two forces.
     Hold,
+    /// A calibration with a kitchen scale.
+    Scale,
     /// A stored gesture.
     Gesture(Gesture),
     /// A party outside this window, to which the user granted control.
@@ -73,6 +75,9 @@ impl Mover {
         }
         if hand.running.holds() {
             return Some(Self::Hold);
+        }
+        if hand.running.calibrates() {
+            return Some(Self::Scale);
         }
         if link.rest != Rest::Moving || connection.commanded && came_to_rest(hand, now) {
             return None;

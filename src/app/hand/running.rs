@@ -3,6 +3,7 @@
 use crate::app::checkup::CheckupRun;
 use crate::app::env::running::Running;
 use crate::app::hand::hold::{HoldMotion, HoldNews};
+use crate::app::hand::scale::ScaleMotion;
 use crate::app::inputs::FollowRun;
 use crate::app::trials::{SeriesPlan, SeriesRun};
 use crate::checkup::CheckupPlan;
@@ -12,6 +13,7 @@ use crate::link::Owner;
 use crate::motion::hold::HoldView;
 use crate::motion::play::{PlayCommand, PlayProgress};
 use crate::motion::program::{Ended, Progress};
+use crate::motion::scale::ScaleInput;
 use crate::poses::library::EntryId;
 use crate::poses::player::{PlayEnd, PlayPhase, PlayView};
 use crate::record::Abort;
@@ -41,6 +43,8 @@ pub enum MotionRun {
     Follow(FollowRun),
     /// A hold between two forces, also one that has ended.
     Hold(Box<HoldMotion>),
+    /// A calibration with a kitchen scale, also one that has ended.
+    Scale(Box<ScaleMotion>),
 }
 
 /// The one place for a program that moves a hand.
@@ -104,6 +108,27 @@ impl RunningMotion {
         }
     }
 
+    /// The calibration with a scale that runs, or ran last.
+    pub const fn scale(&self) -> Option<&ScaleMotion> {
+        match &self.0 {
+            Some(MotionRun::Scale(run)) => Some(run),
+            _ => None,
+        }
+    }
+
+    /// The current or last calibration with a scale, mutable.
+    pub(crate) const fn scale_mut(&mut self) -> Option<&mut ScaleMotion> {
+        match &mut self.0 {
+            Some(MotionRun::Scale(run)) => Some(run),
+            _ => None,
+        }
+    }
+
+    /// True while a calibration with a scale runs.
+    pub fn calibrates(&self) -> bool {
+        self.scale().is_some_and(ScaleMotion::is_running)
+    }
+
     /// True while a hold runs.
     pub fn holds(&self) -> bool {
         self.hold().is_some_and(HoldMotion::is_running)
@@ -131,6 +156,7 @@ impl RunningMotion {
             Some(MotionRun::Trials(run)) => run.end(Abort::Person),
             Some(MotionRun::Checkup(run)) => run.end(Abort::Person),
             Some(MotionRun::Hold(run)) => run.end(Abort::Person),
+            Some(MotionRun::Scale(run)) => run.answer(ScaleInput::Abort(Abort::Person)),
             Some(MotionRun::Arming(..) | MotionRun::Sequence(_) | MotionRun::Follow(_)) | None => {}
         }
     }

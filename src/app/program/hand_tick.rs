@@ -10,7 +10,7 @@ use crate::app::notices::NoticeKind;
 use crate::app::params::ParamsHand;
 use crate::app::poses::PoseState;
 use crate::app::procedures::Procedure;
-use crate::app::program::inputs;
+use crate::app::program::{inputs, scale};
 use crate::app::program::taring;
 use crate::app::recordings::recording::{HandRecording, RecordingTarget};
 use crate::app::settings::Settings;
@@ -49,13 +49,19 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
         ctx.notify(NoticeKind::NotHolding { grip });
     }
     tick_hold(hand, ctx);
-    if !hand.running.sequence().is_some_and(SequenceRun::is_running) && !hand.running.holds() {
+    scale::tick(hand, ctx);
+    if !hand.running.sequence().is_some_and(SequenceRun::is_running)
+        && !hand.running.holds()
+        && !hand.running.calibrates()
+    {
         restore_rested(hand);
     }
     inputs::tick(hand, shared.settings, shared.poses, ctx);
     hand.need_key(shared.settings.hold_to_run);
     hand.tick_requests(ctx);
-    let holds = hand.running.holds() || hand.running.sequence().is_some_and(SequenceRun::holds);
+    let holds = hand.running.holds()
+        || hand.running.calibrates()
+        || hand.running.sequence().is_some_and(SequenceRun::holds);
     let is_idle = !holds && hand.connection.idle(ctx.now).is_some();
     if shared.settings.disarm_idle && is_idle {
         hand.disarm(ctx.now);

@@ -12,6 +12,7 @@ mod pinch;
 mod pose_actions;
 pub(crate) mod quirk_notes;
 mod saved;
+mod scale;
 mod taring;
 
 use crate::app::action::Action;
@@ -233,6 +234,9 @@ impl App {
                 hands::with_shown(state, env, |hand, settings, ctx| {
                     hold::hold(hand, action, settings, ctx);
                 });
+            }
+            Action::Scale(action) => {
+                hands::with_shown(state, env, |hand, _, ctx| scale::scale(hand, action, ctx));
             }
             Action::Gesture(gesture) => hands::with_shown(state, env, |hand, settings, ctx| {
                 hand.gesture(gesture, settings.gesture_route, ctx);

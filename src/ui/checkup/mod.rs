@@ -1,12 +1,14 @@
 //! The check-up of the hand: preconditions and progress at the left, results of the last one beside them. Stores check boxes
 //! only; every change is an action.
 
+mod newtons;
 mod report;
 mod table;
 
 use crate::app::action::Action;
 use crate::app::checkup::{CheckupAction, CheckupRun};
 use crate::checkup::{CheckupPlan, expected};
+use crate::ui::checkup::newtons::NewtonsPanel;
 use crate::ui::checkup::report::ReportView;
 use crate::ui::kit::{
     self, Button, Label, Look, Pane, StartButton, StartWish, Weight, format, start_refused,
@@ -21,6 +23,7 @@ pub(crate) struct CheckupPanel {
     is_empty: bool,
     plan: CheckupPlan,
     start: StartButton,
+    newtons: NewtonsPanel,
     report: ReportView,
 }
 
@@ -40,7 +43,10 @@ impl CheckupPanel {
                             pane.actions.push(Action::Stop);
                         }
                     }
-                    None => self.begin_ui(ui, pane),
+                    None => {
+                        self.begin_ui(ui, pane);
+                        self.newtons.ui(ui, pane);
+                    }
                 }
             });
         });

@@ -3,10 +3,12 @@
 use crate::checkup::check::Check;
 use crate::checkup::report::{CheckupReport, Keeping};
 use crate::checkup::subject::{Grade, HandPart, Subject};
+use crate::motion::program::Ended;
+use crate::motion::scale::ScaleEnd;
 use crate::store::calendar::day;
 use crate::ui::style::Look;
 use crate::ui::style::phrase::{Text, texts};
-use crate::ui::text::words;
+use crate::ui::text::{tune, words};
 use std::fmt::Display;
 use std::time::Duration;
 
@@ -46,6 +48,32 @@ texts! {
     CHANNELS: "channels {}", "通道 {}";
     ENDED: "Check-up done: {} to act on, {} to watch.", "体检完成：需处理 {} 项，需关注 {} 项。";
     ENDED_EARLY: "The check-up ended early, its report is partial. {}", "体检提前结束，报告不完整。{}";
+
+    NEWTONS: "Force in newtons", "以牛顿表示的力";
+    NEWTONS_ABOUT: "A kitchen scale tells how many newtons a gram of this hand is. Put it under a finger: the finger presses it gently at five loads, and lets go after each.", "用厨房秤可测出这只手的 1 g 相当于多少牛顿。把秤放在手指下方：手指以五种力轻压，每次压后松开。";
+    SCALE_NONE: "not measured", "未测量";
+    SCALE_PART: "{} of {} loads", "已测 {} / {}";
+    SCALE_KNOWN: "100 g = {} N ±{} %, {}", "100 g = {} N ±{} %，{}";
+    SCALE_LIMIT: "At most, g", "最大力 g", "The largest of the five loads.", "五种力中最大的一种。";
+    SCALE_START: "Press the scale", "压秤测量", "The chosen finger presses the scale in the current arming. Loads measured before at the same limit are not pressed again.", "在当前使能下，所选手指压秤。此前以同一最大力测过的不再重复。";
+    SCALE_FORGET: "Forget", "删除", "Removes what was measured of this finger. Its forces are in grams of this hand again.", "删除这根手指的测量结果，力重新以此手的克表示。";
+    SCALE_ASK: "Load {} of {}: {} presses with {} g of this hand. Type what the scale shows.", "第 {} 次，共 {} 次：{}以此手的 {} g 施压。请输入秤的读数。";
+    SCALE_PRESSING: "{} presses the scale", "{}正在压秤";
+    SCALE_WAITS: "The finger is moving: wait for the next load.", "手指正在动作，请等待下一次施压。";
+    SCALE_DOUBT: "That reading does not fit the others: the load is pressed again.", "该读数与其他读数不符，将重新施压。";
+    SCALE_SHOWS: "The scale shows, g", "秤的读数 g", "Applied with Enter.", "按回车键确认。";
+    SCALE_AGAIN: "Press again", "重压", "Presses the same load again.", "以同样的力再压一次。";
+    SCALE_SKIP: "Skip", "跳过", "Leaves this load out.", "不测此力。";
+    SCALE_FINISH: "End", "结束", "Lets go of the scale and ends. Accepted loads remain.", "松开秤并结束，已接受的读数保留。";
+    SCALE_DONE: "measured", "已测完";
+    SCALE_INCOMPLETE: "ended before all five loads were measured", "五种力尚未测完";
+    SCALE_CONTRADICTED: "the readings contradict each other, and none was kept", "读数互相矛盾，均未保留";
+    SCALE_NO_CONTACT: "the finger met no scale", "手指没有碰到秤";
+    SCALE_ZERO: "the force reads too much without a load: calibrate the force sensors first", "空载时力读数过大：请先校准力传感器";
+    SCALE_NOT_OPENED: "something is in the way, so the finger did not open", "有障碍，手指没有张开";
+    SCALE_UNSTEADY: "the force did not become steady", "力没有稳定下来";
+    SCALE_LATE: "the finger did not get there in time", "手指未能按时到位";
+    SCALE_NO_ANSWER: "no reading was typed for two minutes", "两分钟内没有输入读数";
 
     COLUMN_OF: "Part", "部位";
     COLUMN_WHAT: "What", "项目";
@@ -129,6 +157,23 @@ pub(crate) const fn part(of: HandPart) -> Text {
         HandPart::Fingertip(finger) => words::finger(finger),
         HandPart::Hand => HAND,
     }
+}
+
+/// How a calibration with a scale ended.
+pub(crate) fn scale_end(look: Look, end: Ended<ScaleEnd>) -> String {
+    let text = match end {
+        Ok(ScaleEnd::Done) => SCALE_DONE,
+        Ok(ScaleEnd::Incomplete) => SCALE_INCOMPLETE,
+        Ok(ScaleEnd::Contradicted) => SCALE_CONTRADICTED,
+        Ok(ScaleEnd::NoContact) => SCALE_NO_CONTACT,
+        Ok(ScaleEnd::ZeroOff) => SCALE_ZERO,
+        Ok(ScaleEnd::NotOpened) => SCALE_NOT_OPENED,
+        Ok(ScaleEnd::Unsteady) => SCALE_UNSTEADY,
+        Ok(ScaleEnd::Late) => SCALE_LATE,
+        Ok(ScaleEnd::NoAnswer) => SCALE_NO_ANSWER,
+        Err(why) => return tune::abort(look, why),
+    };
+    look.tr(text).to_owned()
 }
 
 /// Advice about a value, and its drift.

@@ -3,6 +3,7 @@
 
 use crate::app::action::Action;
 use crate::app::hand::hold::HoldAction;
+use crate::app::hand::scale::ScaleAction;
 use crate::app::hand::mover::{Mover, rests};
 use crate::app::inputs::InputAction;
 use crate::app::notices::{Level, Notice, NoticeKind};
@@ -253,6 +254,10 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
     Some(match Mover::of(pane.hand(), pane.state.now)? {
         Mover::Stop => (tr(window::MOVES_STOP), None),
         Mover::Calibration => (tr(window::MOVES_CALIBRATION), None),
+        Mover::Scale => {
+            let finish = Action::Scale(ScaleAction::Finish);
+            (tr(checkup::NEWTONS), Some(finish))
+        }
         Mover::Hold => (tr(hold::MOVES), Some(Action::Hold(HoldAction::End))),
         Mover::Series(number, total) => {
             let words = format!("{} {number} / {total}", look.tr(tune::COLUMN_TRIAL));

@@ -10,6 +10,7 @@ use handscope::app::effect::ActionEffect;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::app::files::export::{Export, TrafficForm};
 use handscope::app::hand::hold::HoldAction;
+use handscope::app::hand::scale::ScaleAction;
 use handscope::app::hand::list::HandsAction;
 use handscope::app::inputs::InputAction;
 use handscope::app::layout::Layout;
@@ -223,6 +224,12 @@ fn all(things: Things) -> Vec<Action> {
         Action::Hold(HoldAction::Repeat("egg".into())),
         Action::Hold(HoldAction::Save),
         Action::Hold(HoldAction::End),
+        Action::Scale(ScaleAction::Start(Dof::Index, Force::nearest(400))),
+        Action::Scale(ScaleAction::Reading(120.0)),
+        Action::Scale(ScaleAction::Again),
+        Action::Scale(ScaleAction::Skip),
+        Action::Scale(ScaleAction::Finish),
+        Action::Scale(ScaleAction::Forget(Dof::Index)),
         Action::MeasureBlock(30.0),
         Action::ForgetBlocks,
         Action::Gesture(Gesture::MIN),

@@ -16,6 +16,7 @@ mod keys;
 mod layout;
 mod mirror;
 mod motion;
+mod newtons;
 mod overshoot;
 mod plots;
 mod poses;

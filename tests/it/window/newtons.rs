@@ -1,0 +1,117 @@
+//! The calibration of a finger's force with a kitchen scale, in the window: what is asked and typed, what is stored, and how it ends.
+
+use crate::setup::window::Bench;
+use egui::Key;
+use handscope::app::action::Action;
+use handscope::hand::newtons::{LOADS, N_PER_G};
+use handscope::hand::{Dof, Finger, PerDof};
+use handscope::poses::Preset;
+use handscope::sim::object::{Object, Obstacle};
+use handscope::sim::{Scenario, SimConfig};
+use handscope::ui::View;
+
+const START: &str = "Press the scale";
+const SHOWS: &str = "The scale shows, g";
+
+/// A hand whose index finger is above a scale, with the check-up shown.
+fn at_a_scale() -> Bench {
+    let config = SimConfig {
+        scenario: Scenario::Free,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::keeping(config);
+    bench.wait(1000);
+    let contacts = PerDof::from_fn(|dof| (dof == Dof::Index).then(|| Obstacle::at(900.0, 6.4)));
+    bench.hand(|hand, _| hand.set_object(&Object::touched_at(contacts)));
+    bench.show(View::Checkup);
+    bench.run(200);
+    bench
+}
+
+fn begin(bench: &mut Bench) {
+    bench.click("Arm the hand");
+    bench.run(300);
+    bench.click_button(START);
+    bench.run(300);
+    assert!(bench.state().hand().running.calibrates());
+}
+
+fn asked(bench: &Bench) -> Option<usize> {
+    let run = bench.state().hand().running.scale()?;
+    run.asked.map(|(load, _)| load)
+}
+
+/// Types what a scale shows that reads this share of the hand's grams.
+fn answer(bench: &mut Bench, share: f64) {
+    bench.until(60_000, |bench| asked(bench).is_some());
+    bench.wait(1500);
+    let load_g = bench.hand(|hand, _| hand.true_loads())[Finger::Index];
+    bench.type_into(SHOWS, &format!("{:.0}", load_g * share));
+    bench.key(Key::Enter);
+    bench.run(100);
+}
+
+#[test]
+fn five_readings_make_newtons_which_are_shown_and_stored() {
+    let mut bench = at_a_scale();
+    begin(&mut bench);
+    for _ in 0..LOADS {
+        answer(&mut bench, 0.72);
+    }
+    bench.until(60_000, |bench| !bench.state().hand().running.calibrates());
+    bench.run(500);
+    let per_g = bench.state().hand().newtons.per_g(Dof::Index).unwrap();
+    let wanted = 0.72 * N_PER_G;
+    assert!((per_g / wanted - 1.0).abs() < 0.08, "{per_g} {wanted}");
+    assert!(bench.state().hand().connection.status.armed.is_none());
+    assert!(!bench.buttons_with("Index: 100 g = 0.7").is_empty());
+    assert!(bench.shows("Index: measured"), "{:?}", bench.texts());
+    bench.click_button("Forget");
+    bench.run(500);
+    assert_eq!(bench.state().hand().newtons.per_g(Dof::Index), None);
+    assert!(!bench.buttons_with("Index: not measured").is_empty());
+}
+
+#[test]
+fn unarmed_nothing_is_pressed_and_a_stop_ends_a_calibration() {
+    let mut bench = at_a_scale();
+    let writes = bench.writes().len();
+    bench.click_button(START);
+    bench.run(300);
+    assert_eq!(bench.writes().len(), writes, "nothing is sent");
+    begin(&mut bench);
+    bench.until(60_000, |bench| asked(bench).is_some());
+    bench.act(Action::Stop);
+    bench.run(1500);
+    assert!(!bench.state().hand().running.calibrates());
+    assert!(bench.state().hand().connection.status.armed.is_none());
+}
+
+#[test]
+fn moving_a_joint_takes_the_hand_over_from_a_calibration() {
+    let mut bench = at_a_scale();
+    begin(&mut bench);
+    bench.act(Action::Preset(Preset::Open));
+    bench.run(300);
+    assert!(!bench.state().hand().running.calibrates());
+    assert!(bench.state().hand().connection.is_armed());
+    bench.wait(3000);
+    let angles = bench.hand(|hand, _| hand.true_angles());
+    assert!(angles[Dof::Index] > 950.0, "{angles:?}");
+}
+
+#[test]
+fn accepted_readings_remain_when_it_ends_early() {
+    let mut bench = at_a_scale();
+    begin(&mut bench);
+    answer(&mut bench, 0.8);
+    answer(&mut bench, 0.8);
+    bench.until(60_000, |bench| asked(bench).is_some());
+    bench.click_button("End");
+    bench.until(60_000, |bench| !bench.state().hand().running.calibrates());
+    bench.run(500);
+    let points = bench.state().hand().newtons.points(Dof::Index).unwrap();
+    assert_eq!(points.points.len(), 2);
+    assert!(!bench.buttons_with("Index: 2 of 5 loads").is_empty());
+    assert_eq!(bench.state().hand().newtons.per_g(Dof::Index), None);
+}
