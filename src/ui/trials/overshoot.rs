@@ -12,7 +12,7 @@ use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
 use egui::{Color32, Role, Sense, Ui, WidgetInfo, vec2};
 use egui_extras::{Column, TableRow};
-use egui_plot::{AxisHints, Line, LineStyle, MarkerShape, Plot, PlotPoints, Points};
+use egui_plot::{AxisHints, Line, LineStyle, MarkerShape, Plot, PlotBounds, PlotPoints, Points};
 
 const ROW: f32 = 20.0;
 /// Maximum share of the height for the table.
@@ -154,11 +154,6 @@ fn plot_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
             hints(AxisHints::new_y())
                 .formatter(|mark, _| scales::number(mark.value, mark.step_size)),
         ])
-        .default_x_bounds(0.0, width)
-        .default_y_bounds(
-            kinds.iter().map(|own| own.mean_over_g).fold(0.0, f64::min),
-            height,
-        )
         .grid_color(palette.grid)
         .grid_fade(0.0)
         .cursor_color(Color32::TRANSPARENT)
@@ -169,7 +164,10 @@ fn plot_ui(ui: &mut Ui, pane: &Pane<'_>, kinds: &[&MeasuredCloses]) {
         .allow_scroll(false)
         .allow_boxed_zoom(false)
         .allow_double_click_reset(false);
+    let lowest = kinds.iter().map(|own| own.most_over_g).fold(0.0, f64::min);
+    let bounds = PlotBounds::from_min_max([0.0, lowest], [width, height]);
     let shown = plot.show(ui, |plot| {
+        plot.set_plot_bounds(bounds);
         let line = Line::new("", PlotPoints::from_iter(other)).color(palette.muted);
         plot.line(line.style(LineStyle::dashed_dense()).allow_hover(false));
         let pointer = plot.pointer_coordinate();

@@ -121,3 +121,23 @@ fn it_is_kept_for_its_place_and_for_no_other() {
     bench.wait(2000);
     assert_eq!(measured_on(&bench), MeasuredOn::AnotherHand);
 }
+
+#[test]
+fn the_axes_follow_what_is_measured_while_the_chart_is_open() {
+    let mut bench = on_block();
+    short(&mut bench);
+    enter(&mut bench, "Speeds to try", "25");
+    bench.click("This hand");
+    arm(&mut bench);
+    bench.click("Start trials");
+    finish(&mut bench, 60_000);
+    bench.run(60);
+    // Neither number stands in the table.
+    assert!(bench.is_bright("20") && !bench.is_bright("200"));
+    enter(&mut bench, "Speeds to try", "250");
+    arm(&mut bench);
+    bench.click("Start trials");
+    finish(&mut bench, 60_000);
+    bench.run(60);
+    assert!(bench.is_bright("200"), "the speed axis");
+}
