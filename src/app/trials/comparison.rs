@@ -108,8 +108,10 @@ pub struct Comparison {
     pub scores: Vec<Score>,
     /// Reasons why scores do not cover all sessions; empty if they do.
     pub differences: Vec<SessionDifference>,
-    /// Best score by the last criterion passed to [`Self::judge`].
+    /// Best score by the last criterion passed to [`Self::judge`], or that of [`Self::found`].
     pub best: Option<Score>,
+    /// Setting that a search found in the trials of the focused session: the only one to recommend.
+    pub found: Option<TrialSetting>,
 }
 
 /// State used to detect changes: trials are added to a session but never modified.
@@ -151,14 +153,25 @@ impl Comparison {
             scores: scores(summaries(&pooled)),
             differences,
             best: None,
+            found: None,
             focus,
             of,
         }
     }
 
-    /// Selects the best score by this criterion.
-    pub fn judge(&mut self, criterion: Criterion) {
-        self.best = best(&self.scores, criterion).cloned();
+    /// Selects the best score: that of the setting which a search found in the focused session, else the best by this criterion.
+    pub fn judge(&mut self, trials: &TrialsState, criterion: Criterion) {
+        let search = trials.search.as_ref();
+        let search = search.filter(|search| search.session == self.focus);
+        let finding = search.and_then(|search| search.finding.as_ref());
+        let claim = finding.and_then(|finding| finding.result.as_ref().ok());
+        self.found = claim.map(|claim| claim.setting);
+        let scores = &self.scores;
+        self.best = match self.found {
+            Some(setting) => scores.iter().find(|score| score.setting == setting),
+            None => best(scores, criterion),
+        }
+        .cloned();
     }
 
     /// True if this setting has the best score.

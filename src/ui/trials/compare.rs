@@ -6,18 +6,20 @@ use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
 use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{
-    self, Button, ButtonRole, Card, CardButton, Label, Look, Pane, Pick, TextField, Weight,
+    self, Button, ButtonRole, Card, CardButton, Label, Look, Pane, Pick, TextField, ViewRequest,
+    Weight,
 };
 use crate::ui::text::{notices, tune};
 use crate::ui::theme;
 use crate::ui::trials::compare_best::{self, BestView};
-use crate::ui::trials::compare_choice::{ShownSessions, TrialKey};
+use crate::ui::trials::compare_choice::{ResultsPlace, ShownSessions, TrialKey};
 use crate::ui::trials::compare_curves::CurvesView;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::compare_list::SessionSheet;
 use crate::ui::trials::compare_table::{self, TableView};
 use crate::ui::trials::overshoot::{OvershootView, no_trials_ui};
 use crate::ui::trials::tune_live::{self, LiveChart};
+use crate::ui::view::View;
 use egui::{Panel, ScrollArea, Ui, vec2};
 
 const NOTE_CHARS: usize = 300;
@@ -46,20 +48,19 @@ pub(crate) struct ResultsView {
 }
 
 impl ResultsView {
-    /// Draws the results; `fold_ui` draws the left end of their heading.
-    pub(crate) fn ui(
-        &mut self,
-        ui: &mut Ui,
-        pane: &mut Pane<'_>,
-        fold_ui: impl FnOnce(&mut Ui, &mut Pane<'_>),
-    ) {
+    /// Draws the results.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, place: ResultsPlace) {
         let look = pane.look;
         let trials = &pane.state.trials;
         self.chosen.follow(&trials.sessions);
         kit::full_card_ui(ui, look, |ui| {
             let focus = self.chosen.focus.and_then(|id| trials.session(id));
             ui.horizontal(|ui| {
-                fold_ui(ui, pane);
+                if place == ResultsPlace::Alone {
+                    let unfold = Button::text(look, tune::SHOW_PLAN).icon(theme::TO_RIGHT);
+                    let unfold = unfold.weight(Weight::Quiet);
+                    unfold.navigate(ui, pane, ViewRequest::View(View::Tune));
+                }
                 kit::head_ui(ui, look, look.tr(tune::RESULTS), |ui| {
                     if let Some(session) = focus.filter(|_| !self.is_of_hand) {
                         self.files_ui(ui, pane, session);
@@ -97,14 +98,20 @@ impl ResultsView {
             if trials.running != Some(session.id) && ui.available_width() >= BESIDE {
                 ui.horizontal(|ui| words_ui(ui, pane, session));
             }
-            self.session_ui(ui, pane, session);
+            self.session_ui(ui, pane, session, place);
         });
     }
 
     /// Draws the curves above the table, with the best setting beside them if it fits.
-    fn session_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, focus: &TrialSession) {
+    fn session_ui(
+        &mut self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        focus: &TrialSession,
+        place: ResultsPlace,
+    ) {
         let mut comparison = self.comparison(pane, focus.id);
-        comparison.judge(self.best.criterion());
+        comparison.judge(&pane.state.trials, self.best.criterion());
         let room = ui.available_size();
         let run = pane.hand().running.series();
         let runs = run.is_some_and(|run| run.session == focus.id);
@@ -116,7 +123,7 @@ impl ResultsView {
         }
         // No defaults can be saved while the hand is armed: the best setting appears at the end.
         if !runs && room.x >= WIDE {
-            self.best_ui(ui, pane, &comparison, focus);
+            self.best_ui(ui, pane, &comparison, (focus, place));
         }
         let height = compare_table::height(comparison.rows.len());
         let most = (room.y - CURVES_LEAST).max(room.y * 0.4);
@@ -127,9 +134,9 @@ impl ResultsView {
             pane.actions.extend(replay.map(Action::Recording));
         });
         if !runs && (BESIDE..WIDE).contains(&room.x) {
-            self.best_ui(ui, pane, &comparison, focus);
+            self.best_ui(ui, pane, &comparison, (focus, place));
         } else if !runs && room.x < BESIDE {
-            compare_best::best_ui(ui, pane, &comparison);
+            compare_best::best_ui(ui, pane, &comparison, place);
         }
         if runs && ui.available_width() >= BESIDE / 2.0 {
             let width = ui.available_width() * 0.4;
@@ -147,12 +154,12 @@ impl ResultsView {
         ui: &mut Ui,
         pane: &mut Pane<'_>,
         comparison: &Comparison,
-        focus: &TrialSession,
+        (focus, place): (&TrialSession, ResultsPlace),
     ) {
         let width = (ui.available_width() * 0.36).clamp(288.0, 440.0);
         kit::bare(Panel::right("best"), width, theme::GAP_LEFT).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-                self.best.ui(ui, pane, comparison, focus);
+                self.best.ui(ui, pane, comparison, (focus, place));
             });
         });
     }

@@ -7,6 +7,7 @@ use crate::trials::best::{MetricSpread, Score};
 use crate::ui::kit::{self, Label, NumberField, Pane, Pick};
 use crate::ui::text::tune;
 use crate::ui::theme::{self, Palette};
+use crate::ui::trials::compare_choice::ResultsPlace;
 use crate::ui::trials::compare_columns::setting_words;
 use crate::ui::trials::compare_list;
 use crate::ui::trials::promotion::Promotion;
@@ -58,11 +59,13 @@ impl BestView {
         ui: &mut Ui,
         pane: &mut Pane<'_>,
         comparison: &Comparison,
-        focus: &TrialSession,
+        (focus, place): (&TrialSession, ResultsPlace),
     ) {
         let look = pane.look;
-        self.choice_ui(ui, pane);
-        best_ui(ui, pane, comparison);
+        if comparison.found.is_none() {
+            self.choice_ui(ui, pane);
+        }
+        best_ui(ui, pane, comparison, place);
         let own = pane.hand().connection.name();
         if focus.head.hand != own {
             let words = look.fill(tune::TRIED_ON, &[&focus.head.hand]);
@@ -98,7 +101,12 @@ impl BestView {
 }
 
 /// Draws the best setting, and the button that makes it the default.
-pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison) {
+pub(crate) fn best_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    comparison: &Comparison,
+    place: ResultsPlace,
+) {
     let (look, palette) = (pane.look, pane.look.palette);
     let best = comparison.best.as_ref();
     let none = look.tr(tune::BEST_NONE);
@@ -109,6 +117,8 @@ pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison)
     let joints = comparison.joints.iter();
     let settings = joints.filter_map(|dof| Some((*dof, best?.setting)));
     let promotion = Promotion::of(pane, settings, best.is_none().then_some(none));
+    // The plan has the button beside what the search found.
+    let promotes = comparison.found.is_none() || place == ResultsPlace::Alone;
     ui.horizontal_wrapped(|ui| {
         if best.is_some() {
             let star = Label::new(theme::BEST, color).font(theme::icon());
@@ -116,13 +126,17 @@ pub(crate) fn best_ui(ui: &mut Ui, pane: &mut Pane<'_>, comparison: &Comparison)
         }
         let label = Label::new(&text, color).named(look.tr(tune::BEST));
         label.title().ui(ui);
-        promotion.button_ui(ui, pane, tune::PROMOTE);
+        if promotes {
+            promotion.button_ui(ui, pane, tune::PROMOTE);
+        }
     });
     if let Some(over) = best.and_then(|best| best.overshoot_g) {
         let words = look.fill(tune::BEST_OVER, &[&format!("{:.0}", over.max)]);
         kit::small_text_ui(ui, &words, palette.text);
     }
-    promotion.end_ui(ui, pane);
+    if promotes {
+        promotion.end_ui(ui, pane);
+    }
 }
 
 /// Draws the sessions covered by map and best setting, and the reason why not all are.

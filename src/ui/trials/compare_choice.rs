@@ -1,9 +1,18 @@
-//! Selection in the comparison. Holds no trial.
+//! Place of the results, and the selection in their comparison. Holds no trial.
 
 use crate::app::trials::{SessionId, TrialSession};
 
 /// A trial of a session, by its index.
 pub(crate) type TrialKey = (SessionId, usize);
+
+/// Place of the results.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ResultsPlace {
+    /// Beside the plan, which shows what a search found with its actions.
+    BesidePlan,
+    /// Alone, with a button that opens the plan.
+    Alone,
+}
 
 /// The sessions shown, and the current one, whose words and files can be edited.
 #[derive(Debug, Default)]

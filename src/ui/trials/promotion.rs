@@ -7,7 +7,7 @@ use crate::hand::Dof;
 use crate::params::rows::{ParamId, Value};
 use crate::params::values::Params;
 use crate::trials::TrialSetting;
-use crate::ui::kit::{self, Button, Pane, Weight};
+use crate::ui::kit::{self, Button, Pane};
 use crate::ui::params::flash;
 use crate::ui::text::{Text, device};
 use egui::Ui;
@@ -48,7 +48,7 @@ impl<'a> Promotion<'a> {
 
     /// Draws the button, which asks for confirmation with the card of a save.
     pub(crate) fn button_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, text: Text) {
-        let button = Button::text(pane.look, text).weight(Weight::Strong);
+        let button = Button::text(pane.look, text);
         if button.disabled(self.refusal).ui(ui, pane.look).clicked() {
             let save = ParamAction::SaveWith(self.values.clone());
             pane.actions.push(Action::Param(save));

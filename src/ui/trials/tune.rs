@@ -12,6 +12,7 @@ use crate::ui::text::tune;
 use crate::ui::text::tune::search;
 use crate::ui::theme;
 use crate::ui::trials::compare::ResultsView;
+use crate::ui::trials::compare_choice::ResultsPlace;
 use crate::ui::trials::search_form;
 use crate::ui::trials::tune_form::TuneForm;
 use crate::ui::view::View;
@@ -64,16 +65,12 @@ impl TuneView {
                 }
             });
         });
-        self.results.ui(ui, pane, |_, _| ());
+        self.results.ui(ui, pane, ResultsPlace::BesidePlan);
     }
 
     /// Draws the results over all of `ui`, with the plan collapsed.
     pub(crate) fn results_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        self.results.ui(ui, pane, |ui, pane| {
-            let unfold = Button::text(pane.look, tune::SHOW_PLAN).icon(theme::TO_RIGHT);
-            let unfold = unfold.weight(Weight::Quiet);
-            unfold.navigate(ui, pane, ViewRequest::View(View::Tune));
-        });
+        self.results.ui(ui, pane, ResultsPlace::Alone);
     }
 }
 

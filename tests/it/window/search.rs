@@ -95,6 +95,13 @@ fn a_search_is_the_first_thing_and_what_it_finds_becomes_a_pose_and_the_default(
         assert_eq!(sequence.steps.len(), 2);
         assert_eq!(sequence.steps[1].speed, claim.setting.speed);
     }
+    let reading = bench.reading("Best");
+    let (speed, force) = (claim.setting.speed, claim.setting.force);
+    assert_eq!(reading, format!("{} / {} g", speed.get(), force.get()));
+    assert!(
+        !bench.shows("Make it the default"),
+        "one recommendation, one button for it"
+    );
     let button = "Use as default";
     bench.until(5000, |bench| !bench.is_disabled(Role::Button, button));
     bench.click(button);
