@@ -91,11 +91,19 @@ fn value(node: &Node) -> Value {
     match (node.numeric_value(), node.value()) {
         // A number that JSON cannot represent (NaN) becomes null.
         (Some(number), _) => Value::from(number),
-        (None, Some(text)) if node.role() != Role::Label || node.label().is_some() => {
-            Value::from(text)
-        }
-        (None, _) => Value::Null,
+        (None, Some(text)) if node.role() != Role::Label => Value::from(text),
+        (None, Some(text)) => node
+            .label()
+            .map_or(Value::Null, |name| displayed(name, text).into()),
+        (None, None) => Value::Null,
     }
+}
+
+/// Text that is displayed by a label with this name and value. For a screen reader, the value begins with the name.
+pub fn displayed<'a>(name: &str, value: &'a str) -> &'a str {
+    let text = value.strip_prefix(name);
+    let text = text.and_then(|text| text.strip_prefix(": "));
+    text.unwrap_or(value)
 }
 
 fn rounded(points: f64) -> f64 {
@@ -196,8 +204,10 @@ mod tests {
         context.enable_accesskit();
         let mut output = context.run_ui(RawInput::default(), |ui| {
             let reading = ui.label("417");
-            ui.ctx()
-                .accesskit_node_builder(reading.id, |node| node.set_label("Ring angle"));
+            ui.ctx().accesskit_node_builder(reading.id, |node| {
+                node.set_label("Ring angle");
+                node.set_value("Ring angle: 417");
+            });
         });
         output.textures_delta.clear();
         let list = labels_json(&output.platform_output.accesskit_update.unwrap());

@@ -102,16 +102,16 @@ impl<'a> Label<'a> {
 
     /// Draws it at the cursor of `ui`.
     pub(crate) fn ui(self, ui: &mut Ui) -> Response {
-        let rich = RichText::new(self.text).font(self.font).color(self.color);
+        let rich = RichText::new(self.text)
+            .font(self.font.clone())
+            .color(self.color);
         let label = egui::Label::new(rich);
         let response = ui.add(if self.wraps {
             label.wrap()
         } else {
             label.truncate()
         });
-        if let Some(name) = self.name {
-            set_accessible_name(&response, name);
-        }
+        self.name_reading(&response);
         response
     }
 
@@ -133,13 +133,23 @@ impl<'a> Label<'a> {
         let mut response = ui.interact(rect, id, Sense::hover());
         let elided = self.paint(ui, rect);
         response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
-        if let Some(name) = self.name {
-            set_accessible_name(&response, name);
-        }
+        self.name_reading(&response);
         if elided {
             response = response.on_hover_text(self.text);
         }
         response
+    }
+
+    /// Gives a screen reader the name of the quantity with its value: it reads the value of a label alone.
+    fn name_reading(&self, response: &Response) {
+        let Some(name) = self.name else {
+            return;
+        };
+        let value = format!("{name}: {}", self.text.trim());
+        response.ctx.accesskit_node_builder(response.id, |node| {
+            node.set_label(name);
+            node.set_value(value);
+        });
     }
 
     /// Paints the text only: no accessibility node, no tooltip. True if it was truncated.

@@ -18,6 +18,7 @@ use handscope::app::state::State;
 use handscope::exhibit::plan::ExhibitPlan;
 use handscope::hand::{Dof, Force, Moment, SerialSpeed, Speed};
 use handscope::record::LinkState;
+use handscope::shell::headless::labels::displayed;
 use handscope::sim::serve::SharedHand;
 use handscope::sim::{SimConfig, SimHand, SimHands};
 use handscope::transport::{BoxedWire, Dial, Endpoint, PortFound, Wire, pair};
@@ -768,17 +769,21 @@ impl Bench {
         let below = labels.filter(|node| node.rect().top() > top);
         let pair = |node: egui_kittest::Node<'_>| {
             let name = node.accesskit_node().label().unwrap_or_default();
-            (name, node.value().unwrap_or_default())
+            let value = node.value().unwrap_or_default();
+            let text = displayed(&name, &value).to_owned();
+            (name, text)
         };
         below.map(pair).collect()
     }
 
     /// Every text on the screen.
     pub(crate) fn texts(&self) -> Vec<String> {
-        self.harness
-            .query_all_by_role(Role::Label)
-            .filter_map(|node| node.value())
-            .collect()
+        let labels = self.harness.query_all_by_role(Role::Label);
+        let text = |node: egui_kittest::Node<'_>| {
+            let name = node.accesskit_node().label().unwrap_or_default();
+            Some(displayed(&name, &node.value()?).to_owned())
+        };
+        labels.filter_map(text).collect()
     }
 
     /// The text that stands under a name: the first, if there are several.
@@ -796,7 +801,9 @@ impl Bench {
         let labels = self.harness.query_all_by_role(Role::Label);
         let named = labels.filter(|node| node.accesskit_node().label().as_deref() == Some(name));
         let texts = named.filter_map(|node| node.value());
-        texts.map(|text| text.trim().to_owned()).collect()
+        texts
+            .map(|text| displayed(name, &text).trim().to_owned())
+            .collect()
     }
 
     /// Where the handle of a track stands.
@@ -877,6 +884,20 @@ impl Bench {
             }
         }
         found.is_some()
+    }
+
+    /// Texts that are painted cut, with dots at their end, and where.
+    pub(crate) fn cut(&self) -> Vec<(String, Rect)> {
+        let shapes = self.harness.output().shapes.iter();
+        shapes
+            .filter_map(|clipped| match &clipped.shape {
+                egui::Shape::Text(text) if text.galley.elided => {
+                    let place = clipped.shape.visual_bounding_rect();
+                    Some((text.galley.text().to_owned(), place))
+                }
+                _ => None,
+            })
+            .collect()
     }
 
     /// Colours of the frames that are painted around this place.

@@ -15,6 +15,7 @@ use handscope::hand::{
 };
 use handscope::history::{History, MarkKind};
 use handscope::record::LinkState;
+use handscope::shell::headless::labels::displayed;
 use handscope::ui::View;
 use std::time::Duration;
 
@@ -111,7 +112,9 @@ fn choose_window(harness: &mut Harness<'static, Shown>, window: &str) {
 fn reading(harness: &Harness<'static, Shown>, name: &str) -> Option<String> {
     let mut all = harness.query_all_by_role(Role::Label);
     let found = all.find(|node| node.accesskit_node().label().as_deref() == Some(name))?;
-    found.value()
+    found
+        .value()
+        .map(|value| displayed(name, &value).to_owned())
 }
 
 /// A row of the cursors' table.
