@@ -21,7 +21,7 @@ pub const HISTORY_ROWS: usize = 200 * HISTORY_SECONDS as usize;
 pub const CHANNEL_ROWS: usize = 30 * 600;
 /// Number of channels of a fingertip.
 const CHANNELS: usize = 8;
-/// Gap between samples after which measured lines break.
+/// Gap between samples after which measured lines break, and the state of the drives is unknown.
 const GAP_AFTER_S: f64 = 0.5;
 /// Gap after which lines of targets break; they are read about twice a second.
 const TARGET_GAP_AFTER_S: f64 = 3.0;
@@ -110,7 +110,7 @@ impl History {
             tracks: (0..TRACKS).map(empty_track).collect(),
             targets: PerDof::splat(None),
             sent_at: None,
-            status: StatusRuns::new(),
+            status: StatusRuns::new(GAP_AFTER_S),
             marks: Marks::default(),
         }
     }
@@ -317,7 +317,7 @@ impl History {
                 .collect(),
             targets: self.targets,
             sent_at: self.sent_at,
-            status: StatusRuns::new(),
+            status: StatusRuns::new(GAP_AFTER_S),
             marks,
         }
     }

@@ -9,8 +9,8 @@
 )]
 
 use crate::hand::{
-    AngleReading, Dof, Finger, ForceReading, Group, Groups, HandSample, Moment, PerDof, PerFinger,
-    TactileBlock, Timed,
+    AngleReading, CurrentReading, Dof, Finger, ForceReading, Group, Groups, HandSample, Moment,
+    PerDof, PerFinger, Status, TactileBlock, Timed,
 };
 use crate::hand::{Quantity, Touch};
 use crate::history::mark::{MARKS_MAX, MarkKind};
@@ -99,6 +99,30 @@ fn lost_links_and_long_silences_break_the_line_at_every_zoom() {
         let ends = seen.segments[0].last().map(|point| point[0]);
         assert!(ends.is_some_and(|end| end <= 50.0));
     }
+}
+
+#[test]
+fn the_state_of_a_drive_is_unknown_in_each_silence_that_breaks_the_lines() {
+    let mut history = History::new();
+    let fresh = Groups::from_iter([Group::Current, Group::Status]);
+    let tick = |history: &mut History, millis: u64| {
+        let sample = HandSample {
+            current: group(CurrentReading::new(7), millis),
+            status: group(Status::PositionReached, millis),
+            ..HandSample::default()
+        };
+        history.push(&sample, fresh);
+    };
+    for begin in [0, 1400, 3000] {
+        (0..10).for_each(|step| tick(&mut history, begin + step * 100));
+    }
+    let runs = history.status(Dof::Index, 0.0, 10.0);
+    let runs: Vec<_> = runs.map(|run| (run.from_s, run.until_s)).collect();
+    assert_eq!(runs, [(0.0, 2.3), (3.0, 3.9)], "0.5 s are no silence yet");
+    let mut seen = Trace::default();
+    let current = Series::Joint(Quantity::Current, Dof::Index);
+    history.trace(current, 0.0, 10.0, 1000, &mut seen);
+    assert_eq!(seen.segments.len(), runs.len());
 }
 
 #[test]

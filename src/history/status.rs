@@ -5,8 +5,6 @@ use std::collections::VecDeque;
 
 /// Maximum number of runs per joint: one a second for half an hour. The oldest are dropped first.
 const RUNS_MAX: usize = 2048;
-/// After a longer silence the state is unknown.
-const SILENCE_S: f64 = 3.0;
 
 /// A period in which a drive's status and faults did not change.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,14 +23,18 @@ pub struct StatusRun {
 #[derive(Debug, Clone)]
 pub(crate) struct StatusRuns {
     runs: PerDof<VecDeque<StatusRun>>,
+    /// After a longer silence the state is unknown, in seconds.
+    gap_after_s: f64,
     /// False after a gap: the next reading starts a new run.
     goes_on: bool,
 }
 
 impl StatusRuns {
-    pub(crate) fn new() -> Self {
+    /// No runs yet; a silence longer than `gap_after_s` ends one.
+    pub(crate) fn new(gap_after_s: f64) -> Self {
         Self {
             runs: PerDof::from_fn(|_| VecDeque::new()),
+            gap_after_s,
             goes_on: false,
         }
     }
@@ -46,7 +48,7 @@ impl StatusRuns {
         for (dof, runs) in self.runs.iter_mut() {
             let (status, faults) = say(dof);
             let last = runs.back_mut().filter(|_| self.goes_on);
-            if let Some(last) = last.filter(|last| at_s - last.until_s <= SILENCE_S) {
+            if let Some(last) = last.filter(|last| at_s - last.until_s <= self.gap_after_s) {
                 last.until_s = at_s.max(last.until_s);
                 if (last.status, last.faults) == (status, faults) {
                     continue;
@@ -90,7 +92,7 @@ mod tests {
 
     #[test]
     fn what_a_drive_says_is_one_stretch_until_it_says_something_else_or_nobody_listens() {
-        let mut all = StatusRuns::new();
+        let mut all = StatusRuns::new(0.5);
         let none = Some(Faults::default());
         let mut say = |at_s, status| all.push(at_s, |_| (Some(status), none));
         say(1.0, Status::Grasping);
@@ -111,7 +113,7 @@ mod tests {
 
     #[test]
     fn the_oldest_stretches_go_first() {
-        let mut all = StatusRuns::new();
+        let mut all = StatusRuns::new(3.0);
         for second in 0..3000_u16 {
             let status = if second % 2 == 0 {
                 Status::Grasping
