@@ -153,10 +153,10 @@ impl Window {
             typing: &mut typing,
             opens: &mut opens,
         };
+        let view = self.body.view;
         for wish in wishes {
             self.execute(ui, &mut pane, wish);
         }
-        let view = self.body.view;
         match self.parts_ui(ui, &mut pane) {
             Some(PaletteCommand::Wish(wish)) => {
                 stopped |= wish == Wish::Stop;
@@ -168,17 +168,18 @@ impl Window {
             Some(PaletteCommand::Act(action)) => pane.actions.push(action),
             Some(PaletteCommand::Entry(_)) | None => {}
         }
+        if let Some(opens) = opens {
+            self.open(opens, state.now);
+            ui.request_repaint();
+        }
+        let actions = stop_first(actions, stopped);
         typing.after(&actions);
         if view != self.body.view && typing.refused.is_some() {
             typing = Typing::default();
         }
         self.typing = typing;
         self.typed = ui.ctx().text_edit_focused();
-        if let Some(opens) = opens {
-            self.open(opens, state.now);
-            ui.request_repaint();
-        }
-        stop_first(actions, stopped)
+        actions
     }
 
     /// True if a key may be meant for a field that had the focus a moment ago.

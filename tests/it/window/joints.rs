@@ -216,7 +216,14 @@ fn no_tooltip_covers_a_joint_until_the_pointer_has_left_its_track() {
 #[test]
 fn a_refused_text_goes_with_the_next_key_stop_or_motion() {
     type Way = fn(&mut Bench);
-    let ways: [(&str, Way); 4] = [
+    let ways: [(&str, Way); 6] = [
+        ("another tab", |bench| {
+            bench.click("Tune");
+            bench.run(60);
+            assert!(!bench.shows("Correct the plan first."));
+            bench.click("Live");
+        }),
+        ("Space", |bench| bench.key(egui::Key::Space)),
         ("Enter", |bench| bench.key(egui::Key::Enter)),
         ("Esc", |bench| bench.key(egui::Key::Escape)),
         ("STOP", |bench| bench.click_button("STOP")),
