@@ -66,9 +66,11 @@ impl Rooms {
         let is_upright = room != WindowRoom::Strip;
         let extent = along(ui.available_size(), is_upright);
         let standing = self.layouts.room(room);
-        // In a window of another size, or with another share, the panel starts anew.
+        // In a window of another size, with another share, or beside a view of another width, the panel starts anew: the limits
+        // of one view leave no trace in the next.
+        let sizes = [extent, size.rest, size.designed].map(f32::to_bits);
         let share = standing.share.map(f32::to_bits);
-        let salt = (room, self.resets, share, extent.to_bits());
+        let salt = (room, self.resets, share, sizes);
         let (panel, gap) = if is_upright {
             (Panel::left(salt), theme::GAP_RIGHT)
         } else {
