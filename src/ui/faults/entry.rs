@@ -9,7 +9,10 @@ use crate::ui::kit::{self, Button, Label, Pane, format};
 use crate::ui::recordings::stretch::ReplayedStretch;
 use crate::ui::text::{Text, notices, words};
 use crate::ui::theme;
-use egui::{CornerRadius, Frame, Margin, Rect, Role, ScrollArea, Sense, Ui, WidgetInfo, vec2};
+use egui::{
+    Color32, CornerRadius, Frame, Margin, Pos2, Rect, Response, Role, ScrollArea, Sense, Stroke,
+    Ui, Vec2, WidgetInfo, vec2,
+};
 use std::time::Duration;
 
 /// Replayed duration of a fault that persists.
@@ -200,20 +203,51 @@ pub(crate) fn mark(ui: &Ui, center: egui::Pos2, color: egui::Color32) {
 
 /// Draws a ring if this joint has unseen faults.
 pub(crate) fn unseen_mark_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) {
-    let mut unseen = pane.hand().readings.faults.unseen();
-    let Some(first) = unseen.find(|entry| entry.dof == dof) else {
+    let Some(first) = unseen_of(pane, dof) else {
         return;
     };
-    let palette = pane.look.palette;
-    let is_active = first.is_active();
     let (place, response) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
-    let color = if is_active { palette.bad } else { palette.warn };
-    mark(ui, place.center(), color);
+    mark(ui, place.center(), unseen_color_of(pane, first));
+    name_unseen(pane, &response, first);
+}
+
+/// Draws a ring around the lamp at this position if the joint has unseen faults: where a row is narrow.
+pub(crate) fn unseen_ring_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof, lamp: Pos2) {
+    let id = ui.next_auto_id();
+    ui.skip_ahead_auto_ids(1);
+    let Some(first) = unseen_of(pane, dof) else {
+        return;
+    };
+    let radius = theme::LAMP + theme::HALO;
+    let stroke = Stroke::new(1.6, unseen_color_of(pane, first));
+    ui.painter().circle_stroke(lamp, radius, stroke);
+    let place = Rect::from_center_size(lamp, Vec2::splat(2.0 * radius));
+    name_unseen(pane, &ui.interact(place, id, Sense::hover()), first);
+}
+
+fn unseen_of<'a>(pane: &Pane<'a>, dof: Dof) -> Option<&'a FaultEntry> {
+    let mut unseen = pane.hand().readings.faults.unseen();
+    unseen.find(|entry| entry.dof == dof)
+}
+
+const fn unseen_color_of(pane: &Pane<'_>, entry: &FaultEntry) -> Color32 {
+    let palette = pane.look.palette;
+    if entry.is_active() {
+        palette.bad
+    } else {
+        palette.warn
+    }
+}
+
+fn name_unseen(pane: &Pane<'_>, response: &Response, first: &FaultEntry) {
+    let dof = first.dof;
     let joint = pane.look.tr(words::dof(dof));
     let name = format!("{joint} {}", pane.look.tr(notices::UNSEEN_MARK));
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     let tip = title(pane, dof, first.what);
-    response.on_hover_text(format!("{tip}\n{}", pane.look.tr(notices::OVER_UNSEEN)));
+    response
+        .clone()
+        .on_hover_text(format!("{tip}\n{}", pane.look.tr(notices::OVER_UNSEEN)));
 }
 
 /// Start, duration and count, as far as the title does not include them.
@@ -234,16 +268,10 @@ fn times(pane: &Pane<'_>, entry: &FaultEntry) -> String {
 }
 
 /// Colour of the unseen faults: conspicuous while one is active. `None` if all were seen.
-pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<egui::Color32> {
-    let palette = pane.look.palette;
-    let mut unseen = pane.hand().readings.faults.unseen();
-    let first = unseen.next()?;
+pub(crate) fn unseen_color(pane: &Pane<'_>) -> Option<Color32> {
     // Active faults come first.
-    Some(if first.is_active() {
-        palette.bad
-    } else {
-        palette.warn
-    })
+    let first = pane.hand().readings.faults.unseen().next()?;
+    Some(unseen_color_of(pane, first))
 }
 
 /// Draws the button that marks all faults as seen.

@@ -8,6 +8,9 @@ use egui::{Color32, Id, Rect, Ui, vec2};
 /// Width of the readings at the right.
 pub(crate) const READING: f32 = 112.0;
 
+/// Width of the caption of a track; where a row has no caption, of its warnings.
+pub(crate) const CAPTION: f32 = 40.0;
+
 /// One joint with its name and colour.
 pub(crate) struct JointRow {
     pub(crate) dof: Dof,

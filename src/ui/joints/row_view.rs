@@ -4,15 +4,18 @@ use crate::app::action::Action;
 use crate::hand::impact::NOTABLE_G;
 use crate::hand::overshoot::Stages;
 use crate::hand::{Dof, Force, Speed};
-use crate::ui::faults::entry::unseen_mark_ui;
+use crate::ui::faults::entry::{unseen_mark_ui, unseen_ring_ui};
 use crate::ui::hand::pointed::{self, PointedPlace};
-use crate::ui::joints::row::{JointRow, READING, cell};
+use crate::ui::joints::row::{CAPTION, JointRow, READING, cell};
 use crate::ui::joints::tracks;
 use crate::ui::kit::DriveWords;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, format};
 use crate::ui::text::{main, notices, tune};
 use crate::ui::theme;
-use egui::{Color32, CursorIcon, Frame, Margin, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Align, Color32, CursorIcon, Frame, Layout, Margin, Rect, Role, Sense, Ui, UiBuilder,
+    WidgetInfo, pos2, vec2,
+};
 
 /// Layout of a row.
 #[derive(Debug, Clone, Copy)]
@@ -51,11 +54,14 @@ pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle
         ui.spacing_mut().interact_size.y = style.line.min(theme::CONTROL);
         line_ui(ui, style.line, |ui| head_ui(ui, pane, &row, style.each));
         line_ui(ui, style.line, |ui| {
-            row.angle_ui(ui, pane, style.linked);
-            let place = cell(ui, READING);
             if style.each {
+                row.angle_ui(ui, pane, style.linked, Some(main::ANGLE));
+                let place = cell(ui, READING);
                 row.angle_reading_ui(ui, place, pane)
             } else {
+                warnings_ui(ui, pane, &row);
+                row.angle_ui(ui, pane, style.linked, None);
+                let place = cell(ui, READING);
                 row.short_reading_ui(ui, place, pane)
             }
         });
@@ -95,16 +101,26 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     Label::new(row.name, pane.look.palette.text).put(ui, name);
     kit::right_ui(ui, |ui| {
         lock_ui(ui, pane, row);
-        if !each {
+        if each {
+            impact_ui(ui, pane, row);
+            unseen_mark_ui(ui, pane, row.dof);
+        } else {
             let place = cell(ui, 96.0);
             row.drive_reading_ui(ui, place, pane);
         }
-        impact_ui(ui, pane, row);
-        if !each {
-            other_ui(ui, pane, row);
-        }
-        unseen_mark_ui(ui, pane, row.dof);
         status_ui(ui, pane, row, each);
+    });
+}
+
+/// Draws the warnings of a narrow row where a wide one has the caption of its track: beside the state they would cut its words.
+fn warnings_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
+    let place = cell(ui, CAPTION);
+    let builder = UiBuilder::new()
+        .max_rect(place)
+        .layout(Layout::left_to_right(Align::Center));
+    ui.scope_builder(builder, |ui| {
+        impact_ui(ui, pane, row);
+        other_ui(ui, pane, row);
     });
 }
 
@@ -115,6 +131,9 @@ fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     row.explain_ui(ui, pane, rect, &drive);
     let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
     kit::lamp(ui, lamp, drive.lamp);
+    if !each {
+        unseen_ring_ui(ui, pane, row.dof, lamp);
+    }
     let name = row.named(pane, main::STATUS);
     let title = if each { &drive.title } else { &drive.short };
     let label = Label::new(title, drive.text).small().named(&name);

@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::app::settings::AngleUnit;
 use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::ui::hand::aim;
-use crate::ui::joints::row::{JointRow, READING, cell};
+use crate::ui::joints::row::{CAPTION, JointRow, READING, cell};
 use crate::ui::joints::track::{Actual, SlideTrack};
 use crate::ui::kit::{self, Label, Look, NumberField, Pane};
 use crate::ui::style::format::UNKNOWN;
@@ -14,7 +14,8 @@ use egui::{Align, Id, Layout, Rect, Ui};
 
 /// A caption, a slider and a number field in a row.
 struct TrackRow<'a> {
-    caption: Text,
+    /// `None` if the caller filled its space.
+    caption: Option<Text>,
     number_name: &'a str,
     id: Id,
     track: SlideTrack<'a>,
@@ -29,9 +30,10 @@ impl TrackRow<'_> {
     /// Draws it. Returns the value that the user set in this frame.
     fn ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<i16> {
         let look = pane.look;
-        let caption = Label::new(look.tr(self.caption), look.palette.muted);
-        let place = cell(ui, 40.0);
-        caption.small().put(ui, place);
+        if let Some(caption) = self.caption {
+            let place = cell(ui, CAPTION);
+            Label::note(look, caption).put(ui, place);
+        }
         let width = ui.available_width() - theme::FIELD - theme::GAP - self.after;
         let place = cell(ui, width);
         let moved = self.track.put(ui, look, place, self.id);
@@ -77,14 +79,20 @@ impl TrackRow<'_> {
 }
 
 impl JointRow {
-    /// Draws the target over the actual angle.
-    pub(crate) fn angle_ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, linked: bool) {
+    /// Draws the target over the actual angle, after a caption unless the caller filled its space.
+    pub(crate) fn angle_ui(
+        &self,
+        ui: &mut Ui,
+        pane: &mut Pane<'_>,
+        linked: bool,
+        caption: Option<Text>,
+    ) {
         let (look, hand) = (pane.look, pane.hand());
         let joint = hand.controls.joints[self.dof];
         let (angle, freshness) = pane.newest(self.dof, hand.readings.sample.angle);
         let name = self.named(pane, main::NAME_ANGLE_TARGET);
         let setting = TrackRow {
-            caption: main::ANGLE,
+            caption,
             number_name: &self.named(pane, main::NAME_ANGLE_NUMBER),
             id: self.id("angle"),
             track: SlideTrack {
@@ -138,7 +146,7 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
         track.peak = hand.readings.peaks.get(row.dof).map(|(grams, _)| grams);
     }
     let setting = TrackRow {
-        caption: main::FORCE,
+        caption: Some(main::FORCE),
         number_name: &named(pane, row, main::NAME_FORCE_NUMBER),
         id: id_of(row, "force"),
         scale: NumberScale::whole(track.max),
@@ -167,7 +175,7 @@ pub(crate) fn speed_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
     });
     let name = named(pane, row, main::NAME_SPEED);
     let setting = TrackRow {
-        caption: main::SPEED,
+        caption: Some(main::SPEED),
         number_name: &named(pane, row, main::NAME_SPEED_NUMBER),
         id: id_of(row, "speed"),
         track: SlideTrack {
