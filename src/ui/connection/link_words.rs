@@ -7,6 +7,21 @@ use crate::ui::kit::{Look, Pane};
 use crate::ui::text::{Text, main};
 use egui::Color32;
 
+/// Every word for a state of the link.
+pub(crate) fn all() -> [Text; 8] {
+    let state = main::link_state;
+    [
+        main::STATE_LOST,
+        main::STATE_CONNECTING,
+        state(LinkState::Offline),
+        state(LinkState::Identifying),
+        state(LinkState::Monitoring),
+        state(LinkState::Armed),
+        state(LinkState::Holding),
+        state(LinkState::Fault),
+    ]
+}
+
 /// Word and colour of the shown hand's link state.
 pub(crate) fn link_words(pane: &Pane<'_>) -> (Text, Color32) {
     link_words_of(pane.look, pane.hand())

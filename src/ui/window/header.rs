@@ -5,7 +5,7 @@ use crate::app::hand::Hand;
 use crate::app::recordings::RecordingAction;
 use crate::record::ArmRefusal;
 use crate::record::file::RecorderStatus;
-use crate::ui::connection::link_words::link_words;
+use crate::ui::connection::link_words::{self, link_words};
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::kit::{self, Button, Label, Look, Pane, ViewRequest, Weight, format};
 use crate::ui::text::{inputs, main, notices, recordings, words};
@@ -16,8 +16,12 @@ use egui::{Color32, Rect, Response, Ui, pos2, vec2};
 
 /// Width of STOP, in points.
 const STOP: f32 = 132.0;
-/// Minimum width at which lamps have labels.
-const WORDS: f32 = 860.0;
+/// Minimum width at which the lamp of the recording has a label.
+const WORDS: f32 = 1000.0;
+/// Width of a lamp without a label.
+const LAMP_BUTTON: f32 = 24.0;
+/// Minimum width of an address of which something can be recognised.
+const ADDRESS_LEAST: f32 = 80.0;
 
 /// Draws the bar. STOP is enabled whatever card is open, the rest only if `is_free`.
 pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View, is_free: bool) {
@@ -32,7 +36,7 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View, is_free: b
             None => arm_ui(ui, pane),
         }
         rooms::menu_ui(ui, pane);
-        faults_ui(ui, pane, is_wide);
+        faults_ui(ui, pane);
         recording_ui(ui, pane, is_wide);
         kit::left_ui(ui, |ui| {
             // Drawn first, so that they do not move when the hand's state changes.
@@ -130,9 +134,19 @@ fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     };
     let name = look.tr(text);
     let tip = format!("{}{tip}", look.tip(text));
-    let words = if is_wide { name } else { "" };
+    let all = [
+        recordings::NOT_RECORDING,
+        recordings::RECORDING,
+        recordings::TROUBLE,
+    ]
+    .map(|text| look.tr(text));
+    let (words, all) = if is_wide {
+        (name, &all[..])
+    } else {
+        ("", &[][..])
+    };
     let button = Button::new(words, &tip).named(name).weight(Weight::Quiet);
-    if lamp_button_ui(ui, look, button, color).clicked() {
+    if lamp_button_ui(ui, look, button, Some(color), all).clicked() {
         pane.actions.push(toggle_recording(hand));
     }
 }
@@ -164,41 +178,52 @@ fn recording_words(look: Look, status: &RecorderStatus) -> String {
     lines.iter().map(|line| format!("\n{line}")).collect()
 }
 
-/// A button with a lamp before its text.
-fn lamp_button_ui(ui: &mut Ui, look: Look, button: Button<'_>, lamp: Color32) -> Response {
-    let words = match button.text {
-        "" => 0.0,
-        text => kit::text_width(ui, text, theme::body()) + theme::GAP,
+/// A button with a lamp before its text. It is as wide as the widest of `all` texts that may stand there, so that its neighbours
+/// stay where they are.
+fn lamp_button_ui(
+    ui: &mut Ui,
+    look: Look,
+    button: Button<'_>,
+    lamp: Option<Color32>,
+    all: &[&str],
+) -> Response {
+    let width = |text: &&str| kit::text_width(ui, text, theme::body());
+    let widest = all.iter().map(width).fold(0.0, f32::max);
+    let words = if widest > 0.0 {
+        widest + theme::GAP
+    } else {
+        0.0
     };
-    let size = vec2(words + 24.0, theme::CONTROL_LARGE);
+    let size = vec2(words + LAMP_BUTTON, theme::CONTROL_LARGE);
     let (id, rect) = ui.allocate_space(size);
     let response = button.ground(ui, look, rect, id);
-    let center = pos2(rect.left() + 12.0, rect.center().y);
-    kit::lamp(ui, center, lamp);
+    if let Some(lamp) = lamp {
+        let center = pos2(rect.left() + 12.0, rect.center().y);
+        kit::lamp(ui, center, lamp);
+    }
     let words = rect.with_min_x(rect.left() + 22.0);
     Label::new(button.text, look.palette.text).paint(ui, words);
     response
 }
 
 /// Button for the faults, with the number of unseen ones.
-fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
+fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
+    let title = look.tr(main::TAB_FAULTS);
+    let widest = format!("{title} 99");
+    let all = [widest.as_str()];
     let pressed = match fault_entry::unseen_color(pane) {
         None => {
-            let button = Button::text(look, main::TAB_FAULTS);
-            button.weight(Weight::Quiet).ui(ui, look)
+            let button = Button::text(look, main::TAB_FAULTS).weight(Weight::Quiet);
+            lamp_button_ui(ui, look, button, None, &all)
         }
         Some(color) => {
             let count = pane.hand().readings.faults.unseen().count();
             let (before, after) = (look.tr(notices::UNSEEN_BEFORE), look.tr(notices::UNSEEN));
             let name = format!("{before} {count} {after}");
-            let words = if is_wide {
-                name.clone()
-            } else {
-                count.to_string()
-            };
-            let button = Button::new(words.trim(), look.tip(notices::UNSEEN));
-            lamp_button_ui(ui, look, button.named(name.trim()), color)
+            let words = format!("{title} {count}");
+            let button = Button::new(&words, look.tip(notices::UNSEEN));
+            lamp_button_ui(ui, look, button.named(name.trim()), Some(color), &all)
         }
     };
     if pressed.clicked() {
@@ -206,7 +231,7 @@ fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     }
 }
 
-/// Name of the hand, with state and quality of its link.
+/// Name of the hand, with state and quality of its link, then its address as far as there is space.
 fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     badge_ui(ui, pane);
     let look = pane.look;
@@ -215,15 +240,37 @@ fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let name = format!("{}: {word}", look.tr(main::LINK_BUTTON));
     let tip = link_tip(pane);
     let button = Button::new(word, &tip).named(&name).weight(Weight::Quiet);
-    if lamp_button_ui(ui, look, button, color).clicked() {
+    let all = link_words::all().map(|text| look.tr(text));
+    if lamp_button_ui(ui, look, button, Some(color), &all).clicked() {
         pane.open(ViewRequest::View(View::Connection));
     }
+    let most = format!("{} 9999", look.tr(main::ERRORS));
+    let errors_width = kit::text_width(ui, &most, theme::small());
+    let spare = ui.available_width() - LAMP_BUTTON - 2.0 * theme::GAP - errors_width;
+    address_ui(ui, pane, spare - theme::GAP);
     let errors = errors(pane);
-    if errors > 0 && pane.state.timeline.is_none() {
+    if errors > 0 && spare >= 0.0 && pane.state.timeline.is_none() {
         let words = format!("{} {errors}", look.tr(main::ERRORS));
         let label = Label::new(&words, look.palette.warn).small();
         label.ui(ui).on_hover_text(look.tip(main::ERRORS));
     }
+}
+
+/// Address of a real hand, truncated to a width in points; nothing if too little of it would be left.
+fn address_ui(ui: &mut Ui, pane: &Pane<'_>, width: f32) {
+    let connection = &pane.hand().connection;
+    let Some(endpoint) = &connection.endpoint else {
+        return;
+    };
+    if connection.is_simulated() || width < ADDRESS_LEAST {
+        return;
+    }
+    let text = endpoint.to_string();
+    let width = width.min(kit::text_width(ui, &text, theme::number()) + 1.0);
+    let (_, place) = ui.allocate_space(vec2(width, theme::CONTROL));
+    let label = Label::new(&text, pane.look.palette.muted).number();
+    let tip = pane.look.tr(main::ENDPOINT_TIP);
+    label.put(ui, place).on_hover_text(tip);
 }
 
 /// Number of wire errors since connecting.
@@ -251,7 +298,7 @@ fn link_tip(pane: &Pane<'_>) -> String {
     )
 }
 
-/// Badge of the built-in hand, or address of the real one.
+/// Badge of the built-in hand, of a real one or of a recording.
 fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let palette = look.palette;
@@ -273,19 +320,11 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
         badge.on_hover_text(look.tip(recordings::RECORDED));
     } else if simulated {
         badge.on_hover_text(look.tip(main::SIMULATED));
-    }
-    if let (Some(endpoint), false) = (&connection.endpoint, simulated) {
-        let text = endpoint.to_string();
-        let width = kit::text_width(ui, &text, theme::number());
-        if width + LINK < ui.available_width() {
-            let label = Label::new(&text, palette.muted).number().ui(ui);
-            label.on_hover_text(look.tr(main::ENDPOINT_TIP));
-        }
+    } else if let Some(endpoint) = &connection.endpoint {
+        // A narrow window has no space for the address itself.
+        badge.on_hover_text(endpoint.to_string());
     }
 }
-
-/// Width that the link and the sharing indicator need, in points.
-const LINK: f32 = 220.0;
 
 /// A tab button, marked while its tab is open.
 fn tab_ui(ui: &mut Ui, pane: &mut Pane<'_>, tab: Tab, is_open: bool) {
@@ -331,7 +370,8 @@ fn sharing_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         ""
     };
     let button = Button::new(words, &tip).named(&name).weight(Weight::Quiet);
-    if lamp_button_ui(ui, look, button, look.palette.accent).clicked() {
+    let lamp = Some(look.palette.accent);
+    if lamp_button_ui(ui, look, button, lamp, &[words]).clicked() {
         pane.open(ViewRequest::View(View::Inputs));
     }
 }

@@ -2,6 +2,9 @@
 
 use crate::setup::window::{Bench, LARGE, Role};
 use egui::{Key, Modifiers, Pos2, Rect, Vec2, vec2};
+use handscope::app::action::Action;
+use handscope::app::inputs::InputAction;
+use handscope::hand::{Dof, Fault};
 use handscope::sim::SimConfig;
 use handscope::ui::View;
 
@@ -262,5 +265,98 @@ fn shut_joints_still_show_angle_force_and_lamp() {
                 .is_ok()
         );
         assert!(bench.reading(&format!("{joint} live force")).ends_with('g'));
+    }
+}
+
+#[test]
+fn looking_at_another_view_leaves_no_trace_in_the_layout() {
+    for size in [vec2(1366.0, 768.0), LARGE, vec2(1920.0, 1080.0)] {
+        let mut bench = Bench::open(SimConfig::default(), size);
+        bench.run(400);
+        let before = borders(&bench);
+        for view in [View::Touch, View::Poses, View::Faults, View::Tune] {
+            bench.show(view);
+            bench.run(100);
+            bench.show(View::Live);
+            bench.run(100);
+            assert_eq!(borders(&bench), before, "{size} {view:?}");
+        }
+        assert_eq!(
+            bench.state().settings.layout,
+            handscope::app::layout::Layout::default(),
+            "{size}"
+        );
+    }
+}
+
+/// What stands in the header, with its place.
+fn header(bench: &Bench, names: &[&str]) -> Vec<Rect> {
+    let buttons = bench.all(Role::Button);
+    let place = |name: &&str| {
+        let found = buttons.iter().find(|(button, _)| button.starts_with(name));
+        found.unwrap_or_else(|| panic!("{name}: {buttons:?}")).1
+    };
+    names.iter().map(place).collect()
+}
+
+#[test]
+fn nothing_in_the_header_moves_or_is_covered_when_a_fault_comes_or_the_link_goes() {
+    for size in [
+        vec2(1024.0, 640.0),
+        vec2(1366.0, 768.0),
+        vec2(1920.0, 1080.0),
+    ] {
+        let mut bench = Bench::kept(SimConfig::default(), "tcp:127.0.0.1:6000?unit=255", size);
+        bench.wait(1000);
+        bench.act(Action::Input(InputAction::ReadPad(true)));
+        bench.run(200);
+        let names = [
+            "Live",
+            "Share",
+            "Link state",
+            "Faults",
+            "Window menu",
+            "Arm",
+        ];
+        let before = header(&bench, &names);
+        for finger in [Dof::Index, Dof::Ring, Dof::Little] {
+            bench.hand(|hand, _| hand.inject_fault(finger, Fault::Stall));
+        }
+        bench.run(400);
+        assert!(bench.shows("Faults: 3 unseen"), "{size}");
+        assert_eq!(header(&bench, &names), before, "{size} with faults");
+        bench.show(View::Faults);
+        bench.run(100);
+        check(&bench, size, "STOP", &format!("{size} faults"));
+        assert_eq!(header(&bench, &names), before, "{size} among the faults");
+        bench.unplug();
+        bench.run(1000);
+        assert!(bench.shows("LINK LOST"), "{size}");
+        assert_eq!(header(&bench, &names), before, "{size} link lost");
+        let cut = bench.cut().into_iter();
+        let cut: Vec<_> = cut.filter(|(_, place)| place.bottom() < 48.0).collect();
+        let is_address = |(text, _): &(String, Rect)| text.starts_with("tcp:");
+        assert!(cut.iter().all(is_address), "{size}: {cut:?}");
+    }
+}
+
+#[test]
+fn no_state_of_a_drive_is_cut() {
+    for size in [
+        vec2(1024.0, 640.0),
+        vec2(1366.0, 768.0),
+        vec2(1920.0, 1080.0),
+    ] {
+        for fault in (0..5).map(Fault::from_bit) {
+            let mut bench = Bench::open(SimConfig::default(), size);
+            bench.wait(1000);
+            bench.hand(|hand, _| Dof::ALL.map(|dof| hand.inject_fault(dof, fault)));
+            bench.run(400);
+            assert!(bench.shows("FAULT"), "{size} {fault:?}");
+            let cut = bench.cut().into_iter();
+            // The strip of messages may be longer than the window.
+            let cut: Vec<_> = cut.filter(|(_, place)| place.top() > 80.0).collect();
+            assert_eq!(cut, [], "{size} {fault:?}");
+        }
     }
 }
