@@ -14,8 +14,8 @@ use egui::{
     WidgetInfo, vec2,
 };
 use egui_plot::{
-    AxisHints, CoordinatesFormatter, Corner, GridInput, HLine, Line, LineStyle, Plot, PlotBounds,
-    PlotPoint, PlotPoints, PlotResponse, PlotTransform, PlotUi, VLine,
+    AxisHints, GridInput, HLine, Line, LineStyle, Plot, PlotBounds, PlotPoints, PlotResponse,
+    PlotTransform, PlotUi, VLine,
 };
 use std::collections::HashMap;
 
@@ -251,6 +251,7 @@ impl<'a> Chart<'a> {
         }
         view.traces = traces;
         self.pointer_ui(ui, view, frame);
+        self.coordinates_ui(ui, &shown.response, &shown.transform);
         let name = self.look.tr(self.title);
         let info = || WidgetInfo::labeled(Role::Image, true, name);
         shown.response.widget_info(info);
@@ -310,6 +311,27 @@ impl<'a> Chart<'a> {
             let stroke = Stroke::new(1.0, self.look.palette.faint);
             ui.painter().vline(x, frame.y_range(), stroke);
         }
+    }
+
+    /// Draws time and value at the pointer, over the curves.
+    fn coordinates_ui(&self, ui: &Ui, response: &Response, transform: &PlotTransform) {
+        let frame = *transform.frame();
+        let Some(pointer) = response.hover_pos().filter(|at| frame.contains(*at)) else {
+            return;
+        };
+        let (at, bounds) = (transform.value_from_position(pointer), transform.bounds());
+        let time = self.times.text(at.x, bounds.width() / 100.0);
+        let value = scales::number(at.y, bounds.height() / 100.0);
+        let text = format!("{time}  {value}");
+        let palette = self.look.palette;
+        let width = kit::text_width(ui, &text, theme::number()) + 1.0;
+        let size = vec2(width, theme::TEXT_LINE);
+        let corner = frame.right_bottom() - size - vec2(theme::STEP, 2.0);
+        let place = Rect::from_min_size(corner, size);
+        let ground = palette.sunken.gamma_multiply(0.8);
+        ui.painter()
+            .rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, ground);
+        Label::new(&text, palette.text).number().paint(ui, place);
     }
 
     /// Fetches the points of measured curves. Returns the range of all values.
@@ -437,10 +459,6 @@ impl<'a> Chart<'a> {
         let times = hints(AxisHints::new_x(), palette.muted).min_thickness(theme::PLOT_TIME_AXIS);
         let own = self.times;
         let times = times.formatter(move |mark, seen| own.label(mark, seen));
-        let pointed = move |at: &PlotPoint, bounds: &PlotBounds| {
-            let text = own.text(at.x, bounds.width() / 100.0);
-            format!("{text}  {}", scales::number(at.y, bounds.height() / 100.0))
-        };
         let spacing = move |input: GridInput| {
             if is_sparkline {
                 return Vec::new();
@@ -463,7 +481,6 @@ impl<'a> Chart<'a> {
             .grid_color(palette.grid)
             .grid_fade(0.0)
             .cursor_color(palette.faint)
-            .coordinates_formatter(Corner::RightBottom, CoordinatesFormatter::new(pointed))
             .allow_zoom([true, false])
             .allow_axis_zoom_drag([true, false])
             .allow_scroll(false)
