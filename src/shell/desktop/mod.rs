@@ -8,6 +8,7 @@ pub(crate) mod gl;
 pub(crate) mod icon;
 pub(crate) mod libraries;
 pub(crate) mod options;
+pub(crate) mod placing;
 pub(crate) mod program;
 pub(crate) mod screen;
 pub(crate) mod shutdown;

@@ -15,6 +15,7 @@ use crate::shell::desktop::dialog::NativeDialog;
 use crate::shell::desktop::file_manager;
 use crate::shell::desktop::icon::icon;
 use crate::shell::desktop::options::{DesktopStart, Renderer};
+use crate::shell::desktop::placing::{Fitting, Maximizing, REQUEST_INTERVAL};
 use crate::shell::desktop::shutdown::{END_TIMEOUT, ShutdownState};
 use crate::shell::{DesktopApp, REST_FRAME_INTERVAL, SOFTWARE_REST_FRAME_INTERVAL};
 use egui::{Vec2, ViewportBuilder, ViewportCommand, ViewportInfo, WindowLevel};
@@ -29,9 +30,6 @@ pub(crate) const REPAINT_AT_LEAST: Duration = Duration::from_millis(250);
 
 /// Duration of the fades of tabs, menus and cards, in seconds.
 const FADE_S: f32 = 0.12;
-
-/// Interval at which the full-screen request is repeated if the window does not fill its screen.
-const FILL_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Initial state of the window.
 pub(crate) fn viewport(layout: &Layout) -> ViewportBuilder {
@@ -107,8 +105,8 @@ pub(crate) struct DesktopProgram {
     /// Current maximum delay, in milliseconds.
     frame_within_ms: Arc<AtomicU64>,
     titled: Option<String>,
-    /// True once the window was fitted to its screen.
-    fits: bool,
+    fits: Fitting,
+    maximizes: Maximizing,
     /// Full-screen state; `None` outside an exhibition.
     fills: Option<Filling>,
     closing: bool,
@@ -151,6 +149,7 @@ impl DesktopProgram {
             documents: documents(),
             lost_steps: LostSteps::default(),
         };
+        let was_maximized = start.loaded.settings.layout.maximized;
         let mut app = App::new(env, start.loaded.settings);
         let at_rest = match start.drawing {
             Renderer::OpenGl => REST_FRAME_INTERVAL,
@@ -181,7 +180,8 @@ impl DesktopProgram {
             at_rest,
             frame_within_ms,
             titled: None,
-            fits: false,
+            fits: Fitting::default(),
+            maximizes: Maximizing::new(was_maximized),
             fills: None,
             closing: false,
             ending,
@@ -200,8 +200,10 @@ impl DesktopProgram {
         self.title(ctx);
         self.fill(ctx, now);
         if self.fills.is_none() {
-            self.fit(ctx);
-            self.keep_size(ctx, now);
+            self.fit(ctx, now);
+            if !self.maximizes.is_pending() {
+                self.keep_size(ctx, now);
+            }
         }
         self.close(ctx, now);
         ctx.request_repaint_after(REPAINT_AT_LEAST);
@@ -274,17 +276,16 @@ impl DesktopProgram {
         }
     }
 
-    /// Shrinks the window, once per run, if it and its frame exceed the screen. The frame's size is known late.
-    fn fit(&mut self, ctx: &egui::Context) {
-        let known = ctx.input(|input| {
-            let view = input.viewport();
-            Some((view.inner_rect?, view.outer_rect?, view.monitor_size?))
-        });
-        let Some((inner, outer, screen)) = known.filter(|_| !self.fits) else {
+    /// Maximises the window as it was in the last run, or shrinks it if it and its frame exceed the screen.
+    fn fit(&mut self, ctx: &egui::Context, now: Moment) {
+        let view = ctx.input(|input| input.viewport().clone());
+        if self.maximizes.is_due(&view, now) {
+            ctx.send_viewport_cmd(ViewportCommand::Maximized(true));
+        }
+        if self.maximizes.is_pending() || view.maximized == Some(true) {
             return;
-        };
-        if let Some(size) = fitting(inner.size(), outer.size(), screen) {
-            self.fits = true;
+        }
+        if let Some(size) = self.fits.size(&view, now) {
             ctx.send_viewport_cmd(ViewportCommand::InnerSize(size));
             ctx.send_viewport_cmd(ViewportCommand::OuterPosition(egui::Pos2::ZERO));
         }
@@ -356,7 +357,7 @@ struct Filling {
 impl Filling {
     /// True if a request is due: at first, and later whenever the window is not as large as its screen.
     fn is_due(&mut self, view: &ViewportInfo, now: Moment) -> bool {
-        let waits = |requested| now.since(requested) < FILL_INTERVAL;
+        let waits = |requested| now.since(requested) < REQUEST_INTERVAL;
         if self.requested.is_some_and(waits) {
             return false;
         }
@@ -378,28 +379,9 @@ impl Filling {
     }
 }
 
-/// Inner size at which the window fits on the screen with its frame; `None` if it already fits.
-fn fitting(inner: Vec2, outer: Vec2, screen: Vec2) -> Option<Vec2> {
-    let over = (outer - screen).max(Vec2::ZERO);
-    (over != Vec2::ZERO).then(|| inner - over)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use egui::vec2;
-
-    #[test]
-    fn a_window_that_is_larger_than_its_screen_is_made_to_fit_with_its_frame() {
-        let (screen, first) = (vec2(1440.0, 900.0), vec2(1440.0, 900.0));
-        assert_eq!(fitting(first, first, screen), None, "no frame");
-        let framed = first + vec2(2.0, 37.0);
-        assert_eq!(fitting(first, framed, screen), Some(vec2(1438.0, 863.0)));
-        let small = vec2(1366.0, 768.0);
-        assert_eq!(fitting(first, framed, small), Some(vec2(1364.0, 731.0)));
-        let large = vec2(2560.0, 1440.0);
-        assert_eq!(fitting(first, framed, large), None);
-    }
 
     /// Draws frames until this is so.
     fn until(
