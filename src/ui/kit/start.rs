@@ -45,7 +45,13 @@ impl StartButton {
             wish.arm_and_start
         };
         let button = Button::text(look, text).large().weight(Weight::Strong);
-        let button = button.disabled(reason.as_deref());
+        // Its tooltip would cover what the plan says above it, which has to be seen while the button is held.
+        let tip = if self.since.is_some() {
+            ""
+        } else {
+            look.tip(text)
+        };
+        let button = button.tip(tip).disabled(reason.as_deref());
         let response = wide_ui(ui, |ui| {
             ui.set_max_height(theme::CONTROL_LARGE);
             button.ui(ui, look)
