@@ -149,6 +149,11 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
         let label = if on_left { label.right() } else { label };
         label.put(ui, rect)
     };
+    // The third line often has no text, and its ground would hide the hand for nothing.
+    let third_ui = |label: Label<'_>, ui: &mut Ui| {
+        ui.painter().rect_filled(third, theme::ROUND_SMALL, ground);
+        aligned(label, ui, third);
+    };
     aligned(Label::new(name, color).small(), ui, first);
     let mut joints = Dof::ALL.into_iter().filter(|dof| dof.finger() == finger);
     let is_locked = |dof| pane.hand().controls.joints[dof].locked;
@@ -167,7 +172,7 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
     aligned(label.named(&named), ui, second);
     if let Some((words, color)) = joints.find_map(|dof| trouble(pane, dof)) {
         let named = format!("{name} {}", look.tr(panels::FINGER_TROUBLE));
-        aligned(Label::new(&words, color).small().named(&named), ui, third);
+        third_ui(Label::new(&words, color).small().named(&named), ui);
         return;
     }
     let state = grip(pane).fingers[finger].state;
@@ -175,7 +180,7 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
     if !matches!(state, GripState::Unknown | GripState::Open) {
         let named = format!("{name} {}", look.tr(panels::FINGER_GRIP));
         let words = Label::new(look.tr(panels::grip(state)), grip_color(pane, state));
-        aligned(words.small().named(&named), ui, third);
+        third_ui(words.small().named(&named), ui);
     }
 }
 
