@@ -46,6 +46,11 @@ pub(crate) struct ConnectionForm {
 }
 
 impl ConnectionForm {
+    /// Focuses the address in the next frame.
+    pub(crate) const fn focus_address(&mut self) {
+        self.wants_focus = true;
+    }
+
     /// Draws the address, the link's statistics, and hands to connect to.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let ports = &pane.state.ports;

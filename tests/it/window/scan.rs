@@ -357,6 +357,7 @@ fn while_an_address_is_typed_nobody_is_asked_and_another_hand_keeps_what_was_typ
     bench.run(100);
     assert_eq!(bench.state().hands.count(), 2);
     assert_eq!(bench.typed(ADDRESS), "hand.local");
+    assert!(bench.is_focused(ADDRESS), "Enter connects");
 }
 
 #[test]
