@@ -212,8 +212,9 @@ fn state_text(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (Stri
         PlayPhase::Ended(Ok(PlayEnd::Finished)) => (poses::END_FINISHED, palette.ok),
         PlayPhase::Ended(Ok(PlayEnd::Person)) => (poses::END_PERSON, palette.muted),
         PlayPhase::Ended(Ok(PlayEnd::Locked)) => (poses::END_LOCKED, palette.warn),
-        PlayPhase::Ended(Err(Abort::Disarmed { .. })) => (poses::END_DISARMED, palette.warn),
-        PlayPhase::Ended(Err(Abort::Fault { .. })) => (poses::END_FAULT, palette.bad),
+        PlayPhase::Ended(Err(why @ Abort::Fault { .. })) => {
+            return (abort_words(look, why), palette.bad);
+        }
         PlayPhase::Ended(Err(Abort::LinkLost)) => (poses::END_LOST, palette.bad),
         PlayPhase::Ended(Err(Abort::TakenOver)) => (poses::END_TAKEN, palette.warn),
         PlayPhase::Ended(Err(why)) => return (abort_words(look, why), palette.warn),

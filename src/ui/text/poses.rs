@@ -111,8 +111,6 @@ texts! {
     SAY_LATE: "not reached in time:", "未按时到达：";
     END_FINISHED: "Finished", "已完成";
     END_PERSON: "Ended", "已结束";
-    END_DISARMED: "Ended: stopped or disarmed", "已结束：已停止或取消使能";
-    END_FAULT: "Ended: a drive reports a fault", "已结束：驱动器报告故障";
     END_LOST: "Ended: the link was lost", "已结束：连接断开";
     END_TAKEN: "Ended: moved in another way", "已结束：改为其他操作";
     END_LOCKED: "Ended: a grip by size needs index and thumb, and one of them is locked", "已结束：按尺寸抓握需要食指与拇指，其中有自由度已锁定";

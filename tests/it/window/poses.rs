@@ -143,10 +143,11 @@ fn a_sequence_runs_pauses_resumes_and_finishes() {
 fn stop_fault_and_a_lost_link_end_a_sequence_and_nothing_is_sent_afterwards() {
     type Break = fn(&mut Bench);
     type Is = fn(Abort) -> bool;
-    let breaks: [(Break, Is); 3] = [
+    let breaks: [(Break, Is, &str); 3] = [
         (
             |bench| bench.key(Key::Space),
             |why| matches!(why, Abort::Disarmed { .. }),
+            "a stop was requested",
         ),
         (
             |bench| {
@@ -162,10 +163,11 @@ fn stop_fault_and_a_lost_link_end_a_sequence_and_nothing_is_sent_afterwards() {
                     }
                 )
             },
+            "Ring",
         ),
-        (Bench::unplug, |why| why == Abort::LinkLost),
+        (Bench::unplug, |why| why == Abort::LinkLost, "link"),
     ];
-    for (break_off, want) in breaks {
+    for (break_off, want, cause) in breaks {
         let mut bench = with_sequence();
         bench.click("Start");
         bench.run(600);
@@ -175,6 +177,9 @@ fn stop_fault_and_a_lost_link_end_a_sequence_and_nothing_is_sent_afterwards() {
             panic!("{:?}", phase(&bench));
         };
         assert!(want(why), "{why}");
+        let texts = bench.texts().into_iter();
+        let texts: Vec<String> = texts.filter(|text| text.contains(cause)).collect();
+        assert!(!texts.is_empty(), "{why}: {:?}", bench.texts());
         bench.plug();
         let ended = bench.writes().len();
         bench.wait(8000);
