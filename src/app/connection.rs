@@ -456,6 +456,14 @@ impl StatusReport<'_, '_> {
                 self.push(NoticeKind::Unguarded { why });
             }
         }
+        // The window disarms its own status at once: the link's reason follows. The others have marks of their own.
+        let has_mark = |why: Disarmed| {
+            matches!(why, Disarmed::Stop | Disarmed::Fault | Disarmed::LinkLost)
+        };
+        let is_news = before.state.is_live() && link.disarmed != before.disarmed;
+        if is_news && link.disarmed.is_some_and(|why| !has_mark(why)) {
+            self.history.mark(self.now, MarkKind::Disarmed);
+        }
         if before.armed.is_some() && link.armed.is_none() {
             let is_known = |why: &Disarmed| why.is_asked_for() && *why != Disarmed::Silent;
             if let Some(why) = link.disarmed.filter(|why| !is_known(why)) {

@@ -14,6 +14,8 @@ pub const NOTE_MAX: usize = 80;
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum MarkKind {
     Armed,
+    /// Disarmed, other than by a stop, a fault or a lost link.
+    Disarmed,
     /// Stop was pressed.
     Stop,
     /// Stop was pressed, and could not be sent.
@@ -51,6 +53,7 @@ impl MarkKind {
     pub fn words(&self) -> String {
         match self {
             Self::Armed => "armed".into(),
+            Self::Disarmed => "disarmed".into(),
             Self::Stop => "stop".into(),
             Self::StopNotSent => "stop not sent".into(),
             Self::HoldConfirmed => "at rest".into(),

@@ -19,15 +19,21 @@ pub(crate) fn moments(pane: &Pane<'_>, (from_s, to_s): TimeSpan) -> Vec<(f64, Co
     marks.map(moment).collect()
 }
 
-/// Label beside a line: the newest of several that have no space of their own, with the number of the others.
+/// Rows for labels at the top of the plot.
+const ROWS: usize = 2;
+
+/// Label of a line.
 struct MarkWords {
+    /// Position of the line.
     x: f32,
     text: String,
     color: Color32,
-    more: usize,
+    /// Labels with a lower rank are placed first.
+    rank: u8,
 }
 
-/// Draws the labels of the marks, in the topmost plot only. Overlapping labels are merged.
+/// Draws the labels of the marks, in the topmost plot only: the worst first, each where it covers no other one. A mark without
+/// space for its label has it in the tooltip of its line.
 pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
     let rect = *shown.transform.frame();
     let (from_s, to_s) = shown.transform.bounds().range_x().into_inner();
@@ -35,60 +41,70 @@ pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
     let words = marks.map(|mark| {
         let x = shown.transform.position_from_point_x(mark.at.secs());
         let (text, color) = mark_text(pane.look, &mark.kind);
+        let text = text.chars().take(NOTE_SHOWN).collect();
+        let rank = rank(&mark.kind);
         MarkWords {
             x,
-            text: text.chars().take(NOTE_SHOWN).collect(),
+            text,
             color,
-            more: 0,
+            rank,
         }
     });
     let width = |text: &str| kit::text_width(ui, text, theme::small());
-    for words in joined(words.collect(), rect.right(), width) {
-        words.ui(ui, pane.look, rect);
+    let ground = pane.look.palette.sunken.gamma_multiply(0.8);
+    for (place, words) in placed(words.collect(), rect, width) {
+        ui.painter()
+            .rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, ground);
+        let label = Label::new(&words.text, words.color).small();
+        label.paint(ui, place);
     }
 }
 
-/// Returns the labels that fit, from newest to oldest; the others are counted with the next newer one.
-fn joined(mut marks: Vec<MarkWords>, right: f32, width: impl Fn(&str) -> f32) -> Vec<MarkWords> {
-    marks.reverse();
-    let more = width(" +99");
-    let mut free_until = right;
-    let mut all: Vec<MarkWords> = Vec::new();
+/// How bad an event is, 0 = worst.
+const fn rank(kind: &MarkKind) -> u8 {
+    match kind {
+        MarkKind::StopNotSent | MarkKind::LinkLost => 0,
+        MarkKind::Fault(_) | MarkKind::Stop => 1,
+        MarkKind::Disarmed | MarkKind::Note(_) => 2,
+        MarkKind::Armed | MarkKind::Reconnected | MarkKind::Gesture(_) | MarkKind::Tightened(_) => {
+            3
+        }
+        MarkKind::HoldConfirmed => 4,
+    }
+}
+
+/// Places the labels within the plot: the worst first, of equal ones the newest first. Each is on the right of its line, else on the
+/// left, in the first row with space.
+fn placed(
+    mut marks: Vec<MarkWords>,
+    plot: Rect,
+    width: impl Fn(&str) -> f32,
+) -> Vec<(Rect, MarkWords)> {
+    marks.sort_by(|one, other| (one.rank.cmp(&other.rank)).then(other.x.total_cmp(&one.x)));
+    let mut all: Vec<(Rect, MarkWords)> = Vec::new();
     for words in marks {
-        let (x, width) = (words.x, width(&words.text) + more);
-        let fits = x + theme::STEP + width + theme::GAP <= free_until;
-        match all.last_mut().filter(|_| !fits) {
-            Some(newer) => newer.more += 1,
-            None => {
-                // The newest label is to the left of its line if it does not fit on the right.
-                free_until = if fits { x } else { x - width - theme::GAP };
-                all.push(words);
-            }
+        let size = vec2(width(&words.text) + 1.0, theme::TEXT_LINE);
+        let sides = [words.x + theme::STEP, words.x - theme::STEP - size.x];
+        let mut places = sides.into_iter().flat_map(|left| {
+            let rows = (0..ROWS).scan(plot.top() + 2.0, move |top, _| {
+                let corner = pos2(left, *top);
+                *top += size.y;
+                Some(Rect::from_min_size(corner, size))
+            });
+            rows.collect::<Vec<_>>()
+        });
+        let is_free = |place: &Rect| {
+            let room = place.expand2(vec2(theme::STEP, 0.0));
+            let is_covered = all
+                .iter()
+                .any(|(other, _)| room.intersects(other.shrink(0.5)));
+            plot.x_range().contains(place.left()) && place.right() <= plot.right() && !is_covered
+        };
+        if let Some(place) = places.find(is_free) {
+            all.push((place, words));
         }
     }
     all
-}
-
-impl MarkWords {
-    fn ui(&self, ui: &Ui, look: Look, rect: Rect) {
-        let text = match self.more {
-            0 => self.text.clone(),
-            more => format!("{} +{more}", self.text),
-        };
-        let width = kit::text_width(ui, &text, theme::small()) + 1.0;
-        let size = vec2(width, theme::TEXT_LINE);
-        let is_right = self.x + theme::STEP + width <= rect.right();
-        let left = if is_right {
-            self.x + theme::STEP
-        } else {
-            self.x - width - theme::STEP
-        };
-        let place = Rect::from_min_size(pos2(left, rect.top() + 2.0), size);
-        let ground = look.palette.sunken.gamma_multiply(0.8);
-        ui.painter()
-            .rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, ground);
-        Label::new(&text, self.color).small().paint(ui, place);
-    }
 }
 
 /// Text and colour of a mark.
@@ -96,6 +112,7 @@ pub(crate) fn mark_text(look: Look, kind: &MarkKind) -> (String, Color32) {
     let palette = look.palette;
     let (text, color) = match kind {
         MarkKind::Armed => (panels::MARK_ARMED, palette.armed),
+        MarkKind::Disarmed => (panels::MARK_DISARMED, palette.muted),
         MarkKind::Stop => (panels::MARK_STOP, palette.bad),
         MarkKind::StopNotSent => (panels::MARK_STOP_NOT_SENT, palette.bad),
         MarkKind::HoldConfirmed => (panels::MARK_HELD, palette.ok),
@@ -135,36 +152,39 @@ mod tests {
     use super::*;
 
     #[test]
-    fn crowded_marks_are_counted_with_the_newest_and_none_is_lost() {
-        let mark = |x: f32, text: &str| MarkWords {
-            x,
-            text: text.into(),
-            color: Color32::WHITE,
-            more: 0,
-        };
+    fn of_crowded_marks_the_worst_keep_their_labels_and_none_covers_another() {
         // Ten points per letter.
         let width = |text: &str| text.chars().map(|_| 10.0).sum();
-        let check = |marks: &[(f32, &str)], wanted: &[(&str, usize)]| {
-            let marks = marks.iter().map(|(x, text)| mark(*x, text));
-            let all = joined(marks.collect(), 500.0, width);
-            let shown: Vec<_> = all
-                .iter()
-                .map(|one| (one.text.as_str(), one.more))
-                .collect();
+        let plot = Rect::from_min_max(pos2(0.0, 0.0), pos2(500.0, 200.0));
+        let check = |marks: &[(f32, MarkKind)], wanted: &[&str]| {
+            let marks = marks.iter().map(|(x, kind)| MarkWords {
+                x: *x,
+                text: kind.words(),
+                color: Color32::WHITE,
+                rank: rank(kind),
+            });
+            let all = placed(marks.collect(), plot, width);
+            for (at, (one, _)) in all.iter().enumerate() {
+                assert!(plot.contains_rect(*one));
+                assert!(!all[..at].iter().any(|(other, _)| one.intersects(*other)));
+            }
+            let shown: Vec<_> = all.iter().map(|(_, words)| words.text.as_str()).collect();
             assert_eq!(shown, wanted);
         };
+        let (lost, again) = (MarkKind::LinkLost, MarkKind::Reconnected);
         check(
-            &[(100.0, "stop"), (300.0, "armed")],
-            &[("armed", 0), ("stop", 0)],
+            &[(300.0, lost.clone()), (310.0, again.clone())],
+            &["link lost", "reconnected"],
         );
-        check(
-            &[(300.0, "a"), (310.0, "b"), (320.0, "c"), (330.0, "d")],
-            &[("d", 3)],
-        );
-        // The newest label is to the left of its line, covering the lines there.
-        check(
-            &[(100.0, "far"), (450.0, "near"), (495.0, "newest")],
-            &[("newest", 1), ("far", 0)],
-        );
+        let all = [
+            (200.0, MarkKind::Stop),
+            (205.0, MarkKind::HoldConfirmed),
+            (210.0, MarkKind::HoldConfirmed),
+            (215.0, MarkKind::HoldConfirmed),
+            (220.0, MarkKind::HoldConfirmed),
+        ];
+        check(&all, &["stop", "at rest", "at rest", "at rest"]);
+        // Without space on the right, a label is on the left of its line.
+        check(&[(495.0, lost)], &["link lost"]);
     }
 }

@@ -41,6 +41,7 @@ texts! {
     MARK_RECONNECT: "Reconnected", "重新连接";
     MARK_LOST: "Link lost", "断开";
     MARK_ARMED: "Armed", "使能";
+    MARK_DISARMED: "Disarmed", "取消使能";
     MARK_HELD: "At rest", "静止";
 
     TOUCH: "Fingertips", "指尖触觉", "Pads show capacitance above the zero: the first untouched reading, or the last taring. All fingers have one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对零点的电容增量（零点为首次未受力读数或最近一次去皮），所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";

@@ -94,3 +94,28 @@ fn notes_are_listed_shown_by_a_click_and_deleted() {
     assert!(!marks.any(|mark| matches!(mark.kind, MarkKind::Note(_))));
     assert_eq!(bench.writes(), []);
 }
+
+#[test]
+fn a_hand_that_is_disarmed_is_marked_in_the_plots() {
+    let mut bench = Bench::armed();
+    let marks = |bench: &Bench| -> Vec<String> {
+        let history = &bench.state().hand().measured.history;
+        history
+            .marks(0.0, 1e9)
+            .map(|mark| mark.kind.words())
+            .collect()
+    };
+    bench.click("Disarm the hand");
+    bench.run(200);
+    assert_eq!(marks(&bench), ["armed", "disarmed"]);
+    bench.click("Arm the hand");
+    bench.run(200);
+    bench.click_button("STOP");
+    bench.run(1000);
+    let all = marks(&bench);
+    assert_eq!(
+        all[2..4],
+        ["armed", "stop"],
+        "a stop says it itself: {all:?}"
+    );
+}
