@@ -1,6 +1,7 @@
 //! Activity of a hand, which decides who may move it. The only place for that decision.
 
 use crate::link::{LinkStatus, Owner};
+use crate::poses::library::EntryId;
 
 /// Activity of a hand. If several apply, the first of these.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,11 +80,79 @@ mod tests {
     }
 }
 
+/// A pose, a sequence, a demo or a hold, as recordings name it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct RecordedPlay {
+    pub(crate) kind: PlayKind,
+    /// Name in the library; empty for a hold.
+    pub(crate) name: String,
+}
+
+/// Kind of what is played.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PlayKind {
+    Pose,
+    Sequence,
+    Reaction,
+    Hold,
+}
+
+impl PlayKind {
+    const ALL: [Self; 4] = [Self::Pose, Self::Sequence, Self::Reaction, Self::Hold];
+
+    /// Stable name in recordings.
+    const fn key(self) -> &'static str {
+        match self {
+            Self::Pose => "pose",
+            Self::Sequence => "sequence",
+            Self::Reaction => "demo",
+            Self::Hold => "hold",
+        }
+    }
+}
+
+impl RecordedPlay {
+    /// An entry of the library with its name.
+    pub(crate) fn of(entry: EntryId, name: &str) -> Self {
+        let kind = match entry {
+            EntryId::Pose(_) => PlayKind::Pose,
+            EntryId::Sequence(_) => PlayKind::Sequence,
+            EntryId::Reaction(_) => PlayKind::Reaction,
+        };
+        let name = name.to_owned();
+        Self { kind, name }
+    }
+
+    /// A hold.
+    pub(crate) const fn hold() -> Self {
+        Self {
+            kind: PlayKind::Hold,
+            name: String::new(),
+        }
+    }
+
+    /// Text of its event: `sequence Wave`.
+    pub(crate) fn words(&self) -> String {
+        let words = format!("{} {}", self.kind.key(), self.name);
+        words.trim_end().to_owned()
+    }
+
+    /// Reads the text of an event; `None` if it names something else.
+    pub(crate) fn read(words: &str) -> Option<Self> {
+        let (key, name) = words.split_once(' ').unwrap_or((words, ""));
+        let kind = PlayKind::ALL.into_iter().find(|kind| kind.key() == key)?;
+        let name = name.to_owned();
+        Some(Self { kind, name })
+    }
+}
+
 /// Party that moves the hand of a recording, according to its events.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct RecordedMover {
     /// Number of the current trial and of all trials, under the current arming.
     pub(crate) trial: Option<(usize, usize)>,
+    /// What plays.
+    play: Option<RecordedPlay>,
 }
 
 impl RecordedMover {
@@ -95,8 +164,24 @@ impl RecordedMover {
             numbers.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
     }
 
-    /// Applies a status of the link: no series continues without arming.
+    /// Begins to play what the text of an event names.
+    pub(crate) fn begin_play(&mut self, words: &str) {
+        self.play = RecordedPlay::read(words);
+    }
+
+    /// Nothing plays from now on.
+    pub(crate) fn end_play(&mut self) {
+        self.play = None;
+    }
+
+    /// What plays now; `None` if nothing does, or the recording does not name it.
+    pub(crate) const fn playing(&self) -> Option<&RecordedPlay> {
+        self.play.as_ref()
+    }
+
+    /// Applies a status of the link: nothing continues without arming.
     pub(crate) fn apply_status(&mut self, link: &LinkStatus) {
         self.trial = self.trial.filter(|_| link.armed.is_some());
+        self.play.take_if(|_| link.armed.is_none());
     }
 }

@@ -63,6 +63,10 @@ pub enum EventKind {
     Person,
     /// A grasp trial began; the text names it.
     Trial,
+    /// A pose, a sequence, a demo or a hold began; the text names it: `pose Fist`.
+    Play,
+    /// What [`Self::Play`] named is over.
+    PlayEnd,
     /// A finger of a hold pressed harder, or the hold does not suffice; the text says which.
     Hold,
     /// A setting of the program or of the hand was changed.
@@ -79,6 +83,8 @@ pub enum EventKind {
     Stop,
     /// The hand was armed. Derived.
     Armed,
+    /// The hand was disarmed, other than by a stop, a fault or a lost link. Derived.
+    Disarmed,
     /// The hand stopped answering. Derived.
     LinkLost,
     /// The hand answered again. Derived.
@@ -93,6 +99,8 @@ impl EventKind {
             Self::NoteRemoved => "note_removed",
             Self::Person => "person",
             Self::Trial => "trial",
+            Self::Play => "play",
+            Self::PlayEnd => "play_end",
             Self::Hold => "hold",
             Self::Setting => "setting",
             Self::Parameters => "parameters",
@@ -101,6 +109,7 @@ impl EventKind {
             Self::Fault => "fault",
             Self::Stop => "stop",
             Self::Armed => "armed",
+            Self::Disarmed => "disarmed",
             Self::LinkLost => "link_lost",
             Self::Reconnected => "reconnected",
         }
@@ -108,11 +117,13 @@ impl EventKind {
 
     /// Kind of a name in a file; `None` if it is unknown.
     pub fn by_key(key: &str) -> Option<Self> {
-        const ALL: [EventKind; 14] = [
+        const ALL: [EventKind; 17] = [
             EventKind::Note,
             EventKind::NoteRemoved,
             EventKind::Person,
             EventKind::Trial,
+            EventKind::Play,
+            EventKind::PlayEnd,
             EventKind::Hold,
             EventKind::Setting,
             EventKind::Parameters,
@@ -121,6 +132,7 @@ impl EventKind {
             EventKind::Fault,
             EventKind::Stop,
             EventKind::Armed,
+            EventKind::Disarmed,
             EventKind::LinkLost,
             EventKind::Reconnected,
         ];
@@ -139,7 +151,12 @@ impl EventKind {
     pub const fn is_derived(self) -> bool {
         matches!(
             self,
-            Self::Fault | Self::Stop | Self::Armed | Self::LinkLost | Self::Reconnected
+            Self::Fault
+                | Self::Stop
+                | Self::Armed
+                | Self::Disarmed
+                | Self::LinkLost
+                | Self::Reconnected
         )
     }
 }

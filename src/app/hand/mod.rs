@@ -13,7 +13,7 @@ pub mod newtons;
 pub mod running;
 pub mod scale;
 
-use crate::app::activity::{Activity, RecordedMover};
+use crate::app::activity::{Activity, RecordedMover, RecordedPlay};
 use crate::app::checkup::HandCheckup;
 use crate::app::connection::Connection;
 use crate::app::connection::Leaving;
@@ -483,6 +483,18 @@ impl Hand {
             run.leave();
         }
         self.connection.take_over();
+    }
+
+    /// Adds what begins to play to the recording of the hand, if there is one.
+    pub(crate) fn record_play(&mut self, play: &RecordedPlay, at: Moment) {
+        if let Some(recording) = &mut self.recording {
+            recording.begin_play(at, play.words());
+        }
+    }
+
+    /// What plays in a replay, if the recording names it.
+    pub(crate) fn recorded_play(&self) -> Option<&RecordedPlay> {
+        self.recorded.as_ref().and_then(RecordedMover::playing)
     }
 
     /// Starts an entry of the library, if the hand is armed. True if it was started.

@@ -32,6 +32,8 @@ pub enum Mover {
     Outside(Owner),
     /// Setpoints of the user.
     Setpoints,
+    /// In a recording: a pose, a sequence, a demo or a hold, named by [`Hand::recorded_play`].
+    Recorded,
     /// A task of this program that a recording does not name.
     Task,
     /// An exhibition, in a recording.
@@ -61,7 +63,7 @@ impl Mover {
         if let Some(owner) = connection.outside_owner() {
             return Some(Self::Outside(owner));
         }
-        if let Some(then) = hand.recorded {
+        if let Some(then) = &hand.recorded {
             return recorded_mover(then, link);
         }
         if let Some(run) = hand.running.series() {
@@ -96,9 +98,13 @@ impl Mover {
 }
 
 /// Mover of the hand of a recording, as far as the recording contains it.
-fn recorded_mover(then: RecordedMover, link: &LinkStatus) -> Option<Mover> {
+fn recorded_mover(then: &RecordedMover, link: &LinkStatus) -> Option<Mover> {
     if let Some((number, of)) = then.trial {
         return Some(Mover::Series(number, of));
+    }
+    // It also plays while the hand presses, or waits at a pose.
+    if then.playing().is_some() {
+        return Some(Mover::Recorded);
     }
     (link.rest == Rest::Moving).then(|| match link.holder.map(|holder| holder.owner) {
         Some(Owner::Person) => Mover::Setpoints,

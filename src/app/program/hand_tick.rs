@@ -291,12 +291,16 @@ fn tick_recording(hand: &mut Hand, settings: &Settings, ctx: &mut Ctx<'_>) {
         connection,
         params,
         recording,
+        running,
         ..
     } = hand;
     let wanted = settings.records(connection.is_simulated());
+    let sequence = running.sequence();
+    let is_playing = sequence.is_some_and(SequenceRun::is_running) || running.holds();
     match (recording, connection.link()) {
         (Some(recording), Some(link)) if wanted => {
             recording.tick(&mut ctx.notices, ctx.now);
+            recording.follow_play(is_playing, ctx.now);
             recording.settings(settings, ctx.now);
             // A partial reading is no news.
             if !params.is_busy() {

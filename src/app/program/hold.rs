@@ -1,5 +1,6 @@
 //! Holds between two forces with the shown hand.
 
+use crate::app::activity::RecordedPlay;
 use crate::app::env::Ctx;
 use crate::app::hand::Hand;
 use crate::app::hand::grasps::RepeatedGrasp;
@@ -131,4 +132,5 @@ fn start(
     let start = GraspStart { hold, unconfirmed };
     let run = HoldMotion::begin(open.link.clone(), armed, start, grasp, ctx.env);
     hand.running.0 = Some(MotionRun::Hold(Box::new(run)));
+    hand.record_play(&RecordedPlay::hold(), ctx.now);
 }

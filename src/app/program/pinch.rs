@@ -1,5 +1,6 @@
 //! Grips by size with the shown hand, and the blocks that calibrate its sizes.
 
+use crate::app::activity::RecordedPlay;
 use crate::app::env::Env;
 use crate::app::hand::grip;
 use crate::app::notices::NoticeKind;
@@ -40,7 +41,10 @@ pub(super) fn pinch(state: &mut State, gap: Gap, env: &Env) {
         looped: false,
         reaction: None,
     };
-    hand.play(plan, PlayMode::Through, env, now);
+    let played = RecordedPlay::of(plan.entry, PINCH);
+    if hand.play(plan, PlayMode::Through, env, now) {
+        hand.record_play(&played, now);
+    }
 }
 
 /// Stores the object held now as a block of this size.

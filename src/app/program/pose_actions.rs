@@ -1,11 +1,13 @@
 //! User actions on poses and sequences.
 
+use crate::app::activity::RecordedPlay;
 use crate::app::env::Env;
 use crate::app::hand::Hand;
 use crate::app::hand::running::SequenceRun;
 use crate::app::notices::NoticeKind;
+use crate::app::poses::PoseState;
 use crate::app::state::State;
-use crate::hand::{Angle, PerDof, Target};
+use crate::hand::{Angle, Moment, PerDof, Target};
 use crate::motion::play::PlayCommand;
 use crate::poses::library::{EntryId, LibraryPose, PoseId, SequenceId};
 use crate::poses::player::PlayMode;
@@ -51,13 +53,34 @@ pub(super) fn hide_shipped(state: &mut State, name: String, hide: bool) {
 
 /// Moves each hand that accepts poses to a pose.
 pub(super) fn recall(state: &mut State, id: PoseId, env: &Env) {
-    let plan = state.poses.plan(EntryId::Pose(id));
+    let entry = EntryId::Pose(id);
     for hand in state.hands.with_shown(accepts_poses) {
-        let plan = plan.clone();
-        if plan.is_some_and(|plan| hand.play(plan, PlayMode::Through, env, state.now)) {
+        if start(
+            hand,
+            &state.poses,
+            (entry, PlayMode::Through),
+            env,
+            state.now,
+        ) {
             state.poses.recalled = Some(id);
         }
     }
+}
+
+/// Starts an entry of the library, and records its name. True if it was started.
+fn start(
+    hand: &mut Hand,
+    poses: &PoseState,
+    (entry, pace): (EntryId, PlayMode),
+    env: &Env,
+    now: Moment,
+) -> bool {
+    let plan = poses.plan(entry);
+    let is_started = plan.is_some_and(|plan| hand.play(plan, pace, env, now));
+    if let Some(names) = poses.named(entry).filter(|_| is_started) {
+        hand.record_play(&RecordedPlay::of(entry, names.text), now);
+    }
+    is_started
 }
 
 /// Shows a sequence on the drawn hand, starting at the current pose; `None` ends that.
@@ -86,9 +109,7 @@ pub(super) fn play(state: &mut State, play: Play, env: &Env) {
                 }
             }
             PlayRequest::Start(entry, pace) => {
-                if let Some(plan) = state.poses.plan(entry) {
-                    hand.play(plan, pace, env, state.now);
-                }
+                start(hand, &state.poses, (entry, pace), env, state.now);
             }
         }
     }

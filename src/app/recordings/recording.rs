@@ -42,6 +42,8 @@ pub struct HandRecording {
     /// True once the parameters have been requested from the hand.
     is_asked: bool,
     jobs: Jobs<ReadParams>,
+    /// True after an event [`EventKind::Play`], until its end is recorded.
+    plays: bool,
     /// Settings as last recorded, and the time of the last comparison.
     settings: Option<(Settings, Moment)>,
     /// Recorder status as of this frame.
@@ -99,6 +101,7 @@ impl HandRecording {
             params: Params::default(),
             is_asked: false,
             jobs: Jobs::default(),
+            plays: false,
             settings: None,
             status: recorder.status(),
             recorder,
@@ -182,6 +185,20 @@ impl HandRecording {
         }
         if let Ok(words) = settings_file::text(&own) {
             self.event(now, EventKind::Settings, words);
+        }
+    }
+
+    /// Records that a pose, a sequence, a demo or a hold begins; the text names it.
+    pub(crate) fn begin_play(&mut self, at: Moment, words: String) {
+        self.plays = true;
+        self.event(at, EventKind::Play, words);
+    }
+
+    /// Records the end of what was begun, once nothing plays.
+    pub(crate) fn follow_play(&mut self, is_playing: bool, now: Moment) {
+        if self.plays && !is_playing {
+            self.plays = false;
+            self.event(now, EventKind::PlayEnd, String::new());
         }
     }
 

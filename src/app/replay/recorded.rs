@@ -120,6 +120,7 @@ impl Recorded {
             if let Some(kind) = mark_kind(mark.kind, &mark.words) {
                 self.hand.measured.history.mark(mark.at, kind);
             }
+            play(&mut self.hand, mark.kind, &mark.words);
         }
     }
 }
@@ -171,9 +172,26 @@ impl ReplayTarget<'_> {
                     mover.begin_trial(&event.words);
                 }
             }
+            (EventKind::Play | EventKind::PlayEnd, _) => {
+                play(self.hand, event.kind, &event.words);
+            }
             (EventKind::Note, Some(kind)) => self.hand.measured.history.mark(event.at, kind),
             _ => {}
         }
+    }
+}
+
+/// Applies the begin or the end of what plays.
+fn play(hand: &mut Hand, kind: EventKind, words: &str) {
+    let Some(mover) = &mut hand.recorded else {
+        return;
+    };
+    match kind {
+        EventKind::Play => mover.begin_play(words),
+        EventKind::PlayEnd | EventKind::Armed | EventKind::Stop | EventKind::Disarmed => {
+            mover.end_play();
+        }
+        _ => {}
     }
 }
 
@@ -206,6 +224,7 @@ fn mark_kind(kind: EventKind, words: &str) -> Option<MarkKind> {
         EventKind::Fault => Some(MarkKind::Fault(words.into())),
         EventKind::Stop => Some(MarkKind::Stop),
         EventKind::Armed => Some(MarkKind::Armed),
+        EventKind::Disarmed => Some(MarkKind::Disarmed),
         EventKind::LinkLost => Some(MarkKind::LinkLost),
         EventKind::Reconnected => Some(MarkKind::Reconnected),
         _ => None,

@@ -195,6 +195,7 @@ impl Overview {
         let kind = match state {
             LinkState::Holding => Some(EventKind::Stop),
             LinkState::Armed => Some(EventKind::Armed),
+            LinkState::Monitoring if before == LinkState::Armed => Some(EventKind::Disarmed),
             _ if before.is_live() && !state.is_live() => Some(EventKind::LinkLost),
             _ if !before.is_live() && state.is_live() && self.was_live => {
                 Some(EventKind::Reconnected)

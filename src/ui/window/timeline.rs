@@ -1,11 +1,12 @@
 //! The timeline of a replayed recording: current moment, playback speed, and events.
 
 use crate::app::action::Action;
+use crate::app::activity::RecordedPlay;
 use crate::app::recordings::{RecordingAction, Timeline};
 use crate::hand::Moment;
 use crate::record::EventKind;
 use crate::ui::kit::{self, Button, Label, Look, Pane, Weight};
-use crate::ui::recordings::marks::{clock, shown};
+use crate::ui::recordings::marks::{clock, play_words, shown};
 use crate::ui::recordings::{beside, strip};
 use crate::ui::text::{panels, recordings};
 use crate::ui::theme;
@@ -124,6 +125,10 @@ impl TimelineEntry<'_> {
     }
 
     fn text(self, look: Look) -> String {
+        let play = (self.kind == EventKind::Play).then(|| RecordedPlay::read(self.words));
+        if let Some(play) = play.flatten() {
+            return play_words(look, &play);
+        }
         match shown(look, self.kind).filter(|_| !self.is_note()) {
             Some((text, _)) if self.words.is_empty() => look.tr(text).to_owned(),
             Some((text, _)) => look.pair(look.tr(text), self.words),

@@ -6,6 +6,7 @@ use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::app::hand::list::HandsAction;
 use handscope::app::hand::mover::Mover;
+use handscope::app::hand::running::SequenceRun;
 use handscope::app::inputs::InputAction;
 use handscope::app::notices::NoticeKind;
 use handscope::app::recordings::recording::HandRecording;
@@ -275,6 +276,54 @@ fn a_replay_tells_speed_force_target_and_mover_as_they_were() {
     let goes = goes.filter(|(name, _)| name.starts_with("Go to ")).count();
     assert!(goes > 0, "tiles are shown");
     assert!(bench.all_disabled("Go to Fist").iter().all(|is| *is));
+}
+
+#[test]
+fn a_replay_names_what_was_played_also_while_it_presses_and_lists_it() {
+    let mut bench = bench(Scenario::Rigid);
+    bench.gentle();
+    bench.click("Arm the hand");
+    bench.run(500);
+    let begun = bench.now();
+    bench.click("Go to Fist");
+    bench.run(400);
+    let moves = bench.now();
+    assert!(bench.shows("Pose Fist"), "{:?}", bench.texts());
+    let at_rest = |bench: &Bench| bench.state().hand().connection.status.rest == Rest::Resting;
+    let is_playing = |bench: &Bench| {
+        let run = bench.state().hand().running.sequence();
+        run.is_some_and(SequenceRun::is_running)
+    };
+    let mut presses = None;
+    for _ in 0..200 {
+        bench.run(100);
+        if at_rest(&bench) && is_playing(&bench) {
+            presses = Some(bench.now());
+        }
+        if !is_playing(&bench) {
+            break;
+        }
+    }
+    bench.run(1500);
+    let over = bench.now();
+    let path = ended(&mut bench);
+    replay(&mut bench, path);
+    for at in [Some(moves), presses].into_iter().flatten() {
+        seek(&mut bench, at);
+        assert!(bench.shows("Pose Fist"), "{:?}", bench.texts());
+    }
+    seek(&mut bench, over);
+    assert!(!bench.shows("Pose Fist"), "it is over");
+    bench.click("Marks");
+    bench.run(60);
+    let listed = bench.buttons_with("Pose Fist");
+    assert_eq!(listed.len(), 1, "{:?}", bench.buttons_with(""));
+    bench.click(&listed[0]);
+    settle(&mut bench, |bench| {
+        !bench.state().timeline.as_ref().unwrap().waits
+    });
+    let at = bench.state().timeline.as_ref().unwrap().at;
+    assert!(at.since(begun) < Duration::from_millis(200));
 }
 
 #[test]
@@ -1055,4 +1104,14 @@ fn a_trial_is_replayed_from_two_seconds_before_its_closing_command() {
     seek(&mut bench, close.plus(Duration::from_millis(200)));
     let mover = Mover::of(bench.state().hand(), bench.now());
     assert!(matches!(mover, Some(Mover::Series(1, _))), "{mover:?}");
+    bench.click_first_button("Tune");
+    bench.run(100);
+    assert!(!bench.shows("Arm and start"), "the plan is the live hand's");
+    let listed = bench.buttons_with("1 / 1, Index");
+    assert_eq!(listed.len(), 1, "{:?}", bench.buttons_with(""));
+    bench.click(&listed[0]);
+    settle(&mut bench, |bench| {
+        let line = bench.state().timeline.as_ref().unwrap();
+        line.at < close && !line.waits
+    });
 }
