@@ -20,8 +20,6 @@ const STOP: f32 = 132.0;
 const WORDS: f32 = 1000.0;
 /// Width of a lamp without a label.
 const LAMP_BUTTON: f32 = 24.0;
-/// Minimum width of an address of which something can be recognised.
-const ADDRESS_LEAST: f32 = 80.0;
 
 /// Draws the bar. STOP is enabled whatever card is open, the rest only if `is_free`.
 pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View, is_free: bool) {
@@ -256,21 +254,19 @@ fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// Address of a real hand, truncated to a width in points; nothing if too little of it would be left.
+/// Address of a real hand, if it fits into this width in points.
 fn address_ui(ui: &mut Ui, pane: &Pane<'_>, width: f32) {
     let connection = &pane.hand().connection;
     let Some(endpoint) = &connection.endpoint else {
         return;
     };
-    if connection.is_simulated() || width < ADDRESS_LEAST {
-        return;
-    }
     let text = endpoint.to_string();
-    let width = width.min(kit::text_width(ui, &text, theme::number()) + 1.0);
-    let (_, place) = ui.allocate_space(vec2(width, theme::CONTROL));
-    let label = Label::new(&text, pane.look.palette.muted).number();
-    let tip = pane.look.tr(main::ENDPOINT_TIP);
-    label.put(ui, place).on_hover_text(tip);
+    let fits = kit::text_width(ui, &text, theme::number()) <= width;
+    if fits && !connection.is_simulated() {
+        let label = Label::new(&text, pane.look.palette.muted).number();
+        let tip = pane.look.tr(main::ENDPOINT_TIP);
+        label.ui(ui).on_hover_text(tip);
+    }
 }
 
 /// Number of wire errors since connecting.

@@ -748,6 +748,7 @@ impl Bench {
     /// True if a text with exactly these words, or a control of this name, is on the screen.
     pub(crate) fn shows(&self, text: &str) -> bool {
         self.harness.query_all_by_label(text).next().is_some()
+            || self.texts().iter().any(|shown| shown == text)
     }
 
     /// Every text on the screen that contains these words.
