@@ -93,6 +93,7 @@ texts! {
     PACE: "Pace", "速度", "The replay speed.", "播放速度。";
     LOOP_OFF: "Loop off", "取消循环", "Plays all of it again.", "恢复完整播放。";
     EVENTS: "Marks", "标记", "Faults, stops, notes and trials of this recording: press one to go there.", "此录制的故障、停止、备注和试验：点击跳转。";
+    NO_TRIALS: "This recording has no trials.", "此录制没有试验。";
     NO_EVENTS: "Nothing is marked in this recording.", "此录制没有标记。";
     BESIDE: "Compare with", "对比录制", "Draws another recording over this one, dashed, in all plots.", "在所有曲线图中以虚线叠加另一录制。";
     BESIDE_OFF: "Stop comparing", "取消对比";

@@ -11,6 +11,7 @@ pub(crate) mod compare_table;
 pub(crate) mod compare_tests;
 pub(crate) mod overshoot;
 pub(crate) mod promotion;
+pub(crate) mod recorded;
 pub(crate) mod search_form;
 pub(crate) mod tune;
 pub(crate) mod tune_form;

@@ -20,6 +20,7 @@ use crate::ui::text::window;
 use crate::ui::theme;
 use crate::ui::touch::TouchView;
 use crate::ui::traffic::TrafficView;
+use crate::ui::trials::recorded;
 use crate::ui::trials::tune::TuneView;
 use crate::ui::view::{Tab, View};
 use crate::ui::window::rooms::{RoomSize, Rooms};
@@ -38,6 +39,8 @@ const FINGERTIP_LEAST: f32 = 640.0;
 const POSES_LEAST: f32 = 720.0;
 /// Minimum height of the view at which a replay shows poses, too.
 const REPLAY_WITH_POSES: f32 = 480.0;
+/// Width of the list of a recording's trials.
+const TRIALS: f32 = 288.0;
 /// Height of the strip of poses: a row of tiles below its heading.
 const STRIP: f32 = 136.0;
 /// Height in a low window, which is also the minimum.
@@ -92,6 +95,7 @@ impl WindowViews {
         if is_new {
             // The address of a new hand was typed before its slot existed.
             self.own.connection = std::mem::take(&mut before.connection);
+            self.own.connection.focus_address();
         }
         self.others
             .insert(std::mem::replace(&mut self.slot, slot), before);
@@ -179,6 +183,9 @@ impl WindowViews {
                 self.all_ui(ui, pane);
             }
             View::Live | View::Touch | View::Poses | View::Faults => self.live_ui(ui, rect, pane),
+            View::Tune | View::Compare if pane.recorded().is_some() => {
+                self.recorded_trials_ui(ui, pane);
+            }
             View::Tune => self.tune.ui(ui, pane),
             View::Compare => self.tune.results_ui(ui, pane),
             View::Device => self.own.device.ui(ui, pane),
@@ -200,6 +207,15 @@ impl WindowViews {
             }
         });
         ui.add_space(theme::STEP);
+    }
+
+    /// Draws the trials of a recording beside its plots.
+    fn recorded_trials_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        if let Some(line) = &pane.state.timeline {
+            let panel = kit::bare(Panel::left("trials"), TRIALS, theme::GAP_RIGHT);
+            panel.show(ui, |ui| recorded::list_ui(ui, pane, line));
+        }
+        self.own.plots.ui(ui, pane);
     }
 
     /// Draws all hands side by side, above the poses.
