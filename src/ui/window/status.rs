@@ -17,6 +17,7 @@ use crate::record::{Hold, LinkState};
 use crate::ui::inputs::owner_words;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight, format};
 use crate::ui::plots::times::clock;
+use crate::ui::recordings::marks::play_words;
 use crate::ui::text::{
     Text, checkup, errors, hold, main, notices, panels, poses, tune, window, words,
 };
@@ -294,6 +295,7 @@ fn mover(pane: &Pane<'_>) -> Option<(String, Option<Action>)> {
             (words, Some(Action::Input(InputAction::TakeBack)))
         }
         Mover::Setpoints => (tr(window::MOVES_SETPOINTS), None),
+        Mover::Recorded => (play_words(look, pane.hand().recorded_play()?), None),
         Mover::Task => (tr(window::MOVES_TASK), None),
         Mover::Exhibition => (tr(window::MOVES_EXHIBIT), None),
         Mover::Unrecorded => (tr(window::MOVES_UNRECORDED), None),
@@ -410,11 +412,20 @@ fn mover_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_aside: bool) {
 /// Newest unread message that still applies, while it is recent. Faults have a warning and a list of their own.
 fn news<'a>(pane: &Pane<'a>) -> Option<&'a Notice> {
     let now = pane.state.now;
-    let all = pane.state.notices.iter();
-    let mut new = all.take_while(|notice| now.since(notice.at) < NEWS_DURATION);
+    let recent = || {
+        let all = pane.state.notices.iter();
+        all.take_while(|notice| now.since(notice.at) < NEWS_DURATION)
+    };
+    let is_rest = |notice: &Notice| matches!(notice.what, NoticeKind::HoldConfirmed { .. });
+    // After a stop of several hands, the shown one counts, whichever came to rest last.
+    let slot = pane.hand().label.slot;
+    let is_own = |notice: &&Notice| notice.hand.as_ref().is_none_or(|hand| hand.slot == slot);
+    let own = recent().take_while(|notice| is_rest(notice)).find(is_own);
+    let mut new = recent();
     let newest = new.next()?;
+    let newest = own.unwrap_or(newest);
     // A confirmed hold is less important than the cause of the stop.
-    let is_rest = matches!(newest.what, NoticeKind::HoldConfirmed { .. });
+    let is_rest = is_rest(newest);
     let why = new.next().filter(|why| is_rest && why.level > newest.level);
     let shown = why.unwrap_or(newest);
     let moves = Mover::of(pane.hand(), pane.state.now).is_some();

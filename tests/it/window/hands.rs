@@ -552,3 +552,19 @@ fn a_series_at_one_hand_goes_on_beside_another_and_any_key_ends_it() {
     let busy = |hand: &&Hand| hand.running.series().is_some() || hand.connection.is_armed();
     assert_eq!(hands(&bench).iter().filter(|hand| busy(hand)).count(), 0);
 }
+
+#[test]
+fn after_a_stop_of_all_hands_the_line_tells_of_the_shown_one() {
+    for at in 0..2 {
+        let mut bench = two();
+        show(&mut bench, at);
+        bench.click_button("STOP");
+        bench.run(1500);
+        let told = bench.texts_with("Feedback shows rest");
+        let name = bench.state().hand().label.name.to_string();
+        assert!(
+            told.len() == 1 && told[0].starts_with(&name),
+            "{name}: {told:?}"
+        );
+    }
+}
