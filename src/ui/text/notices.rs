@@ -280,7 +280,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
         }
         NoticeKind::Saved { path, entries } => {
             let path = path.display().to_string();
-            format!("{} ({entries})", tr_with(window::SAVED, &path))
+            look.fill(window::SAVED, &[&path, entries])
         }
         NoticeKind::NotSaved { path, error } => {
             of(window::NOT_SAVED, path, &errors::system_error(look, error))

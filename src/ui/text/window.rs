@@ -28,7 +28,7 @@ texts! {
     STAGE: "Hand", "灵巧手";
     PLACE_HAND: "Hand", "灵巧手";
     ARM_FIRST: "Press Arm to move", "先点击“使能”再操作";
-    SAVED: "Saved:", "已保存：";
+    SAVED: "Saved: {}, {} entries", "已保存：{}，{} 条";
     IGNORED: "{} could not be read: {} It was put aside, and the last good one or none is in use. {}", "{} 无法读取：{}该文件已另存，现使用上一份完好的文件或默认值。{}";
     REFUSED: "{} was not used: {}", "未采用 {}：{}";
     NOT_SAVED: "Could not be written:", "无法写入：";
@@ -78,8 +78,8 @@ texts! {
     KEY_ZOOM_OUT: "Everything smaller", "缩小";
     KEY_ZOOM_RESET: "Original size", "原始大小";
     KEY_ON_TRACKS: "On a track: arrows 10, with Shift 100; wheel; Tab to the next.", "在滑轨上：方向键每次 10，按住 Shift 每次 100；滚轮；Tab 到下一个。";
-    KEY_IN_FIELDS: "In a field: a click selects all, Enter takes the number, Esc restores the old one.", "在输入框里：点击全选，回车确认数值，Esc 恢复原值。";
-    KEY_ESCAPE: "While the hand rests, Esc first closes what is open: a menu, a field, a note, this list. Else it stops the hand at once.", "灵巧手静止时，Esc 先关闭打开的菜单、输入框、标记或本列表；否则立即停止灵巧手。";
+    KEY_IN_FIELDS: "In a field: a click selects all, Enter takes the number, Esc restores the old one. An armed hand stops with Esc.", "在输入框里：点击全选，回车确认数值，Esc 恢复原值；已使能时 Esc 也会停止。";
+    KEY_ESCAPE: "While the hand is disarmed and rests, Esc first closes what is open: a menu, a field, a note, this list. Else it stops the hand at once.", "灵巧手未使能且静止时，Esc 先关闭打开的菜单、输入框、标记或本列表；否则立即停止灵巧手。";
     LIVE_WORDS: "speed force threshold angle joint index thumb finger slider plot", "速度 力 角度 自由度 手指 曲线";
     TOUCH_WORDS: "fingertip tactile heat", "指尖 触觉 受力";
     TUNE_WORDS: "trial series find settings plan", "试验 寻找 设置 计划";
