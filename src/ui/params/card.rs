@@ -38,6 +38,9 @@ pub(crate) fn card_of(state: &State, look: Look) -> Option<Card> {
         card = dangers(look, card, &risks.dangers);
         role = ButtonRole::Danger;
     }
+    if is_save && is_nothing && !hurts {
+        role = ButtonRole::Plain;
+    }
     let why = rest_refusal(&state.hand().connection.status).map(device::refusal);
     let decline = answer(device::DECLINE, ButtonRole::Safe, question, false);
     let agree = answer(agree, role, question, true);
