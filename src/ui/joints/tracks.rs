@@ -12,6 +12,9 @@ use crate::ui::text::{Text, main};
 use crate::ui::theme;
 use egui::{Align, Id, Layout, Rect, Ui};
 
+/// Minimum length of a track, in points.
+const TRACK_LEAST: f32 = 48.0;
+
 /// A caption, a slider and a number field in a row.
 struct TrackRow<'a> {
     /// `None` if the caller filled its space.
@@ -36,7 +39,10 @@ impl TrackRow<'_> {
         }
         let width = ui.available_width() - theme::FIELD - theme::GAP - self.after;
         let place = cell(ui, width);
-        let moved = self.track.put(ui, look, place, self.id);
+        // Shorter, it would be a knob without a way: the number alone is set.
+        let is_useful = width >= TRACK_LEAST;
+        let moved = is_useful.then(|| self.track.put(ui, look, place, self.id));
+        let moved = moved.flatten();
         let (scale, tip) = (self.scale, look.tr(main::NUMBER_TIP));
         let number = NumberField::new(self.number_name, tip, scale.low..=scale.high)
             .needs_enter()

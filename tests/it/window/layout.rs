@@ -359,3 +359,17 @@ fn no_state_of_a_drive_is_cut() {
         }
     }
 }
+
+#[test]
+fn no_slider_is_too_short_to_be_moved() {
+    for size in SIZES {
+        let mut bench = Bench::open(SimConfig::default(), size);
+        bench.run(400);
+        let sliders = bench.all(Role::Slider);
+        assert!(sliders.len() >= 6, "{size}");
+        for (name, place) in sliders {
+            assert!(place.width() >= 48.0, "{size} {name}: {place}");
+        }
+        assert!(!bench.typed("All speed number").is_empty(), "{size}");
+    }
+}
