@@ -86,7 +86,7 @@ impl Fault {
                 "Reduce load, speed or force threshold, then clear errors.",
             ),
             Self::Motor => Words::new(
-                "Motor abnormal",
+                "Motor fault",
                 "The drive reports an abnormal motor.",
                 "Clear errors. If it returns, switch the hand off and on, then ask the maker.",
             ),

@@ -100,7 +100,6 @@ pub(crate) const fn fault_short(fault: Fault, language: Language) -> &'static st
     match (language, fault) {
         (Language::En, Fault::OverTemperature) => "Too hot",
         (Language::En, Fault::Communication) => "No contact",
-        (Language::En, Fault::Motor) => "Motor fault",
         (Language::En, Fault::Unknown(_)) => "Unknown",
         (Language::Zh, Fault::Unknown(_)) => "未知故障",
         _ => self::fault(fault, language).title,

@@ -87,12 +87,12 @@ fn the_list_stands_still_while_the_pointer_is_on_it() {
     bench.run(400);
     let (index, ring) = (
         top(&bench, "Index: Stall"),
-        top(&bench, "Ring: Motor abnormal"),
+        top(&bench, "Ring: Motor fault"),
     );
     assert!(ring > index, "the new one comes last: {index} {ring}");
     bench.point_away();
     bench.run(100);
-    assert!(top(&bench, "Ring: Motor abnormal") < top(&bench, "Index: Stall"));
+    assert!(top(&bench, "Ring: Motor fault") < top(&bench, "Index: Stall"));
 }
 
 #[test]
@@ -114,12 +114,12 @@ fn the_status_of_a_joint_is_one_click_away_from_its_explanation() {
             .top()
     };
     assert!(
-        top("Index: Stall") < top("Ring: Motor abnormal"),
+        top("Index: Stall") < top("Ring: Motor fault"),
         "the asked one first"
     );
     bench.click("Ring status, explained");
     bench.run(60);
-    assert!(bench.shows("Ring · says now: Motor abnormal"));
+    assert!(bench.shows("Ring · says now: Motor fault"));
     bench.click("Show all drives");
     bench.run(60);
     assert!(bench.texts_with("says now").is_empty());
