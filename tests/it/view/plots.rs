@@ -760,3 +760,28 @@ fn switches_table_and_plots_stay_apart_at_every_size_and_in_both_languages() {
         }
     }
 }
+
+#[test]
+fn time_and_value_at_the_pointer_lie_over_the_curves() {
+    let mut harness = open_at(known(), LARGE);
+    // With so many readings in a column, the curves are one mesh.
+    choose_window(&mut harness, "1 min");
+    let place = at(&harness, 0.5);
+    harness.hover_at(place);
+    harness.run_steps(4);
+    let shapes = &harness.output().shapes;
+    let is_text = |shape: &egui::Shape| match shape {
+        egui::Shape::Text(text) => text.galley.text().contains(" s  "),
+        _ => false,
+    };
+    let text = shapes.iter().rposition(|clipped| is_text(&clipped.shape));
+    let text = text.expect("time and value are shown");
+    let plot = ground(&harness);
+    let covers = |shape: &egui::Shape| {
+        matches!(shape, egui::Shape::Mesh(_)) && shape.visual_bounding_rect().intersects(plot)
+    };
+    let mut after = shapes.iter().skip(text);
+    assert!(!after.any(|clipped| covers(&clipped.shape)));
+    let mut before = shapes.iter().take(text);
+    assert!(before.any(|clipped| covers(&clipped.shape)));
+}
