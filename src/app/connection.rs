@@ -457,9 +457,8 @@ impl StatusReport<'_, '_> {
             }
         }
         // The window disarms its own status at once: the link's reason follows. The others have marks of their own.
-        let has_mark = |why: Disarmed| {
-            matches!(why, Disarmed::Stop | Disarmed::Fault | Disarmed::LinkLost)
-        };
+        let has_mark =
+            |why: Disarmed| matches!(why, Disarmed::Stop | Disarmed::Fault | Disarmed::LinkLost);
         let is_news = before.state.is_live() && link.disarmed != before.disarmed;
         if is_news && link.disarmed.is_some_and(|why| !has_mark(why)) {
             self.history.mark(self.now, MarkKind::Disarmed);
