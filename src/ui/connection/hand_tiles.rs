@@ -99,7 +99,7 @@ fn tile(pane: &Pane<'_>, endpoint: Endpoint, found: Option<&FoundHand>) -> HandT
     }
 }
 
-pub(super) const fn side_words(side: Side) -> Text {
+pub(crate) const fn side_words(side: Side) -> Text {
     match side {
         Side::Left => panels::LEFT_HAND,
         Side::Right => panels::RIGHT_HAND,

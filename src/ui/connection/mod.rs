@@ -1,7 +1,7 @@
 //! The connection: address, link and its statistics. Requests connections and scans; opens nothing.
 mod detail;
 pub(crate) mod figures;
-mod hand_tiles;
+pub(crate) mod hand_tiles;
 pub(crate) mod link_words;
 pub(crate) mod scan;
 mod shared;

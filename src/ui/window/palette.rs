@@ -5,11 +5,14 @@ use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
 use crate::app::hand::list::HandsAction;
 use crate::app::layout::RoomLayouts;
+use crate::app::recordings::RecordingAction;
 use crate::app::settings::PlotWindow;
 use crate::poses::library::EntryId;
+use crate::transport::Endpoint;
+use crate::ui::connection::hand_tiles::side_words;
 use crate::ui::kit::{self, Button, Look, Pane, ViewRequest, Weight};
 use crate::ui::plots::head::span_text;
-use crate::ui::text::{Text, exhibit, inputs, panels, window};
+use crate::ui::text::{Text, exhibit, inputs, panels, poses, recordings, window};
 use crate::ui::theme;
 use crate::ui::view::{Tab, View};
 use crate::ui::window::header::toggle_recording;
@@ -19,6 +22,8 @@ use egui::{Align2, Frame, Id, Key, Modifiers, Rect, Stroke, Ui, Window};
 
 /// Maximum number of commands shown at once; a longer query finds the others.
 const SHOWN_MAX: usize = 10;
+/// Maximum number of recordings that are searched.
+const RECORDINGS_MAX: usize = 200;
 /// Width in points.
 const WIDTH: f32 = 520.0;
 
@@ -183,36 +188,76 @@ const fn name(wish: Wish) -> Text {
     }
 }
 
-/// Commands without a key: settings of the window, recording, exhibitions. None of them moves a hand.
-fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, &'static str, Action)> {
+/// Commands without a key: settings of the window, hands, recordings, exhibitions. None of them moves a hand.
+fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, String, Action)> {
     let settings = &pane.state.settings;
     let hand = pane.hand();
     let lay_out = |rooms| Action::Layout(pane.layout(ui, rooms));
     let hold_to_run = Action::HoldToRun(!settings.hold_to_run);
     let disarm_idle = Action::DisarmIdle(!settings.disarm_idle);
     let enter_file = Action::Exhibit(ExhibitAction::EnterFile);
-    let mut acts = vec![
-        (window::RESET, "", lay_out(RoomLayouts::default())),
-        (inputs::HOLD_TO_RUN, "", hold_to_run),
-        (inputs::DISARM_IDLE, "", disarm_idle),
-        (exhibit::ENTER, "", Action::Exhibit(ExhibitAction::Enter)),
-        (exhibit::ENTER_FILE, "", enter_file),
-    ];
+    let other = hand.side.other();
+    let mut acts: Vec<(Text, String, Action)> = [
+        (window::RESET, lay_out(RoomLayouts::default())),
+        (inputs::HOLD_TO_RUN, hold_to_run),
+        (inputs::DISARM_IDLE, disarm_idle),
+        (exhibit::ENTER, Action::Exhibit(ExhibitAction::Enter)),
+        (exhibit::ENTER_FILE, enter_file),
+        (side_words(other), Action::Side(other)),
+    ]
+    .map(|(text, action)| (text, String::new(), action))
+    .into();
     let is_new = |span: &PlotWindow| *span != settings.plot_window;
     for span in PlotWindow::ALL.into_iter().filter(is_new) {
         let action = Action::PlotWindow(span);
-        acts.push((panels::WINDOW_NAME, span_text(span), action));
+        acts.push((panels::WINDOW_NAME, span_text(span).to_owned(), action));
     }
+    let mut act = |text, action| acts.push((text, String::new(), action));
     if pane.state.hands.has_room() {
-        acts.push((window::ADD_HAND, "", Action::Hands(HandsAction::Add)));
+        act(window::ADD_HAND, Action::Hands(HandsAction::Add));
     }
     if pane.recorded().is_none() {
-        acts.push((window::RECORD, "", toggle_recording(hand)));
+        act(window::RECORD, toggle_recording(hand));
         if hand.readings.faults.nothing_to_clear().is_none() {
-            acts.push((panels::CLEAR, "", Action::ClearErrors));
+            act(panels::CLEAR, Action::ClearErrors);
         }
+        if hand.pose_now(pane.state.now).is_some() {
+            let name = pane.look.tr(poses::POSE).to_owned();
+            act(poses::CAPTURE, Action::Capture(name));
+        }
+        if hand.connection.endpoint.is_some() {
+            act(panels::DISCONNECT, Action::Disconnect);
+        }
+        acts.extend(hands(pane));
     }
+    acts.extend(recorded(pane));
     acts
+}
+
+/// Commands that connect the slot of the shown hand to another hand that was used before.
+fn hands(pane: &Pane<'_>) -> impl Iterator<Item = (Text, String, Action)> {
+    let settings = &pane.state.settings;
+    let recent = settings.recent.iter().filter_map(|text| text.parse().ok());
+    let is_open = |endpoint: &Endpoint| {
+        let mut open = pane.state.hands.iter();
+        open.any(|hand| hand.connection.endpoint.as_ref() == Some(endpoint))
+    };
+    let closed = recent.filter(move |endpoint: &Endpoint| !is_open(endpoint));
+    closed.map(|endpoint| {
+        let name = settings.hand_name(&endpoint).unwrap_or_default();
+        let name = format!("{name} {endpoint}").trim().to_owned();
+        (panels::CONNECT, name, Action::Connect(endpoint))
+    })
+}
+
+/// Commands that replay the newest recordings.
+fn recorded(pane: &Pane<'_>) -> impl Iterator<Item = (Text, String, Action)> {
+    let items = pane.state.recordings.items.iter();
+    items.take(RECORDINGS_MAX).map(|item| {
+        let name = format!("{} {}", item.title(), item.began());
+        let open = RecordingAction::Open(item.path.clone());
+        (recordings::REPLAY, name, Action::Recording(open))
+    })
 }
 
 /// Keywords of a command's content, in addition to its name.

@@ -1,10 +1,12 @@
 //! Claims about the keyboard: what each key does, in which order Tab walks, and that everything has a name.
 
-use crate::setup::window::{Bench, Role};
+use crate::setup::window::{Bench, LARGE, Role};
 use egui::{Key, Modifiers};
 use handscope::app::action::Action;
 use handscope::app::settings::{AngleUnit, Language, PlotWindow, Settings, Theme};
 use handscope::hand::Dof;
+use handscope::hand::kinematics::Side;
+use handscope::sim::SimConfig;
 use handscope::ui::View;
 
 /// Nodes that a person can act on.
@@ -374,6 +376,33 @@ fn the_palette_finds_a_view_an_act_and_a_pose_in_either_language() {
     }
     assert!(bench.state().settings.hold_to_run);
     assert_eq!(bench.state().settings.plot_window, PlotWindow::M5);
+}
+
+#[test]
+fn the_palette_saves_a_pose_and_finds_a_hand_used_before() {
+    let mut bench = Bench::kept(SimConfig::default(), "tcp:127.0.0.1:6000", LARGE);
+    bench.wait(1000);
+    let choose = |bench: &mut Bench, typed: &str| {
+        bench.key_with(Modifiers::COMMAND, Key::K);
+        bench.run(100);
+        bench.type_into("Commands", typed);
+        bench.key(Key::Enter);
+        bench.run(200);
+    };
+    bench.act(Action::Connect("tcp:127.0.0.1:6001".parse().unwrap()));
+    bench.wait(1000);
+    let poses = bench.state().poses.library.poses.len();
+    choose(&mut bench, "save pose");
+    assert_eq!(bench.state().poses.library.poses.len(), poses + 1);
+    choose(&mut bench, "left hand");
+    assert_eq!(bench.state().hand().side, Side::Left);
+    choose(&mut bench, "disconnect");
+    bench.wait(1000);
+    assert_eq!(bench.state().hand().connection.endpoint, None);
+    choose(&mut bench, "connect 6001");
+    let endpoint = bench.state().hand().connection.endpoint.clone();
+    assert_eq!(endpoint, Some("tcp:127.0.0.1:6001".parse().unwrap()));
+    assert!(bench.writes().is_empty(), "none of them moves a hand");
 }
 
 #[test]
