@@ -21,6 +21,8 @@ pub struct IntakeView {
     pub refused: BTreeMap<StreamLineFault, u64>,
     /// Last refusal, with the field.
     pub last_refused: Option<LineRefusal>,
+    /// Time of the last refusal.
+    pub refused_at: Option<Moment>,
     /// Lines that stopped the hand or released the dead-man although something else in them was wrong.
     pub odd_stops: u64,
     /// The last of them: its sender, and the error.
@@ -83,6 +85,7 @@ impl Intake {
             Err(refusal) => {
                 *self.view.refused.entry(refusal.fault).or_default() += 1;
                 self.view.last_refused = Some(*refusal);
+                self.view.refused_at = Some(now);
             }
         }
         taken

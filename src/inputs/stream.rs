@@ -61,6 +61,12 @@ impl StreamView {
         let (sender, last) = self.intake.sender?;
         is_fresh(last, now).then_some(Owner::Stream(sender))
     }
+
+    /// True while lines arrive and each is refused.
+    pub fn is_refusing(&self, now: Moment) -> bool {
+        let last = self.intake.refused_at.filter(|last| is_fresh(*last, now));
+        last.is_some() && self.owner(now).is_none()
+    }
 }
 
 /// An open stream. Dropping it closes it.

@@ -112,6 +112,9 @@ impl SourceCards {
         let sender = view.intake.sender.map(|(sender, _)| sender.to_string());
         let words = match (at, owner.and(sender)) {
             (None, _) => look.tr(inputs::OFF).to_owned(),
+            (Some(_), None) if view.is_refusing(pane.state.now) => {
+                look.tr(inputs::ALL_REFUSED).to_owned()
+            }
             (Some(_), None) => look.tr(inputs::NOBODY_SENDS).to_owned(),
             (Some(_), Some(sender)) => {
                 let rate = format!("{:.0}", view.intake.rate_hz);

@@ -25,6 +25,7 @@ texts! {
     ON: "On", "已开启", "It is open. Press to end it: whoever moves the hand through it is stopped.", "已开启。按下即结束；正在由此驱动的灵巧手会停止。";
     OFF: "Off", "已关闭";
     LISTEN: "Listen", "接收", "Takes lines at this address; nothing moves by that.", "在此地址接收数据；不会移动灵巧手。";
+    ALL_REFUSED: "Lines arrive, and each is refused.", "有数据到达，但均被拒绝。";
     NOBODY_SENDS: "No sender now.", "目前没有数据。";
     HZ_FROM: "{} Hz from {}", "{} Hz，来自 {}";
     TAKEN_LINES: "Lines taken", "已接收";

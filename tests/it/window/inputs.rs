@@ -377,3 +377,21 @@ fn the_exhibition_is_started_from_its_card() {
     bench.run(200);
     assert!(bench.state().exhibit.is_some());
 }
+
+#[test]
+fn lines_that_are_all_refused_are_not_called_silence() {
+    let mut bench = Bench::live();
+    let to = listening(&mut bench);
+    assert!(bench.shows("No sender now."));
+    let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+    for _ in 0..20 {
+        let line = br#"{"left":[null,null,null,0.6,null,null]}"#;
+        sender.send_to(line, to).unwrap();
+        bench.run(20);
+    }
+    let refused = &bench.state().hand().inputs.stream_view.intake.refused;
+    assert!(refused.values().sum::<u64>() > 5, "{refused:?}");
+    assert!(bench.shows("Lines arrive, and each is refused."));
+    bench.wait(5000);
+    assert!(bench.shows("No sender now."), "{:?}", bench.texts());
+}
