@@ -7,7 +7,8 @@ use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::parse::{dof, hand, number};
 use crate::cli::trial::drive::{ArmedHand, by_user};
 use crate::hand::newtons::{
-    Contradiction, ForceScale, JointPoints, LEAST_LIMIT_G, LOADS, MOST_LIMIT_G, NewtonsMap, READING_MAX_G, ScalePoint,
+    Contradiction, ForceScale, JointPoints, LEAST_LIMIT_G, LOADS, MOST_LIMIT_G, NewtonsMap,
+    READING_MAX_G, ScalePoint,
 };
 use crate::hand::{Dof, Finger, Force};
 use crate::link::{ArmRequest, Stop};

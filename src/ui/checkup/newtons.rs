@@ -54,7 +54,10 @@ impl NewtonsPanel {
         let look = pane.look;
         ui.horizontal(|ui| {
             Label::muted(look, checkup::SCALE_LIMIT).ui(ui);
-            let (name, tip) = (look.tr(checkup::SCALE_LIMIT), look.tip(checkup::SCALE_LIMIT));
+            let (name, tip) = (
+                look.tr(checkup::SCALE_LIMIT),
+                look.tip(checkup::SCALE_LIMIT),
+            );
             let range = f64::from(LEAST_LIMIT_G)..=f64::from(MOST_LIMIT_G);
             let limit = NumberField::new(name, tip, range);
             if let Some(typed) = limit.whole_ui(ui, pane, Some(self.limit.get())) {
@@ -115,14 +118,18 @@ fn running_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     kit::progress_ui(ui, look, look.tr(checkup::NEWTONS), kit::share(done, LOADS));
     let waits = asked.is_none().then(|| look.tr(checkup::SCALE_WAITS));
     ui.horizontal(|ui| {
-        let (name, tip) = (look.tr(checkup::SCALE_SHOWS), look.tip(checkup::SCALE_SHOWS));
+        let (name, tip) = (
+            look.tr(checkup::SCALE_SHOWS),
+            look.tip(checkup::SCALE_SHOWS),
+        );
         Label::muted(look, checkup::SCALE_SHOWS).ui(ui);
         let field = NumberField::new(name, tip, 0.0..=READING_MAX_G)
             .needs_enter()
             .decimals(1)
             .disabled(waits);
         if let Some(grams) = field.ui(ui, pane, None) {
-            pane.actions.push(Action::Scale(ScaleAction::Reading(grams)));
+            pane.actions
+                .push(Action::Scale(ScaleAction::Reading(grams)));
         }
     });
     ui.horizontal_wrapped(|ui| {
@@ -146,10 +153,11 @@ fn end_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let Some((run, end)) = run.and_then(|run| Some((run, run.end?))) else {
         return;
     };
-    let words = look.pair(
-        look.tr(words::dof(run.dof)),
-        &checkup::scale_end(look, end),
-    );
-    let color = if end.is_ok() { palette.text } else { palette.warn };
+    let words = look.pair(look.tr(words::dof(run.dof)), &checkup::scale_end(look, end));
+    let color = if end.is_ok() {
+        palette.text
+    } else {
+        palette.warn
+    };
     kit::small_text_ui(ui, &words, color);
 }

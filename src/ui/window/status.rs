@@ -3,8 +3,8 @@
 
 use crate::app::action::Action;
 use crate::app::hand::hold::HoldAction;
-use crate::app::hand::scale::ScaleAction;
 use crate::app::hand::mover::{Mover, rests};
+use crate::app::hand::scale::ScaleAction;
 use crate::app::inputs::InputAction;
 use crate::app::notices::{Level, Notice, NoticeKind};
 use crate::app::readings::Freshness;
