@@ -44,8 +44,11 @@ impl CheckupPanel {
                         }
                     }
                     None => {
-                        self.begin_ui(ui, pane);
-                        self.newtons.ui(ui, pane);
+                        kit::put_scroll_bar_in_margin(ui);
+                        egui::ScrollArea::vertical().show(ui, |ui| {
+                            self.begin_ui(ui, pane);
+                            self.newtons.ui(ui, pane);
+                        });
                     }
                 }
             });

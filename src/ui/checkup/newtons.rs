@@ -38,14 +38,23 @@ impl NewtonsPanel {
             return;
         }
         kit::small_text_ui(ui, look.tr(checkup::NEWTONS_ABOUT), look.palette.muted);
-        for dof in Finger::ALL.map(Finger::bend) {
-            let name = look.pair(look.tr(words::dof(dof)), &known(pane, dof));
-            let button = Button::new(&name, "").switch(dof == self.dof);
-            let response = button.ui(ui, look);
-            if kit::pressed(ui, &response) {
-                self.dof = dof;
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
+            for dof in Finger::ALL.map(Finger::bend) {
+                let tip = known(pane, dof);
+                let name = look.tr(words::finger(dof.finger()));
+                let button = Button::new(name, &tip).switch(dof == self.dof);
+                let response = button.ui(ui, look);
+                if kit::pressed(ui, &response) {
+                    self.dof = dof;
+                }
             }
-        }
+        });
+        let chosen = look.pair(
+            look.tr(words::finger(self.dof.finger())),
+            &known(pane, self.dof),
+        );
+        Label::new(&chosen, look.palette.text).wrap().ui(ui);
         self.start_ui(ui, pane);
         end_ui(ui, pane);
     }
@@ -102,7 +111,7 @@ fn running_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let Some(run) = pane.hand().running.scale() else {
         return;
     };
-    let joint = look.tr(words::dof(run.dof));
+    let joint = look.tr(words::finger(run.dof.finger()));
     let (done, asked, doubt) = (run.points.len(), run.asked, run.doubt);
     let words = match asked {
         Some((load, hand_g)) => {
@@ -153,7 +162,10 @@ fn end_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let Some((run, end)) = run.and_then(|run| Some((run, run.end?))) else {
         return;
     };
-    let words = look.pair(look.tr(words::dof(run.dof)), &checkup::scale_end(look, end));
+    let words = look.pair(
+        look.tr(words::finger(run.dof.finger())),
+        &checkup::scale_end(look, end),
+    );
     let color = if end.is_ok() {
         palette.text
     } else {

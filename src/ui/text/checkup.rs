@@ -50,7 +50,7 @@ texts! {
     ENDED_EARLY: "The check-up ended early, its report is partial. {}", "体检提前结束，报告不完整。{}";
 
     NEWTONS: "Force in newtons", "以牛顿表示的力";
-    NEWTONS_ABOUT: "A kitchen scale tells how many newtons a gram of this hand is. Put it under a finger: the finger presses it gently at five loads, and lets go after each.", "用厨房秤可测出这只手的 1 g 相当于多少牛顿。把秤放在手指下方：手指以五种力轻压，每次压后松开。";
+    NEWTONS_ABOUT: "Put a kitchen scale under a finger: it presses gently at five loads, and lets go after each.", "把厨房秤放在手指下方：手指以五种力轻压，每次压后松开。";
     SCALE_NONE: "not measured", "未测量";
     SCALE_PART: "{} of {} loads", "已测 {} / {}";
     SCALE_KNOWN: "100 g = {} N ±{} %, {}", "100 g = {} N ±{} %，{}";
