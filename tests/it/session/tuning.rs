@@ -15,6 +15,7 @@ use handscope::app::state::State;
 use handscope::hand::Dof;
 use handscope::params::rows::{ParamId, Value};
 use handscope::record::LinkState;
+use handscope::shell::headless::labels::displayed;
 use handscope::ui::View;
 use nix::sys::signal::Signal;
 use std::path::Path;
@@ -138,7 +139,8 @@ impl Person {
         let mut named =
             labels.filter(|node| node.accesskit_node().label().as_deref() == Some(name));
         let found = named.next().and_then(|node| node.value());
-        found.unwrap_or_else(|| panic!("no reading '{name}'"))
+        let found = found.unwrap_or_else(|| panic!("no reading '{name}'"));
+        displayed(name, &found).to_owned()
     }
 }
 
