@@ -505,7 +505,14 @@ impl FingerHold {
         let room = self.range.most_g - seen.expected_g;
         let steps = (missing / self.stiffness).round().max(1.0);
         let allowed = (room / (self.stiffness * self.stiffer)).floor();
-        let steps = steps.min(allowed).min(STEP_MAX);
+        // Rather one step that the threshold of the drive may have to end than an object that drops.
+        let is_needed = self.is_short || missing >= self.stiffness;
+        let least = if is_needed && room >= self.stiffness {
+            1.0
+        } else {
+            0.0
+        };
+        let steps = steps.min(allowed.max(least)).min(STEP_MAX);
         if steps < 1.0 {
             return None;
         }

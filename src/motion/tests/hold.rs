@@ -13,7 +13,7 @@ use crate::link::LinkStatus;
 use crate::motion::hold::{HoldClose, HoldEnd, HoldPhase, HoldRun, HoldStart};
 use crate::motion::program::{Order, Program, Seen};
 use crate::record::{Abort, LinkState};
-use crate::sim::object::{Friction, Loads, PullLoad, listed};
+use crate::sim::object::{Friction, Loads, NamedObject, PullLoad, listed};
 use crate::sim::personality::ForceCompared;
 use crate::sim::{Object, Obstacle, Scenario, SimConfig, SimHand};
 use std::time::Duration;
@@ -446,6 +446,28 @@ fn a_slip_tightens_the_fingers_at_once() {
     bench.run_for(Duration::from_secs(2));
     let held = bench.hand.sim.held();
     assert!(held.held && !held.slides, "{held:?}");
+}
+
+#[test]
+fn a_rigid_and_heavy_block_is_pinched_by_the_force_that_it_needs() {
+    let mut hand = SimConfig {
+        object: Some(NamedObject::Block.object()),
+        ..SimConfig::default()
+    };
+    for seed in 1..4 {
+        hand.seed = seed;
+        let pinch = HoldStart {
+            close: HoldClose::Pinch(Gap::MIN),
+            ..start()
+        };
+        let mut bench = Bench::of(Hand::new(hand.clone()), pinch);
+        bench.run_until_held();
+        bench.run_for(Duration::from_secs(6));
+        let held = bench.hand.sim.held();
+        assert!(held.held && !held.slides, "seed {seed}: {held:?}");
+        let over = bench.peak_g - f64::from(AT_MOST_G);
+        assert!(over <= 64.0, "seed {seed}: {over} g over at most");
+    }
 }
 
 #[test]

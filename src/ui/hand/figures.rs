@@ -15,6 +15,9 @@ use crate::ui::text::{hold, main, panels, poses, words};
 use crate::ui::theme;
 use egui::{Color32, FontId, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
+/// Distance of the line that tells what is in the hand from the one below it.
+const OBJECT_LINE: f32 = 16.0;
+
 /// Minimum height of a picture with labels, in points.
 const LEAST: f32 = 200.0;
 /// Size of a label: its column's width, and its three lines.
@@ -215,7 +218,7 @@ pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
         let is_short = run.view.phase == HoldPhase::CannotHold;
         color = if is_short { look.palette.warn } else { color };
         if let Some(object) = &run.view.object {
-            let above = place.translate(vec2(0.0, -theme::PAD));
+            let above = place.translate(vec2(0.0, -OBJECT_LINE));
             let words = hold::object(look, object);
             let label = Label::new(&words, look.palette.text).small();
             label.put(ui, above.with_min_y(above.bottom() - theme::PAD));
