@@ -460,7 +460,7 @@ fn a_rigid_and_heavy_block_is_pinched_by_the_force_that_it_needs() {
             close: HoldClose::Pinch(Gap::MIN),
             ..start()
         };
-        let mut bench = Bench::of(Hand::new(hand.clone()), pinch);
+        let mut bench = Bench::of(Hand::new(hand), pinch);
         bench.run_until_held();
         bench.run_for(Duration::from_secs(6));
         let held = bench.hand.sim.held();
