@@ -246,16 +246,12 @@ impl FingerShown {
 
 /// The median of several values; its bound is that of one finger, less the more fingers agree.
 fn combined(values: &[Bounded]) -> Option<Bounded> {
-    let value = median(&values.iter().map(|own| own.value).collect::<Vec<f64>>())?;
-    let bound = median(&values.iter().map(|own| own.bound).collect::<Vec<f64>>())?;
+    let bounds: Vec<f64> = values.iter().map(|own| own.bound).collect();
+    let values: Vec<f64> = values.iter().map(|own| own.value).collect();
     Some(Bounded {
-        value,
-        bound: bound / count_of(values).sqrt(),
+        value: median(&values)?,
+        bound: median(&bounds)? / count(&bounds).sqrt(),
     })
-}
-
-fn count_of(values: &[Bounded]) -> f64 {
-    count(&values.iter().map(|own| own.value).collect::<Vec<f64>>())
 }
 
 /// Size between the pads of index and thumb, whose contacts begin at these angles.

@@ -44,7 +44,7 @@ use crate::hand::{
 };
 use crate::history::MarkKind;
 use crate::link::session::motion::arm_refusal;
-use crate::link::{LeaseRefusal, LinkStatus, Owner, RequestError};
+use crate::link::{Clock, LeaseRefusal, LinkHandle, LinkStatus, Owner, RequestError};
 use crate::motion::drive::Armed;
 use crate::motion::play::{self, PlayCommand, PlayStart};
 use crate::poses::player::{PlayMode, PlayPlan, PlayView};
@@ -497,21 +497,31 @@ impl Hand {
         self.recorded.as_ref().and_then(RecordedMover::playing)
     }
 
+    /// Lends an armed hand to a program of this window; whatever moved it before loses it. `None` if it is not armed.
+    pub(crate) fn lend_armed(&mut self, clock: Clock) -> Option<(LinkHandle, Armed)> {
+        let epoch = self.own_epoch()?;
+        self.take_over();
+        let open = self.connection.open.as_mut()?;
+        let armed = Armed {
+            epoch,
+            lease: open.lend_lease(),
+            seen: self.readings.sample,
+            clock,
+        };
+        Some((open.link.clone(), armed))
+    }
+
     /// Starts an entry of the library, if the hand is armed. True if it was started.
     pub(crate) fn play(&mut self, plan: PlayPlan, pace: PlayMode, env: &Env, now: Moment) -> bool {
-        let Some(epoch) = self.own_epoch() else {
+        let Some((link, armed)) = self.lend_armed(env.clock) else {
             return false;
         };
         let entry = plan.entry;
-        self.take_over();
         for cue in plan.cues() {
             // A hold sets speeds and thresholds of whatever joints hold the object.
             let any = cue.hold.map(|_| PerDof::splat(Some(Angle::MAX)));
             self.controls.override_limits(&any.unwrap_or(cue.targets));
         }
-        let Some(open) = &mut self.connection.open else {
-            return false;
-        };
         let thresholds = plan.cues.iter().map(|cue| cue.thresholds).collect();
         let start = PlayStart {
             plan,
@@ -521,14 +531,7 @@ impl Hand {
             overshoot: OvershootMap::clone(&self.overshoot.map),
             force_limit: Force::MAX,
         };
-        let armed = Armed {
-            epoch,
-            lease: open.lend_lease(),
-            seen: self.readings.sample,
-            clock: env.clock,
-        };
         let (commands, wanted) = mpsc::channel(COMMANDS_MAX);
-        let link = open.link.clone();
         let task = Running::start(env, |steps| async move {
             play::play(&link, armed, start, wanted, |step| steps.send(step)).await
         });

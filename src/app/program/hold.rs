@@ -10,7 +10,6 @@ use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Angle, PerDof};
-use crate::motion::drive::Armed;
 use crate::motion::grasp::run::GraspStart;
 use crate::motion::grasp::seen::GraspLabel;
 use crate::motion::hold::{HoldClose, HoldStart};
@@ -96,10 +95,9 @@ fn start(
     settings: &Settings,
     ctx: &Ctx<'_>,
 ) {
-    let Some(epoch) = hand.own_epoch() else {
+    let Some((link, armed)) = hand.lend_armed(ctx.env.clock) else {
         return;
     };
-    hand.take_over();
     // The user's own speeds and thresholds are restored when the user moves a joint next.
     hand.controls
         .override_limits(&PerDof::splat(Some(Angle::MAX)));
@@ -117,20 +115,11 @@ fn start(
         blocks: settings.size_blocks(hand.connection.endpoint.as_ref()),
         grip: hand.readings.grip.clone(),
     };
-    let Some(open) = &mut hand.connection.open else {
-        return;
-    };
-    let armed = Armed {
-        epoch,
-        lease: open.lend_lease(),
-        seen: hand.readings.sample,
-        clock: ctx.env.clock,
-    };
     let (grasp, unconfirmed) = repeated.map_or((None, None), |repeated| {
         (Some(repeated.grasp), repeated.unconfirmed)
     });
     let start = GraspStart { hold, unconfirmed };
-    let run = HoldMotion::begin(open.link.clone(), armed, start, grasp, ctx.env);
+    let run = HoldMotion::begin(link, armed, start, grasp, ctx.env);
     hand.running.0 = Some(MotionRun::Hold(Box::new(run)));
     hand.record_play(&RecordedPlay::hold(), ctx.now);
 }

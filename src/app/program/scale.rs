@@ -6,7 +6,6 @@ use crate::app::hand::running::MotionRun;
 use crate::app::hand::scale::{ScaleAction, ScaleMotion};
 use crate::hand::newtons::{JointPoints, ScalePoint};
 use crate::hand::{Angle, Dof, Force, PerDof};
-use crate::motion::drive::Armed;
 use crate::motion::scale::{ScaleInput, ScaleStart};
 use crate::store::calendar::{day, since_1970};
 
@@ -50,26 +49,16 @@ fn joint(limit: Force, points: Vec<ScalePoint>) -> JointPoints {
 
 /// Starts a calibration, if the hand is armed. Loads that were accepted earlier with this limit are not measured again.
 fn start(hand: &mut Hand, dof: Dof, limit: Force, ctx: &Ctx<'_>) {
-    let Some(epoch) = hand.own_epoch() else {
+    let Some((link, armed)) = hand.lend_armed(ctx.env.clock) else {
         return;
     };
-    hand.take_over();
     // The user's own speed and threshold are restored when the user moves the joint next.
     hand.controls
         .override_limits(&PerDof::from_fn(|own| (own == dof).then_some(Angle::MAX)));
     let known = hand.newtons.points(dof);
     let known = known.filter(|own| own.limit == limit && own.scale().is_err());
     let points = known.map(|own| own.points.clone()).unwrap_or_default();
-    let Some(open) = &mut hand.connection.open else {
-        return;
-    };
-    let armed = Armed {
-        epoch,
-        lease: open.lend_lease(),
-        seen: hand.readings.sample,
-        clock: ctx.env.clock,
-    };
     let start = ScaleStart { dof, limit, points };
-    let run = ScaleMotion::begin(open.link.clone(), armed, start, ctx.env);
+    let run = ScaleMotion::begin(link, armed, start, ctx.env);
     hand.running.0 = Some(MotionRun::Scale(Box::new(run)));
 }
