@@ -129,6 +129,15 @@ impl RoundBar {
 }
 
 impl Near {
+    /// Distance from a point to the surface of the nearest bar in mm, negative within it.
+    pub(crate) fn apart(&self, at: Vec3) -> f32 {
+        let least = self.fours.iter().map(|four| {
+            let way = four.nearest(&four.to(at));
+            (way.dot(&way).map(f32::sqrt) - four.radius).min_element()
+        });
+        least.fold(f32::MAX, f32::min)
+    }
+
     /// The shares of sky and key light that reach a point with this normal.
     pub(crate) fn left(&self, at: Vec3, normal: Vec3) -> (f32, f32) {
         let (mut sky, mut lit) = (Vec4::ONE, Vec4::ONE);

@@ -34,6 +34,16 @@ impl Turn {
             },
         }
     }
+
+    /// The view at this share of the way to another one.
+    pub fn towards(self, other: Self, share: f32) -> Self {
+        let at = |from: f32, to: f32| from + (to - from) * share;
+        Self {
+            yaw: at(self.yaw, other.yaw),
+            pitch: at(self.pitch, other.pitch),
+            roll: at(self.roll, other.roll),
+        }
+    }
 }
 
 /// Projects points of the hand to the screen.

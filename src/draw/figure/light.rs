@@ -13,6 +13,11 @@ use handscope_core::hand::kinematics::{Segment, SegmentFrames};
 /// Falloff of the key light to the right and downwards, per millimetre.
 const FALL_PER_MM: f32 = 0.0016;
 
+/// Opacity of glass at its rim.
+const RIM_PART: f32 = 0.75;
+/// Width of the rim around the contact of a finger with a held object, and of the edge at which the object ends there.
+const CONTACT_MM: f32 = 3.5;
+
 /// One solid to draw.
 #[derive(Debug)]
 pub struct PlacedSolid<'a> {
@@ -34,6 +39,8 @@ pub struct Coat {
     pub heat: Option<(Color32, f32)>,
     /// Colour of plain surfaces.
     pub color: Option<Color32>,
+    /// The fingers shine through where they touch it: it ends softly at them, with a bright rim around each contact.
+    pub is_held: bool,
 }
 
 /// The light of one picture.
@@ -109,11 +116,17 @@ impl Shade<'_> {
             blend(color, 1.0, share);
         }
         let glass = self.coat.glass;
-        let alpha = if glass > 0.0 {
-            glass + (0.75 - glass) * (1.0 - facing).powi(2)
+        let mut alpha = if glass > 0.0 {
+            glass + (RIM_PART - glass) * (1.0 - facing).powi(2)
         } else {
             1.0
         };
+        if self.coat.is_held {
+            let apart = self.near.apart(at);
+            let contact = (1.0 - apart.abs() / CONTACT_MM).max(0.0);
+            let inside = (-apart / CONTACT_MM).clamp(0.0, 1.0);
+            alpha = (alpha * (1.0 - inside)).max(RIM_PART * contact);
+        }
         studio::lit(rgb, alpha)
     }
 

@@ -36,6 +36,15 @@ pub enum HeldSize {
     Pads(f32),
 }
 
+impl HeldSize {
+    /// The size in mm, however it is known.
+    pub const fn mm(self) -> f32 {
+        match self {
+            Self::Block(mm) | Self::Ball(mm) | Self::Pads(mm) => mm,
+        }
+    }
+}
+
 /// The blocks measured with one hand, at most two, the smaller first.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(from = "Vec<Block>")]

@@ -15,13 +15,14 @@ use crate::ui::text::{hold, main, panels, poses, words};
 use crate::ui::theme;
 use egui::{Color32, FontId, Pos2, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
-/// Distance of the line that tells what is in the hand from the one below it.
-const OBJECT_LINE: f32 = 16.0;
+/// Height of the word for the grasp, and of the picture from which on a small line below it has space.
+const WORD: f32 = 26.0;
+const NOTES_FROM: f32 = 320.0;
 
 /// Minimum height of a picture with labels, in points.
 const LEAST: f32 = 200.0;
 /// Size of a label: its column's width, and its three lines.
-const WIDTH: f32 = 76.0;
+const WIDTH: f32 = 70.0;
 const HEIGHT: f32 = 3.0 * theme::TEXT_LINE;
 /// Vertical distance between the labels of the outer fingers, and how far above the hand they begin, so that a line reaches its
 /// finger from above the others.
@@ -29,6 +30,8 @@ const APART: f32 = HEIGHT + theme::GAP;
 const ABOVE: f32 = theme::CONTROL;
 /// Position of the thumb's label, as a share of the hand's height: below the thumb, as the index has its own above it.
 const THUMB: f32 = 0.7;
+/// Share of the labels of index and thumb that is beside the hand: above and below the thumb there is space for the rest.
+const BESIDE: f32 = 0.55;
 /// Gap between the hand and its labels.
 const CLEAR: f32 = 2.0 * theme::GAP;
 /// Opacity of a line, radius of the ring at its end, and opacity of a label's background.
@@ -42,11 +45,17 @@ pub(crate) fn picture_place(place: Rect, side: Side) -> Rect {
     if place.height() < LEAST {
         return place;
     }
-    let below = place.with_min_y(place.top() + ABOVE);
-    match side {
-        Side::Right => below.with_min_x(place.left() + WIDTH + CLEAR),
-        Side::Left => below.with_max_x(place.right() - WIDTH - CLEAR),
-    }
+    let below = place
+        .with_min_y(place.top() + ABOVE)
+        .with_max_y(place.bottom() - below(place));
+    let (outer, thumb) = (WIDTH + CLEAR, WIDTH * BESIDE);
+    let (left, right) = match side {
+        Side::Right => (outer, thumb),
+        Side::Left => (thumb, outer),
+    };
+    below
+        .with_min_x(place.left() + left)
+        .with_max_x(place.right() - right)
 }
 
 /// Draws the labels beside the hand that `view` drew last within `place`.
@@ -82,9 +91,10 @@ impl Figure {
         };
         let (tip, knuckle) = (points.tips[finger], points.knuckles[finger]);
         // Lines to fingertips that are side by side would cross.
+        let is_bent = tip.y > knuckle.y || (tip.x - knuckle.x).abs() > CLEAR;
         let end = match finger {
             Finger::Ring | Finger::Little => knuckle,
-            Finger::Middle if tip.y > knuckle.y => knuckle,
+            Finger::Middle | Finger::Index if is_bent => knuckle,
             Finger::Middle | Finger::Index | Finger::Thumb => tip,
         };
         let knee = from + 3.0 * way;
@@ -123,7 +133,11 @@ fn slot(place: Rect, points: &HandPoints, finger: Finger) -> (Rect, bool) {
         Finger::Thumb => (false, ABOVE + hand.height() * THUMB),
     };
     let on_left = is_outer == points.is_forward;
-    let out = if is_outer { CLEAR + WIDTH } else { WIDTH / 2.0 };
+    let out = if is_outer {
+        CLEAR + WIDTH
+    } else {
+        WIDTH * BESIDE
+    };
     let x = if on_left {
         hand.left() - out
     } else {
@@ -193,41 +207,90 @@ pub(crate) fn grip(pane: &Pane<'_>) -> Grip {
 
 /// Size of the object between thumb and index, as text; `None` unless those two alone hold one.
 pub(crate) fn held_size(pane: &Pane<'_>) -> Option<String> {
+    let size = size_now(pane)?;
+    let text = match size {
+        HeldSize::Block(_) => poses::HELD_MEASURED,
+        HeldSize::Ball(_) => poses::HELD_BALL,
+        HeldSize::Pads(_) => poses::HELD_PADS,
+    };
+    Some(pane.look.fill(text, &[&format!("{:.0}", size.mm())]))
+}
+
+fn size_now(pane: &Pane<'_>) -> Option<HeldSize> {
     let hand = pane.hand();
     let gap = grip::held_gap(hand, pane.state.now)?;
     let endpoint = hand.connection.endpoint.as_ref();
-    let (text, mm) = match pane.state.settings.size_blocks(endpoint).size(gap) {
-        HeldSize::Block(mm) => (poses::HELD_MEASURED, mm),
-        HeldSize::Ball(mm) => (poses::HELD_BALL, mm),
-        HeldSize::Pads(mm) => (poses::HELD_PADS, mm),
-    };
-    Some(pane.look.fill(text, &[&format!("{mm:.0}")]))
+    Some(pane.state.settings.size_blocks(endpoint).size(gap))
 }
 
-/// Draws the state of the grasp, in one line under the picture.
+/// Draws the state of the grasp as one large word under the picture, with what a running hold does in small lines below it.
 pub(crate) fn grip_ui(ui: &mut Ui, pane: &Pane<'_>, place: Rect) {
-    let state = grip(pane).grasp.state;
-    let look = pane.look;
-    let mut words = look.pair(look.tr(panels::GRIP), look.tr(panels::grip(state)));
-    if let Some(size) = held_size(pane).filter(|_| state == GripState::Holding) {
-        words = look.list(&[&words, &size]);
-    }
-    let mut color = grip_color(pane, state);
-    if let Some(run) = pane.hand().running.hold().filter(|run| run.is_running()) {
-        words = hold::state(look, &run.view);
-        let is_short = run.view.phase == HoldPhase::CannotHold;
-        color = if is_short { look.palette.warn } else { color };
-        if let Some(object) = &run.view.object {
-            let above = place.translate(vec2(0.0, -OBJECT_LINE));
-            let words = hold::object(look, object);
-            let label = Label::new(&words, look.palette.text).small();
-            label.put(ui, above.with_min_y(above.bottom() - theme::PAD));
+    let (word, color) = grip_word(pane);
+    let notes = notes(pane);
+    let below = below(place);
+    let line = place.with_min_y(place.bottom() - below);
+    let large = line.with_max_y(line.top() + WORD);
+    let label = Label::new(&word, color).large().center();
+    let label = label.named(pane.look.tr(panels::GRIP)).put(ui, large);
+    let tip = pane.look.tip(panels::GRIP);
+    label.on_hover_text(format!("{}\n{tip}", notes.join("\n")).trim());
+    let tops = (0u8..).map(|line| large.bottom() + f32::from(line) * theme::TEXT_LINE);
+    for (note, top) in notes.iter().zip(tops) {
+        let line = line.with_min_y(top).with_max_y(top + theme::TEXT_LINE);
+        if !note.is_empty() && line.bottom() <= place.bottom() + 1.0 {
+            let label = Label::new(note, pane.look.palette.muted).small();
+            let label = label.named(pane.look.tr(panels::GRIP_NOTES));
+            label.center().put(ui, line);
         }
     }
-    let line = place.with_min_y(place.bottom() - theme::PAD);
-    let label = Label::new(&words, color).small();
-    let label = label.named(look.tr(panels::GRIP)).put(ui, line);
-    label.on_hover_text(look.tip(panels::GRIP));
+}
+
+/// What a running hold does and has, else how the size of what is held is known; at most two lines.
+fn notes(pane: &Pane<'_>) -> [String; 2] {
+    let look = pane.look;
+    match pane.hand().running.hold().filter(|run| run.is_running()) {
+        Some(run) => {
+            let object = run.view.object.as_ref();
+            let object = object.map(|object| hold::object(look, object));
+            [hold::state(look, &run.view), object.unwrap_or_default()]
+        }
+        None => {
+            let holds = grip(pane).grasp.state == GripState::Holding;
+            let size = held_size(pane).filter(|_| holds);
+            [size.unwrap_or_default(), String::new()]
+        }
+    }
+}
+
+/// Word for the state of the grasp, with the size of what two fingers hold, or the phase of a running hold.
+fn grip_word(pane: &Pane<'_>) -> (String, Color32) {
+    let look = pane.look;
+    let state = grip(pane).grasp.state;
+    let color = grip_color(pane, state);
+    if let Some(run) = pane.hand().running.hold().filter(|run| run.is_running()) {
+        let color = match run.view.phase {
+            HoldPhase::CannotHold => look.palette.warn,
+            HoldPhase::Measuring | HoldPhase::Closing | HoldPhase::Holding => color,
+        };
+        return (look.tr(hold::phase(run.view.phase)).to_owned(), color);
+    }
+    let word = look.tr(panels::grip(state));
+    let words = match state {
+        GripState::Unknown => look.pair(look.tr(panels::GRIP), word),
+        GripState::Holding => match size_now(pane) {
+            Some(size) => look.list(&[word, &format!("{:.0} mm", size.mm())]),
+            None => word.to_owned(),
+        },
+        _ => word.to_owned(),
+    };
+    (words, color)
+}
+
+/// Height below the picture: the word, and as many of the two small lines as there is space for.
+fn below(place: Rect) -> f32 {
+    let height = place.height();
+    let lines = [NOTES_FROM, 1.5 * NOTES_FROM].map(|least| u8::from(height >= least));
+    WORD + lines.iter().map(|line| f32::from(*line)).sum::<f32>() * theme::TEXT_LINE
 }
 
 /// Conspicuous for the states that need the user's attention.

@@ -27,14 +27,16 @@ pub(crate) struct HandPanel(HandView);
 
 impl HandPanel {
     /// Draws the hand over the rest of `ui`, with labels of its fingers beside it. Dragging a finger sets its joint's target.
-    /// Returns the finger that was clicked.
+    /// Returns the finger that was clicked. `is_frontal`: the pads face the viewer.
     pub(crate) fn ui(
         &mut self,
         ui: &mut Ui,
         pane: &mut Pane<'_>,
         tips: &PerFinger<Option<Tip>>,
+        is_frontal: bool,
     ) -> Option<Finger> {
         let look = pane.look;
+        self.0.face(ui, is_frontal);
         let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
         let place = response.rect;
         response

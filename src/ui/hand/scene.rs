@@ -30,7 +30,7 @@ const MARKED_PART: f32 = 0.85;
 pub(crate) struct TipLoad {
     /// Heat of the hottest pad, 0..=1.
     pub(crate) heat: Option<f32>,
-    /// Newtons out of the pad, towards the tip, and to the right as seen facing the pad with the tip up.
+    /// Newtons into the pad, towards the tip, and to the right as seen facing the pad with the tip up.
     pub(crate) force: Option<[f32; 3]>,
 }
 
@@ -149,6 +149,7 @@ impl HandPicture {
             coat: Coat {
                 color: Some(palette.simulated),
                 glass: HELD_PART,
+                is_held: true,
                 ..Coat::default()
             },
         }));
@@ -192,7 +193,7 @@ impl HandPicture {
             .or(marked)
     }
 
-    /// Arrow of a fingertip's force: out of the pad, inclined by the tangential force.
+    /// Arrow of the force on a fingertip, with its head at the pad: into the pad, inclined by the tangential force.
     fn arrow(
         &self,
         pose: &SegmentFrames,
@@ -202,7 +203,7 @@ impl HandPicture {
         let [normal, tipwards, right] = self.tips[finger].force?;
         let turn = pose.frame(Segment::tip(finger)).matrix3;
         let [out, up] = shape::pad_ways(finger).map(|way| turn * way);
-        let force = out * normal + up * tipwards + up.cross(out) * right;
+        let force = up * tipwards + up.cross(out) * right - out * normal;
         let newtons = force.length();
         if newtons < ARROW_MIN_N || !newtons.is_finite() {
             return None;
@@ -212,10 +213,11 @@ impl HandPicture {
         let (side, front) = along.any_orthonormal_pair();
         let thick = length.clamp(12.0, 34.0);
         let shape = Mat3::from_cols(front * thick, along * length, side * thick);
+        let from = pose.tip(finger) - along * length;
         Some(PlacedSolid {
             solid: shape::arrow(),
             segment: None,
-            frame: Affine3::from_mat3_translation(shape, pose.tip(finger)),
+            frame: Affine3::from_mat3_translation(shape, from),
             coat: Coat {
                 color: Some(palette.accent),
                 glow: Some((palette.accent, 0.7)),

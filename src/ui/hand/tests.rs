@@ -11,7 +11,7 @@ use crate::sim::object::Object;
 use crate::ui::hand::figures::{Figure, picture_place};
 use crate::ui::hand::finger_drag::FingerDrag;
 use crate::ui::hand::scene::{HandPicture, Hurt};
-use crate::ui::hand::view::{DrawSettings, HandStage, HandUse, HandView, TURN, draw};
+use crate::ui::hand::view::{DrawSettings, FRONT, HandStage, HandUse, HandView, TURN, draw};
 use crate::ui::theme::Palette;
 use egui::{
     Context, Event, Id, Mesh, Modifiers, PointerButton, Pos2, RawInput, Rect, Sense, pos2, vec2,
@@ -102,9 +102,13 @@ fn every_pose_is_finite_in_its_picture_and_within_its_triangles() {
 }
 
 #[test]
-fn fingers_close_towards_who_looks() {
+fn fingers_close_towards_who_looks_from_the_front() {
     for side in SIDES {
-        let camera = setting(side, 300.0).camera(side);
+        let front = DrawSettings {
+            turn: FRONT,
+            ..setting(side, 300.0)
+        };
+        let camera = front.camera(side);
         for finger in Finger::ALL {
             let near = |share: f32| {
                 let picture = posed(side, [share, share, 1.0]);
@@ -114,6 +118,24 @@ fn fingers_close_towards_who_looks() {
             if finger != Finger::Thumb {
                 assert!(near(0.75) > near(1.0) + 20.0 && near(0.5) > near(0.75) + 15.0);
                 assert!(near(0.0) > near(1.0) + 30.0, "{side:?} {finger:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_close_is_seen_as_a_way_on_the_screen() {
+    for side in SIDES {
+        let camera = setting(side, 300.0).camera(side);
+        for finger in Finger::ALL {
+            let seen = |share: f32| {
+                let picture = posed(side, [share, share, 1.0]);
+                camera.place(picture.pose().tip(finger))
+            };
+            let steps = [1.0, 0.75, 0.5, 0.25, 0.0].map(seen);
+            for pair in steps.windows(2) {
+                let way = pair[0].distance(pair[1]);
+                assert!(way > 8.0, "{side:?} {finger:?}: {way} points");
             }
         }
     }
@@ -349,6 +371,26 @@ fn a_drag_turns_the_hand_and_a_double_click_turns_it_back() {
     assert_eq!(driven.to(pos2(5.0, 5.0)).joint, None);
     driven.to(pos2(5.0, 5.0));
     assert_eq!(driven.view.drawn.unwrap().0.lit, None);
+}
+
+#[test]
+fn an_open_fingertip_is_seen_from_the_front_unless_the_user_turned_the_hand() {
+    let context = Context::default();
+    let mut view = HandView::default();
+    let mut turn = |is_frontal: bool, view: &mut HandView| {
+        let mut output = context.run_ui(RawInput::default(), |ui| {
+            ui.style_mut().animation_time = 0.0;
+            view.face(ui, is_frontal);
+        });
+        output.textures_delta.clear();
+        view.turn(Side::Right)
+    };
+    assert_eq!(turn(false, &mut view), TURN);
+    assert_eq!(turn(true, &mut view), FRONT);
+    assert_eq!(turn(false, &mut view), TURN);
+    let own = Turn { yaw: 1.0, ..TURN };
+    view.turn = Some(own);
+    assert_eq!(turn(true, &mut view), own);
 }
 
 #[test]

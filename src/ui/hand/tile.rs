@@ -7,7 +7,7 @@ use crate::draw::figure::render::{Model, Sketch};
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, PerDof, PerFinger};
 use crate::ui::hand::scene::HandPicture;
-use crate::ui::hand::view::{CUT_MM, DrawSettings, HandView, TURN, draw, fade_out};
+use crate::ui::hand::view::{CUT_MM, DrawSettings, HandView, draw, fade_out};
 use crate::ui::kit::{Label, Look};
 use crate::ui::text::Text;
 use crate::ui::theme::Palette;
@@ -18,6 +18,8 @@ use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
+/// From the side of the little finger and slightly below: straight fingers are visible side by side.
+const FINGERS: Turn = turn(0.45, -0.18);
 /// From the thumb's side, where its contacts and grip are visible.
 const THUMB_SIDE: Turn = turn(-0.85, 0.12);
 /// Nearly along the fingers' joints, where a ring of thumb and finger looks like a ring.
@@ -66,7 +68,7 @@ pub(crate) fn empty_page_ui(ui: &mut Ui, look: Look, share: f32, title: Text) {
     ui.add_space(ui.available_height() * 0.2);
     let (_, picture) = ui.allocate_space(vec2(ui.available_width(), 160.0));
     pose_ui(ui, look, picture, &PerDof::splat(Some(share)));
-    Label::text(look, title).title().ui(ui);
+    Label::text(look, title).large().ui(ui);
 }
 
 /// Cache key of a tile: its content and appearance.
@@ -185,7 +187,7 @@ fn seen_best(shares: &PerDof<Option<f32>>) -> (Turn, PerFinger<bool>) {
         finger => bend(finger) > STRAIGHT,
     });
     let turn = if others().any(|finger| marked[finger]) {
-        TURN
+        FINGERS
     } else if is_fist {
         if is_out { THUMB_UP } else { FRONT }
     } else if is_out {
@@ -208,15 +210,15 @@ mod tests {
     #[test]
     fn each_shipped_pose_is_seen_from_where_it_is_told_from_others() {
         for (name, turn, marked) in [
-            ("Open", TURN, &[Little, Ring, Middle, Index, Thumb][..]),
+            ("Open", FINGERS, &[Little, Ring, Middle, Index, Thumb][..]),
             ("Fist", FRONT, &[]),
-            ("Point", TURN, &[Index]),
-            ("V", TURN, &[Index, Middle]),
+            ("Point", FINGERS, &[Index]),
+            ("V", FINGERS, &[Index, Middle]),
             ("OK", RING_SIDE, &[Index, Thumb]),
             ("Thumbs up", THUMB_UP, &[Thumb]),
-            ("Rock", TURN, &[Little, Index]),
-            ("Call", TURN, &[Little, Thumb]),
-            ("Four", TURN, &[Little, Ring, Middle, Index]),
+            ("Rock", FINGERS, &[Little, Index]),
+            ("Call", FINGERS, &[Little, Thumb]),
+            ("Four", FINGERS, &[Little, Ring, Middle, Index]),
             ("Power grasp", THUMB_SIDE, &[]),
             ("Tripod", RING_SIDE, &[Index, Middle, Thumb]),
             ("Pinch", RING_SIDE, &[Index, Thumb]),

@@ -9,16 +9,24 @@ use crate::hand::{Dof, Finger, PerDof, PerFinger};
 use crate::ui::hand::finger_drag::FingerDrag;
 use crate::ui::hand::scene::HandPicture;
 use crate::ui::theme::Palette;
-use egui::{CursorIcon, Mesh, Pos2, Rect, Response, Shape, Ui};
+use egui::{CursorIcon, Mesh, Pos2, Rect, Response, Shape, Ui, emath};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Default viewpoint: from the side of the little finger and slightly below, so that bending and a pinch's ring are visible.
+/// Default viewpoint: three quarters from the thumb's side and from above, where a grasp is recognised as one.
 pub(crate) const TURN: Turn = Turn {
-    yaw: 0.45,
-    pitch: -0.18,
+    yaw: -0.61,
+    pitch: 0.26,
     roll: 0.0,
 };
+/// Viewpoint while a fingertip is open: the pads of the open hand face the viewer.
+pub(crate) const FRONT: Turn = Turn {
+    yaw: 0.0,
+    pitch: 0.0,
+    roll: 0.0,
+};
+/// Time from one of the two viewpoints to the other.
+const EASE_S: f32 = 0.2;
 /// Rotation per point of dragging, and maximum pitch, in radians.
 const TURN_RAD: f32 = 0.01;
 const PITCH_MAX_RAD: f32 = 1.2;
@@ -36,6 +44,8 @@ const FADE_MM: f32 = 34.0;
 pub(crate) struct HandView {
     /// Viewpoint set by the user; `None` = the default one.
     pub(crate) turn: Option<Turn>,
+    /// Share of the way from the default viewpoint to the frontal one.
+    front: f32,
     pub(crate) drawn: Option<(HandPicture, DrawSettings)>,
     drag: HandDrag,
     sketch: Sketch,
@@ -207,8 +217,18 @@ impl HandView {
         })
     }
 
+    /// Moves the default viewpoint to the frontal one or back, within [`EASE_S`]; at once if animations are off.
+    pub(crate) fn face(&mut self, ui: &Ui, is_frontal: bool) {
+        let eases = ui.style().animation_time > 0.0;
+        let time_s = if eases { EASE_S } else { 0.0 };
+        let id = ui.scope_id().with("frontal");
+        let share = ui.ctx().animate_bool_with_time(id, is_frontal, time_s);
+        self.front = emath::easing::cubic_in_out(share);
+    }
+
     pub(crate) fn turn(&self, side: Side) -> Turn {
-        self.turn.unwrap_or_else(|| TURN.of(side))
+        self.turn
+            .unwrap_or_else(|| TURN.towards(FRONT, self.front).of(side))
     }
 }
 

@@ -22,9 +22,11 @@ texts! {
     PINCH: "Close as pinch", "两指捏取", "Closes thumb and index slowly until the object stops them, then holds.", "拇指与食指缓慢闭合，遇物体停止后保持。";
     END: "End the hold", "结束保持", "The hand keeps its position, and so what it holds.", "手保持当前位置，物体仍被抓住。";
     MOVES: "Hold", "保持";
-    MEASURING: "Measuring the zero of the forces", "正在测量力零点";
+    MEASURING: "Measuring zero", "正在测量力零点";
     CLOSING: "Closing", "正在闭合";
     HOLDING: "Holding with {} g, margin {}", "保持力 {} g，裕量 {}";
+    HELD: "Holding", "正在保持";
+    TOO_WEAK: "Cannot hold", "无法保持";
     CANNOT_HOLD: "Cannot hold within {} g, margin {}", "{} g 以内无法保持，裕量 {}";
     CANNOT_HOLD_NOTICE: "The hold needs more force than allowed: raise At most, or support the object.", "所需的力超过最大力：请提高最大力或托住物体。";
     TIGHTENED: "tightened {} times, last: {}", "加力 {} 次，最近：{}";
@@ -96,6 +98,16 @@ pub(crate) fn tightened(look: Look, own: Tightened) -> String {
         look.tr(words::finger(own.finger)),
         look.tr(cause(own.cause)),
     )
+}
+
+/// Phase of a running hold in one or two words.
+pub(crate) const fn phase(phase: HoldPhase) -> Text {
+    match phase {
+        HoldPhase::Measuring => MEASURING,
+        HoldPhase::Closing => CLOSING,
+        HoldPhase::Holding => HELD,
+        HoldPhase::CannotHold => TOO_WEAK,
+    }
 }
 
 /// A running hold in one line.

@@ -101,7 +101,8 @@ impl TouchView {
 
     /// Draws the hand alone.
     pub(crate) fn hand_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let clicked = self.hand.ui(ui, pane, &heat::tips(pane));
+        let is_frontal = self.is_large(ui);
+        let clicked = self.hand.ui(ui, pane, &heat::tips(pane), is_frontal);
         if let Some(finger) = clicked {
             self.open(pane, finger);
         }
@@ -215,7 +216,7 @@ impl TouchView {
             ui.spacing_mut().item_spacing.y = 0.0;
             let figures = [
                 (below, panels::TOUCH_SHEAR_NAME, theme::small(), color),
-                (normal, panels::TOUCH_NORMAL_NAME, theme::title(), strong),
+                (normal, panels::TOUCH_NORMAL_NAME, theme::body(), strong),
             ];
             for (words, what, font, color) in figures {
                 let name = format!("{name} {}", look.tr(what));

@@ -51,7 +51,10 @@ fn hold(bench: &mut Bench, mm: f32) {
     bench.wait(6000);
     bench.hand(|hand, _| hand.set_object(&Object::touched_at(contacts)));
     bench.act(Action::Pinch(Gap::nearest(mm - 15.0)));
-    bench.until(20_000, |bench| bench.reading("Grip").contains("about"));
+    bench.until(20_000, |bench| {
+        let word = bench.reading("Grip");
+        word.starts_with("Holding, ") && word.ends_with(" mm")
+    });
 }
 
 #[test]
@@ -224,7 +227,7 @@ fn the_size_of_what_is_held_is_told_and_two_blocks_make_it_true() {
     let mut bench = opened();
     assert!(bench.shows("Held: nothing between thumb and index"));
     hold(&mut bench, 40.0);
-    let told = bench.reading("Grip");
+    let told = bench.reading("Grip details");
     assert!(told.contains("by the model"), "{told}");
     for (gap, size) in [(40.0, "30"), (80.0, "70")] {
         hold(&mut bench, gap);
@@ -233,11 +236,12 @@ fn the_size_of_what_is_held_is_told_and_two_blocks_make_it_true() {
         bench.key(Key::Enter);
         bench.run(300);
     }
-    let told = bench.reading("Grip");
+    let told = bench.reading("Grip details");
     assert!(told.contains("about 70 mm, measured"), "{told}");
+    assert_eq!(bench.reading("Grip"), "Holding, 70 mm");
     assert!(bench.shows("Blocks measured: 30 mm, 70 mm"));
     bench.click_button("Forget");
     bench.run(300);
-    let told = bench.reading("Grip");
+    let told = bench.reading("Grip details");
     assert!(told.contains("by the model"), "{told}");
 }

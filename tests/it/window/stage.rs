@@ -235,7 +235,7 @@ fn what_is_gripped_is_told_at_the_fingers_and_in_one_line() {
         ..SimConfig::default()
     };
     let mut bench = Bench::open(config, LARGE);
-    bench.until(8000, |bench| bench.reading("Grip") == "Grip: Holding");
+    bench.until(8000, |bench| bench.reading("Grip") == "Holding");
     let index = "Index grip at the drawn finger";
     bench.until(4000, |bench| bench.reading(index) == "Holding");
     bench.unplug();
@@ -251,7 +251,7 @@ fn no_grip_is_told_of_feedback_that_does_not_follow() {
     };
     let mut bench = Bench::open(config, LARGE);
     bench.wait(1000);
-    assert_eq!(bench.reading("Grip"), "Grip: Open");
+    assert_eq!(bench.reading("Grip"), "Open");
     bench.click("Arm the hand");
     bench.run(300);
     bench.click_button("Close");

@@ -19,8 +19,8 @@ pub enum Held {
 /// Shape of a held object, in the palm's frame of a right hand.
 pub fn held(held: Held) -> &'static Solid {
     static SHAPES: LazyLock<[Solid; 3]> = LazyLock::new(|| {
-        let ball = |step: u8| (f32::from(step) / 12.0 * PI).sin_cos();
-        let ball: [LoftRing; 13] = std::array::from_fn(|step| {
+        let ball = |step: u8| (f32::from(step) / 32.0 * PI).sin_cos();
+        let ball: [LoftRing; 33] = std::array::from_fn(|step| {
             let (sin, cos) = ball(u8::try_from(step).unwrap_or(0));
             disc(-cos * BALL_MM, (sin * BALL_MM).max(0.1))
         });
@@ -36,9 +36,9 @@ pub fn held(held: Held) -> &'static Solid {
             soup.solid()
         };
         [
-            tube(&ball, [-5.0, 51.0, 131.0], 20),
-            tube(&block, [-1.0, 38.5, 141.5], 24),
-            tube(&cup, [-1.0, 43.0, 141.5], 24),
+            tube(&ball, [-5.0, 51.0, 131.0], 64),
+            tube(&block, [-1.0, 38.5, 141.5], 64),
+            tube(&cup, [-1.0, 43.0, 141.5], 64),
         ]
     });
     let [ball, block, cup] = &*SHAPES;
