@@ -1,4 +1,5 @@
 //! The six joint rows: target over actual angle, threshold over force, speed, lamp, lock. Sends nothing by itself.
+pub(crate) mod held;
 pub(crate) mod rail;
 pub(crate) mod readings;
 pub(crate) mod row;
@@ -14,7 +15,7 @@ use crate::ui::hand::aim;
 use crate::ui::joints::row_view::{RowStyle, height, row_ui};
 use crate::ui::joints::tracks::all_joints_ui;
 use crate::ui::kit::{self, Button, Label, Pane, Weight, format};
-use crate::ui::text::{main, window};
+use crate::ui::text::main;
 use crate::ui::theme;
 use egui::{ScrollArea, Ui};
 
@@ -46,11 +47,13 @@ impl JointsView {
         kit::full_card_ui(ui, look, |ui| {
             let line = least_line(ui.pixels_per_point());
             let below = theme::CONTROL_LARGE + theme::CONTROL + 2.0 * theme::GAP;
-            let room = ui.available_height() - theme::CONTROL - theme::STEP - below;
+            let above = 2.0 * (theme::CONTROL + theme::STEP);
+            let room = ui.available_height() - above - below;
             let fits = room >= 6.0 * height(line, true);
             let each = self.each.unwrap_or(fits);
             let head = look.tr(main::JOINTS);
             kit::head_ui(ui, look, head, |ui| self.head_ui(ui, pane, each));
+            held::held_ui(ui, pane);
             let lines = if each { 4.0 } else { 2.0 };
             let line = ((room / 6.0 - theme::GAP) / lines).clamp(line, LINE_MAX.max(line));
             let linked = self.linked;
@@ -90,15 +93,6 @@ impl JointsView {
             self.each = Some(!each);
         }
         age_ui(ui, pane);
-        let hand = pane.hand();
-        let asked = hand.readings.sample.angle.map(|angle| angle.asked);
-        let is_live = pane.freshness(asked) == Freshness::Live && pane.recorded().is_none();
-        let refusal = hand.arm_refusal(pane.state.now);
-        // A new user needs to know the first step; if arming is refused, the header shows the reason.
-        if is_live && !hand.connection.is_armed() && refusal.is_none() {
-            let label = Label::new(look.tr(window::ARM_FIRST), look.palette.accent);
-            label.small().ui(ui);
-        }
     }
 }
 

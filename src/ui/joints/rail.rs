@@ -25,7 +25,7 @@ pub(crate) fn rail_ui(ui: &mut Ui, pane: &mut Pane<'_>, can_open: bool) {
                 pane.lay_out(ui, layouts.toggled(WindowRoom::Joints));
             }
         } else {
-            Label::new(title, look.palette.text).title().ui(ui);
+            Label::new(title, look.palette.text).ui(ui);
         }
         // Its space is reserved while there is nothing to show.
         let size = vec2(ui.available_width(), theme::TEXT_LINE);

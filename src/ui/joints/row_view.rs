@@ -1,15 +1,15 @@
 //! One joint's row: name, status, lock, and below them its tracks and readings.
 
 use crate::app::action::Action;
+use crate::hand::Dof;
 use crate::hand::impact::NOTABLE_G;
 use crate::hand::overshoot::Stages;
-use crate::hand::{Dof, Force, Speed};
 use crate::ui::faults::entry::{unseen_mark_ui, unseen_ring_ui};
 use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::joints::row::{CAPTION, JointRow, READING, cell};
 use crate::ui::joints::tracks;
 use crate::ui::kit::DriveWords;
-use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, format};
+use crate::ui::kit::{self, Button, Label, Pane, ViewRequest};
 use crate::ui::text::{main, notices, tune};
 use crate::ui::theme;
 use egui::{
@@ -73,8 +73,6 @@ pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle
             });
             line_ui(ui, style.line, |ui| {
                 tracks::speed_ui(ui, pane, Some(&row));
-                let place = cell(ui, READING);
-                row.drive_reading_ui(ui, place, pane);
             });
         }
     });
@@ -101,12 +99,11 @@ fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
     Label::new(row.name, pane.look.palette.text).put(ui, name);
     kit::right_ui(ui, |ui| {
         lock_ui(ui, pane, row);
+        let place = cell(ui, if each { READING } else { 96.0 });
+        row.drive_reading_ui(ui, place, pane);
         if each {
             impact_ui(ui, pane, row);
             unseen_mark_ui(ui, pane, row.dof);
-        } else {
-            let place = cell(ui, 96.0);
-            row.drive_reading_ui(ui, place, pane);
         }
         status_ui(ui, pane, row, each);
     });
@@ -120,7 +117,6 @@ fn warnings_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
         .layout(Layout::left_to_right(Align::Center));
     ui.scope_builder(builder, |ui| {
         impact_ui(ui, pane, row);
-        other_ui(ui, pane, row);
     });
 }
 
@@ -156,30 +152,6 @@ impl JointRow {
             .on_hover_text(format!("{cause}\n{advice}\n{tip}").trim())
             .on_hover_cursor(CursorIcon::PointingHand);
     }
-}
-
-/// Draws a warning if the hand has another speed or force than the user set, while those lines are hidden.
-fn other_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
-    let (look, hand) = (pane.look, pane.hand());
-    let joint = hand.controls.joints[row.dof];
-    let one = |caption, wanted: Option<i16>, held: i16| {
-        let wanted = format::whole(wanted.map(i64::from), 0);
-        let held = look.tr_with(main::HAND_HOLDS, held);
-        format!("{} {wanted} · {held}", look.tr(caption))
-    };
-    let held = hand.held_otherwise(row.dof);
-    let speed = |held: Speed| one(main::SPEED, joint.speed.map(Speed::get), held.get());
-    let force = |held: Force| one(main::FORCE, joint.force.map(Force::get), held.get());
-    let all = [held.force.map(force), held.speed.map(speed)];
-    let all: Vec<String> = all.into_iter().flatten().collect();
-    if all.is_empty() {
-        // The following widgets keep their ids.
-        return ui.skip_ahead_auto_ids(1);
-    }
-    let all = all.join("\n");
-    let label = Label::new(look.tr(main::HAND_DIFFERS), look.palette.warn).small();
-    let label = label.named(&format!("{} {all}", row.name)).ui(ui);
-    label.on_hover_text(format!("{all}\n{}", look.tip(main::HAND_DIFFERS)));
 }
 
 /// Draws a warning with the measured overshoot, if speed and threshold together are known to exceed the threshold far.

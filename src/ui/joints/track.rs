@@ -3,14 +3,16 @@
 use crate::ui::kit::{self, Look};
 use crate::ui::theme;
 use egui::{
-    Color32, EventFilter, Id, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo,
-    accesskit, pos2, vec2,
+    Color32, EventFilter, Id, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, Ui, Vec2,
+    WidgetInfo, accesskit, pos2, vec2,
 };
 
 /// Height of the rail.
 const RAIL: f32 = 6.0;
 /// Radius of the handle.
 const HANDLE: f32 = 7.0;
+/// Size of the tick at a value that the hand holds.
+const TICK: Vec2 = vec2(5.0, 14.0);
 /// Distance that marks of the rail extend below it.
 const BELOW: f32 = 5.0;
 
@@ -196,6 +198,12 @@ impl<'a> SlideTrack<'a> {
     fn x_of(&self, rail: Rect, value: i16) -> f32 {
         let part = f32::from(value) / f32::from(self.max.max(1));
         rail.left() + rail.width() * part.clamp(0.0, 1.0)
+    }
+
+    /// Rectangle of a tick at this value, on the slider in `rect`.
+    pub(crate) fn tick_place(&self, rect: Rect, value: i16) -> Rect {
+        let rail = rail_of(rect);
+        Rect::from_center_size(pos2(self.x_of(rail, value), rail.center().y), TICK)
     }
 
     fn paint(&self, ui: &Ui, look: Look, response: &Response, shown: Option<i16>) {

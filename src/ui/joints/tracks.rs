@@ -6,11 +6,11 @@ use crate::hand::{Angle, Dof, Force, PerDof, Speed};
 use crate::ui::hand::aim;
 use crate::ui::joints::row::{CAPTION, JointRow, READING, cell};
 use crate::ui::joints::track::{Actual, SlideTrack};
-use crate::ui::kit::{self, Label, Look, NumberField, Pane};
+use crate::ui::kit::{Label, Look, NumberField, Pane};
 use crate::ui::style::format::UNKNOWN;
 use crate::ui::text::{Text, main};
 use crate::ui::theme;
-use egui::{Align, Id, Layout, Rect, Ui};
+use egui::{Align, Id, Layout, Rect, Sense, Stroke, StrokeKind, Ui};
 
 /// Minimum length of a track, in points.
 const TRACK_LEAST: f32 = 48.0;
@@ -54,7 +54,7 @@ impl TrackRow<'_> {
         typed.map(|typed| self.scale.raw(typed)).or(moved)
     }
 
-    /// Draws the hand's differing setting over the end of the slider away from the handle, so that nothing shifts.
+    /// Marks the hand's differing setting on the slider with a hollow tick.
     fn other_ui(&self, ui: &mut Ui, look: Look, track: Rect) {
         let Some(other) = self.other else {
             // The next field keeps its id, and thus the focus.
@@ -65,22 +65,16 @@ impl TrackRow<'_> {
         let text = look.tr_with(main::HAND_HOLDS, shown(other));
         let wanted = self.track.target.map_or_else(|| UNKNOWN.into(), shown);
         let name = format!("{} {wanted} · {text}", self.number_name);
-        let width = theme::OTHER.min(track.width() / 2.0);
-        // In a narrow row only the coloured number; without space for that, only that it differs.
-        let fits = |number: &String| kit::text_width(ui, number, theme::small()) <= width;
-        let number = || Some(shown(other)).filter(fits);
-        let short = (width < theme::OTHER)
-            .then(|| number().unwrap_or_else(|| look.tr(main::HAND_DIFFERS).into()));
-        let place = match self.track.target {
-            Some(target) if target > self.track.max / 2 => track.with_max_x(track.left() + width),
-            _ => track.with_min_x(track.right() - width),
-        };
+        let place = self.track.tick_place(track, other);
+        let edge = Stroke::new(1.0, look.palette.text);
         ui.painter()
-            .rect_filled(place, theme::ROUND_TINY, look.palette.card);
-        let text = short.as_ref().unwrap_or(&text);
-        let label = Label::new(text, look.palette.warn).small().center();
-        let label = label.named(&name).put(ui, place);
-        label.on_hover_text(look.tip(main::HAND_HOLDS));
+            .rect_stroke(place, theme::ROUND_TINY, edge, StrokeKind::Inside);
+        let id = ui.next_auto_id();
+        ui.skip_ahead_auto_ids(1);
+        let response = ui.interact(place, id, Sense::hover());
+        let label = Label::new(&text, look.palette.text).named(&name);
+        label.name_node(&response);
+        response.on_hover_text(look.pair(&text, look.tip(main::HAND_HOLDS)));
     }
 }
 

@@ -11,7 +11,6 @@ texts! {
     SERIES_RUNS: "A trial series is running. Stop it first.", "正在运行抓取试验：请先停止。";
     SIMULATED: "SIMULATED", "仿真", "This is the built-in hand. No real hand is connected.", "这是内置的仿真手，没有连接真实的灵巧手。";
     ONLY_FROM_TO: "Only a number within", "只接受此范围内的数字：";
-    REAL_HAND: "HAND", "真机";
     NO_HAND: "NO HAND", "无连接";
     ENDPOINT_TIP: "Where the hand is. Press the lamp beside it to change it.", "灵巧手的连接地址。点击旁边的状态灯可更改。";
 
@@ -100,7 +99,11 @@ texts! {
     NAME_IMPACT: "impact warning", "冲击警告";
     RECORDED: "A recording is shown: nothing is sent.", "正在显示记录：不会发送任何内容。";
     HAND_HOLDS: "hand", "手", "The hand holds this instead: read back from it. What you set is sent by arming, or the next time you set it.", "灵巧手当前持有的是此值（回读所得）。你的设定会在使能时或下次设定时发送。";
-    HAND_DIFFERS: "≠", "≠", "The hand holds other values than you set.", "灵巧手持有的值与你的设定不同。";
+    HELD: "Hand:", "灵巧手：";
+    HELD_SPEED: "speed {}", "速度 {}";
+    HELD_FORCE: "force {}", "力 {}";
+    ARM_SENDS: "; Arm sends {}", "；使能时发送 {}";
+    TAKE_HELD: "Keep the hand's", "沿用手中的值", "Sets speed and force here to what the hand holds. Nothing is sent.", "将此处的速度与力设为灵巧手当前持有的值，不发送任何内容。";
     STAGED: "Not armed: applies on arming.", "未使能：使能后生效。";
     NUMBER_TIP: "Type a number and press Enter. Nothing is sent before.", "输入数字后按回车。回车之前不会发送。";
     LOCK_TIP: "Locks the joint: Open and its slider do not move it.", "锁定：“张开”与滑块都不再移动该自由度。";
