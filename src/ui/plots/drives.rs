@@ -2,7 +2,7 @@
 
 use crate::hand::Dof;
 use crate::history::StatusRun;
-use crate::ui::kit::{Label, Look, Pane, format};
+use crate::ui::kit::{self, Label, Look, Pane, format};
 use crate::ui::plots::time_window::TimeSpan;
 use crate::ui::plots::times::clock;
 use crate::ui::text::{panels, words};
@@ -10,19 +10,27 @@ use crate::ui::theme;
 use egui::{Color32, Rangef, Rect, Role, Sense, Stroke, Ui, WidgetInfo, remap, vec2};
 use std::time::Duration;
 
-/// Height of a row with the gap below it.
+/// Height of a row with the gap below it, and of one with words in it.
 const ROW: f32 = 5.0;
-/// Height of a row.
-const BAR: f32 = 4.0;
+const WORDED: f32 = 15.0;
 
 /// Height of the rows of this number of joints.
-pub(crate) fn height(joints: usize) -> f32 {
-    ROW * f32::from(u8::try_from(joints).unwrap_or(u8::MAX)) + theme::STEP
+pub(crate) fn height(joints: usize, has_words: bool) -> f32 {
+    row_height(has_words) * f32::from(u8::try_from(joints).unwrap_or(u8::MAX)) + theme::STEP
 }
+
+const fn row_height(has_words: bool) -> f32 {
+    if has_words { WORDED } else { ROW }
+}
+
+/// Length of a bar from which on a word may fit.
+const WORD_LEAST: f32 = 30.0;
 
 /// Position and time range of the rows.
 pub(crate) struct DrivesPlace<'a> {
     pub(crate) joints: &'a [Dof],
+    /// Each state that lasts long enough has its word in its bar.
+    pub(crate) has_words: bool,
     pub(crate) span: TimeSpan,
     /// Space at the right of the plots.
     pub(crate) end: f32,
@@ -34,7 +42,10 @@ impl DrivesPlace<'_> {
     /// Draws the rows as wide as `ui`.
     pub(crate) fn ui(&self, ui: &mut Ui, pane: &Pane<'_>) {
         let look = pane.look;
-        let size = vec2(ui.available_width(), height(self.joints.len()));
+        let size = vec2(
+            ui.available_width(),
+            height(self.joints.len(), self.has_words),
+        );
         let (whole, response) = ui.allocate_exact_size(size, Sense::hover());
         let name = look.tr(panels::DRIVES);
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, name));
@@ -47,7 +58,7 @@ impl DrivesPlace<'_> {
         let mut top = frame.top();
         for dof in self.joints {
             self.row(ui, pane, *dof, frame.with_min_y(top));
-            top += ROW;
+            top += row_height(self.has_words);
         }
         if let Some(at_s) = self.pointed_s {
             let stroke = Stroke::new(1.0, look.palette.faint);
@@ -58,7 +69,8 @@ impl DrivesPlace<'_> {
         let tip = at.and_then(|at| {
             let (from_s, to_s) = self.span;
             let part = f64::from((at.x - xs.min) / xs.span().max(1.0));
-            let below = |row: usize| frame.top() + height(row + 1) - theme::STEP;
+            let each = |row| height(row, self.has_words);
+            let below = |row: usize| frame.top() + each(row + 1) - theme::STEP;
             let mut rows = self.joints.iter().enumerate();
             let row = rows.find(|(row, _)| at.y < below(*row));
             status_tooltip(pane, *row?.1, from_s + part * (to_s - from_s))
@@ -70,10 +82,11 @@ impl DrivesPlace<'_> {
     /// Draws the row of one joint: time ranges with a known state.
     fn row(&self, ui: &Ui, pane: &Pane<'_>, dof: Dof, frame: Rect) {
         let palette = pane.look.palette;
-        let bar = Rect::from_min_size(frame.min, vec2(frame.width(), BAR));
+        let high = row_height(self.has_words) - 1.0;
+        let bar = Rect::from_min_size(frame.min, vec2(frame.width(), high));
         ui.painter().rect_filled(bar, 0.0, palette.sunken);
-        let mark = bar.translate(vec2(-theme::STEP - BAR / 2.0, 0.0));
-        let mark = mark.with_max_x(mark.left() + BAR);
+        let mark = bar.translate(vec2(-1.5 * theme::STEP, 0.0));
+        let mark = mark.with_max_x(mark.left() + theme::STEP);
         ui.painter().rect_filled(mark, 0.0, palette.dof[dof]);
         let history = &pane.hand().measured.history;
         let (from_s, to_s) = self.span;
@@ -88,6 +101,32 @@ impl DrivesPlace<'_> {
             let xs = Rangef::new(xs.min, xs.max.min(frame.right()));
             let stretch = Rect::from_x_y_ranges(xs, bar.y_range());
             ui.painter().rect_filled(stretch, 0.0, color);
+        }
+        if self.has_words {
+            self.words(ui, pane, dof, bar);
+        }
+    }
+
+    /// Writes the state into each bar that is long enough.
+    fn words(&self, ui: &Ui, pane: &Pane<'_>, dof: Dof, bar: Rect) {
+        let look = pane.look;
+        let (from_s, to_s) = self.span;
+        let xs = |run: &StatusRun| {
+            let ends = [run.from_s.max(from_s), run.until_s.min(to_s)];
+            ends.map(|at_s| self.x(bar, at_s))
+        };
+        let runs = pane.hand().measured.history.status(dof, from_s, to_s);
+        for run in runs {
+            let [from, to] = xs(&run);
+            if to - from < WORD_LEAST {
+                continue;
+            }
+            let place = bar.with_min_x(from + theme::STEP).with_max_x(to);
+            let text = status_text(look, &run);
+            if kit::text_width(ui, &text, theme::small()) <= place.width() {
+                let label = Label::new(&text, look.palette.on_accent).small();
+                label.paint(ui, place);
+            }
         }
     }
 

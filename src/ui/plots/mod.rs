@@ -37,6 +37,8 @@ const BEHIND_PART: f32 = 0.2;
 const SPARKLINE: f32 = 32.0;
 /// Minimum height of a tall plot: its title, and the values of six joints at the ends of their curves.
 const TALL_LEAST: f32 = 104.0;
+/// Height of a window from which on all plots are tall, if they fit.
+const ALL_FROM: f32 = 900.0;
 /// Available height below which only one plot is shown.
 const ALONE_BELOW: f32 = 72.0;
 
@@ -124,7 +126,8 @@ impl PlotView {
         ui.spacing_mut().item_spacing.y = 0.0;
         let joints = Dof::ALL.into_iter().filter(|dof| !self.hidden[*dof]);
         let joints: Vec<Dof> = joints.collect();
-        let low = drives::height(joints.len());
+        let has_words = ui.ctx().content_rect().height() >= ALL_FROM;
+        let low = drives::height(joints.len(), has_words);
         let (tall, height) = Self::tall(ui, pane, shown.len(), low);
         let tall = match tall.len() {
             1 if has_figures => vec![chosen.kind],
@@ -153,6 +156,7 @@ impl PlotView {
         if !is_alone {
             let place = DrivesPlace {
                 joints: &joints,
+                has_words,
                 span: self.view.time.span(),
                 end,
                 pointed_s: self.view.pointed_s(),
@@ -161,11 +165,14 @@ impl PlotView {
         }
     }
 
-    /// Chooses the tall plots out of the `shown` ones, and their height: two if they fit with `below` points used below.
+    /// Chooses the tall plots out of the `shown` ones, and their height, with `below` points used below: all in a high window, else
+    /// two if they fit.
     fn tall(ui: &Ui, pane: &Pane<'_>, shown: usize, below: f32) -> (Vec<PlotKind>, f32) {
         let height = |tall: usize| tall_height(ui, tall, shown - tall, below);
+        let is_high = ui.ctx().content_rect().height() >= ALL_FROM;
         let count = match shown {
             0 | 1 => shown,
+            _ if is_high && height(shown) >= TALL_LEAST => shown,
             _ if height(2) >= TALL_LEAST => 2,
             _ => 1,
         };
