@@ -143,7 +143,7 @@ fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (look, palette) = (pane.look, pane.look.palette);
     ui.vertical_centered(|ui| {
         ui.add_space(ui.available_height() * 0.3);
-        Label::text(look, poses::SEQUENCE_EMPTY).title().ui(ui);
+        Label::text(look, poses::SEQUENCE_EMPTY).large().ui(ui);
         Label::muted(look, poses::SEQUENCE_EMPTY_BODY).wrap().ui(ui);
         if pane.state.poses.library.poses.is_empty() {
             Label::new(look.tr(poses::NEEDS_POSES), palette.warn).ui(ui);

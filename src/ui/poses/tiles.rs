@@ -5,23 +5,22 @@ use crate::app::hand::grip;
 use crate::app::hand::list::HandsAction;
 use crate::app::poses::PoseState;
 use crate::app::state::State;
-use crate::hand::{Angle, Dof, Gesture, GestureRoute, PerDof};
+use crate::hand::{Angle, Dof, PerDof};
 use crate::poses::Play;
 use crate::poses::library::{EntryId, LibraryPose, StepGoal};
 use crate::ui::hand::tile;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight};
+use crate::ui::poses::gestures;
 use crate::ui::poses::grip_size;
 use crate::ui::poses::hold;
-use crate::ui::text::{Text, main, panels, poses, window};
+use crate::ui::text::{Text, main, poses, window};
 use crate::ui::theme;
 use crate::ui::view::View;
-use egui::{Id, Rect, Response, ScrollArea, Stroke, StrokeKind, Ui, vec2};
+use egui::{Id, Rect, ScrollArea, Stroke, StrokeKind, Ui, vec2};
 
 /// Size of an entry in the strip, and its minimum height.
 const TILE: egui::Vec2 = vec2(96.0, 84.0);
 const TILE_LEAST: f32 = 56.0;
-/// Width of the popup of gestures.
-const POPUP: f32 = 460.0;
 /// Height of a tile's name.
 const NAME_HEIGHT: f32 = 20.0;
 
@@ -39,14 +38,6 @@ fn refusal(pane: &Pane<'_>, pose: &LibraryPose) -> Option<&'static str> {
     let any = Dof::ALL.into_iter().any(moves);
     let pinches = pose.gap.is_none() || !grip::locks_pinch(pane.hand());
     (!any || !pinches).then(|| pane.look.tr(main::LOCKED))
-}
-
-/// Reason why no gesture can be started now; `None` if one can.
-fn gesture_refusal(pane: &Pane<'_>) -> Option<&'static str> {
-    if pane.state.settings.gesture_route == GestureRoute::Off {
-        return Some(pane.look.tr(panels::GESTURES_OFF));
-    }
-    pane.unready()
 }
 
 /// Draws a tile of the library: picture, name, tags. True if it was clicked.
@@ -91,7 +82,7 @@ pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             every.navigate(ui, pane, ViewRequest::View(View::Poses));
             let tip = look.tip(poses::CAPTURE);
             capture_ui(ui, pane, Button::new(look.tr(poses::CAPTURE), tip));
-            gestures_ui(ui, pane);
+            gestures::menu_ui(ui, pane);
             grip_size::drawer_ui(ui, pane);
             hold::drawer_ui(ui, pane);
             for_all_ui(ui, pane);
@@ -133,25 +124,6 @@ pub(crate) fn for_all_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         let action = Action::Hands(HandsAction::PosesForAll(!on));
         switch.on_click(ui, pane, action);
     }
-}
-
-/// Draws the named gestures of the hand, in a popup below a button. The others are in the view of poses.
-fn gestures_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let look = pane.look;
-    let is_named = |one: &Gesture| pane.state.settings.gesture_name(*one).is_some();
-    let named: Vec<Gesture> = Gesture::all().filter(is_named).collect();
-    if named.is_empty() {
-        return;
-    }
-    let button = Button::text(look, poses::STRIP_GESTURES).ui(ui, look);
-    kit::lasting_popup(&button).width(POPUP).show(|ui| {
-        ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
-            for gesture in named {
-                gesture_ui(ui, pane, gesture);
-            }
-        });
-    });
 }
 
 /// Draws a button that stores the current pose.
@@ -288,29 +260,4 @@ pub(crate) fn pictured(library: &PoseState, entry: EntryId) -> Option<PerDof<Ang
         }
         EntryId::Reaction(id) => pose(library.reaction(id)?.touched),
     }
-}
-
-/// Draws a gesture of the hand by its name, or muted by its number.
-pub(crate) fn gesture_ui(ui: &mut Ui, pane: &mut Pane<'_>, gesture: Gesture) -> Response {
-    let look = pane.look;
-    let known = pane.state.settings.gesture_name(gesture);
-    let number = gesture.get().to_string();
-    let name = known.unwrap_or_default();
-    let label = format!("{} {number} {name}", look.tr(panels::GESTURE));
-    let tip = format!("{}\n{}", label.trim(), look.tr(panels::GESTURE_RUN_TIP));
-    let text = known.map_or_else(|| number.clone(), |name| format!("{name}  {number}"));
-    let weight = match known {
-        Some(_) => Weight::Normal,
-        None => Weight::Quiet,
-    };
-    let response = Button::new(&text, &tip)
-        .named(label.trim())
-        .weight(weight)
-        .disabled(gesture_refusal(pane))
-        .large()
-        .ui(ui, look);
-    if response.clicked() {
-        pane.actions.push(Action::Gesture(gesture));
-    }
-    response
 }

@@ -71,6 +71,7 @@ texts! {
     FINGER_FORCE: "force at the drawn finger", "图旁受力";
     FINGER_GRIP: "grip at the drawn finger", "图旁抓握";
     GRIP: "Grip", "抓握", "State of the grip, inferred from angles, forces, fingertips, current and status. Slipping: the force along a fingertip rises or turns. Lost: the contact is gone, and the finger did not open. Unknown: a reading is missing or old.", "根据角度、受力、指尖、电流和状态判断手对物体的抓握情况。打滑：指尖切向力上升或转向。丢失：手指未张开而接触消失。未知：读数缺失或过期。";
+    GRIP_NOTES: "Grip details", "抓握详情";
     FINGER_TROUBLE: "trouble at the drawn finger", "图旁状况";
     TOUCH_SCALE_END: "end of the heat scale", "热度标尺上限";
     TARE_ALL: "Tare all", "全部去皮", "Zeroes all channels here. Readings and recordings stay as the hand sends them.", "所有通道从当前读数起算。原始读数与记录不变。";
@@ -116,6 +117,12 @@ texts! {
     GESTURES_USER: "14 to 40 user", "14 至 40 用户自定";
     GESTURES_TIP: "The manual describes gestures but lists no address for them. The route says which address is written.", "手册说明了手势功能，但寄存器表中没有其地址。“方式”决定写入哪个地址。";
     GESTURE_RUN_TIP: "Starts this gesture at once.", "立即执行该手势。";
+    GESTURE_SHOW_TIP: "Shows what is known of it. Nothing moves.", "显示该手势的已知信息，不会产生动作。";
+    GESTURE_CHOOSE: "Choose a gesture to see what is known of it.", "选择一个手势以查看已知信息。";
+    GESTURE_START: "Start gesture", "执行手势";
+    GESTURE_NAME_HINT: "name", "名称";
+    GESTURE_OF_MAKER: "Fixed by the maker (1 to 13). The hand moves at its own speed, and does not tell the angles.", "由厂家固定（1 至 13）。灵巧手按自身速度运动，不提供角度。";
+    GESTURE_OF_USER: "Stored by a user of this hand (14 to 40), or empty. The hand does not tell which.", "由用户存入（14 至 40），或为空；灵巧手不提供此信息。";
     GESTURE_ROUTE: "Gesture route", "手势方式";
     ROUTE_1008: "Write 1008", "写 1008";
     ROUTE_LIBRARY: "Action library 2320", "动作库 2320";
