@@ -18,6 +18,8 @@ pub struct HandList {
     given: SlotId,
     /// Poses and demos apply to all armed hands.
     poses_for_all: bool,
+    /// The user opened or removed a hand in this run.
+    chosen: bool,
 }
 
 impl HandList {
@@ -59,6 +61,16 @@ impl HandList {
     /// True if there is room for another hand.
     pub const fn has_room(&self) -> bool {
         self.count() < HANDS_MAX
+    }
+
+    /// True if the user opened or removed a hand in this run.
+    pub(crate) const fn are_chosen(&self) -> bool {
+        self.chosen
+    }
+
+    /// Notes that the user opened or removed a hand.
+    pub(crate) const fn set_chosen(&mut self) {
+        self.chosen = true;
     }
 
     /// The hand of this slot.

@@ -22,6 +22,7 @@ pub(super) fn connect(state: &mut State, to: Option<Endpoint>, env: &Env) {
         }
         // A scan may still query further ids on the requested port.
         state.scan.cancel();
+        state.hands.set_chosen();
         state.settings.remember(endpoint);
         state.settings.used_on(endpoint, day(since_1970()));
     }

@@ -51,7 +51,10 @@ pub(super) fn act(state: &mut State, action: HandsAction, env: &Env) {
             state.hands.show(slot);
             hand_is_shown(state);
         }
-        HandsAction::Remove(slot) => remove_hand(state, slot, env),
+        HandsAction::Remove(slot) => {
+            state.hands.set_chosen();
+            remove_hand(state, slot, env);
+        }
         HandsAction::Name(slot, name) => {
             let hand = state.hands.iter().find(|hand| hand.label.slot == slot);
             if let Some(endpoint) = hand.and_then(|hand| hand.connection.endpoint.as_ref()) {
@@ -61,6 +64,18 @@ pub(super) fn act(state: &mut State, action: HandsAction, env: &Env) {
         HandsAction::StopOne(slot) => with_hand(state, slot, env, |hand, _, ctx| hand.stop(ctx)),
         HandsAction::PosesForAll(on) => state.hands.set_poses_for_all(on),
     }
+}
+
+/// Remembers the open hands for the next start, once the user chose some of them.
+pub(super) fn remember_open(state: &mut State) {
+    if !state.hands.are_chosen() {
+        return;
+    }
+    let last = state.settings.endpoint.as_ref();
+    let open = state.hands.iter().filter(|hand| !hand.is_removed);
+    let open = open.filter_map(|hand| hand.connection.endpoint.as_ref());
+    let open = open.map(ToString::to_string);
+    state.settings.beside = open.filter(|text| Some(text) != last).collect();
 }
 
 /// Ends a dry run, which started at the pose of the hand shown before.
@@ -78,7 +93,16 @@ fn remove_hand(state: &mut State, slot: SlotId, env: &Env) {
         hand.leave(None, ctx);
         hand.is_removed = true;
     });
+    forget_removed(state);
     drop_removed(state);
+}
+
+/// Makes a remaining hand the first of the next start.
+fn forget_removed(state: &mut State) {
+    let mut left = state.hands.iter().filter(|hand| !hand.is_removed);
+    if let Some(endpoint) = left.find_map(|hand| hand.connection.endpoint.as_ref()) {
+        state.settings.endpoint = Some(endpoint.to_string());
+    }
 }
 
 /// Removes the slots of hands that were to be removed and are now disconnected.

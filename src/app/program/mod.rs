@@ -81,9 +81,15 @@ impl App {
         }
     }
 
-    /// Opens a hand at start: the given one, else the remembered one, else the built-in one. Remembers nothing.
+    /// Opens a hand at start: the given one, else those of the last session, else the built-in one. Remembers nothing.
     pub fn open(&mut self, endpoint: Option<Endpoint>, now: Moment) {
+        let beside = match endpoint {
+            Some(_) => Vec::new(),
+            None => self.state.settings.beside.clone(),
+        };
         open(&mut self.state, endpoint, &self.env, now);
+        let beside = beside.iter().filter_map(|text| text.parse().ok());
+        open_beside(&mut self.state, beside.collect(), &self.env, now);
     }
 
     /// Opens further hands at start, each in its own slot; the first stays shown. Remembers nothing.
@@ -156,6 +162,9 @@ impl App {
         fleet.drain();
         leading::stop_mirrored(&mut self.state);
         hands::drop_removed(&mut self.state);
+        if self.closing.is_none() {
+            hands::remember_open(&mut self.state);
+        }
         self.exhibit.tick(&mut self.state, now);
         let told = self.jobs.tick(&mut self.state, &self.env);
         told.into_iter().for_each(|told| self.notify(told, now));

@@ -5,6 +5,7 @@ use crate::setup::program::{env, start};
 use handscope::app::action::Action;
 use handscope::app::env::Env;
 use handscope::app::files::settings_file::load;
+use handscope::app::hand::list::HandsAction;
 use handscope::app::notices::NoticeKind;
 use handscope::app::params::state::ParamAction;
 use handscope::app::program::App;
@@ -335,4 +336,49 @@ async fn a_recording_that_finds_no_disk_says_so_until_it_does() {
         wait += 1;
         assert!(wait < 6000, "still told");
     }
+}
+
+#[tokio::test(start_paused = true)]
+async fn the_hands_that_a_user_opened_are_open_at_the_next_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("settings.toml");
+    let endpoints = ["sim:?id=1", "sim:?id=2", "sim:?id=3"].map(|text| text.parse().unwrap());
+    let open = |app: &App| -> Vec<String> {
+        let hands = app.state().hands.iter();
+        let endpoints = hands.filter_map(|hand| hand.connection.endpoint.as_ref());
+        endpoints.map(ToString::to_string).collect()
+    };
+    let (mut app, clock) = begun(Some(path.clone()), Settings::default()).await;
+    for (n, endpoint) in endpoints.into_iter().enumerate() {
+        if n > 0 {
+            app.act(Action::Hands(HandsAction::Add), clock.now());
+        }
+        app.act(Action::Connect(endpoint), clock.now());
+        run(&mut app, clock, 300).await;
+    }
+    let mut before = open(&app);
+    assert_eq!(before.len(), 3, "{before:?}");
+    close(&mut app, clock).await;
+
+    let kept = load(&path).settings;
+    let (mut app, clock) = begun(Some(path.clone()), kept.clone()).await;
+    run(&mut app, clock, 300).await;
+    // The last one is shown; each is only read.
+    assert_eq!(open(&app).first(), before.last());
+    let mut after = open(&app);
+    (before.sort_unstable(), after.sort_unstable());
+    assert_eq!(after, before);
+    for hand in app.state().hands.iter() {
+        let connection = &hand.connection;
+        assert_eq!(connection.status.state, LinkState::Monitoring);
+        assert_eq!(connection.stats.writes, 0);
+    }
+
+    // An address on the command line opens that hand alone, and changes nothing of the next start.
+    let env = env();
+    let clock = env.clock;
+    let mut app = start(env, kept.clone(), Some("sim:?id=9"));
+    run(&mut app, clock, 300).await;
+    assert_eq!(open(&app).len(), 1);
+    assert_eq!(app.state().settings.beside, kept.beside);
 }
