@@ -1,4 +1,4 @@
-//! A card for each input and output besides the window: switch, address, state, and control of the hand.
+//! Inputs and outputs besides the window: a list with their switches, and address, counts and control of the chosen one.
 
 use crate::app::action::Action;
 use crate::app::exhibit::ExhibitAction;
@@ -7,23 +7,30 @@ use crate::inputs::stream::StreamPlace;
 use crate::link::Owner;
 use crate::motion::source::SourceKind;
 use crate::share::gateway::{ClientLease, GatewayClient};
-use crate::ui::inputs::mirror_card::mirror_ui;
-use crate::ui::inputs::pad_card::pad_source_ui;
-use crate::ui::inputs::source::{
-    CardSwitch, about_ui, grant_client_ui, grant_ui, state_ui, switch_ui,
-};
-use crate::ui::kit::{self, Button, CardGrid, Label, Look, Pane, Pick};
+use crate::ui::hand::panel::{StillHand, picture};
+use crate::ui::inputs::mirror_card::{mirror_row, mirror_ui};
+use crate::ui::inputs::pad_card::{PadCard, pad_row, pad_source_ui};
+use crate::ui::inputs::source::{SourceRow, SourceSwitch, grant_client_ui, grant_ui};
+use crate::ui::kit::{self, Button, Label, Look, Pane, Pick};
 use crate::ui::text::{Text, errors, exhibit, inputs};
 use crate::ui::theme;
-use egui::Ui;
+use crate::ui::touch::heat;
+use egui::{Panel, ScrollArea, Ui};
 use std::net::{IpAddr, SocketAddr};
 
-/// Minimum width of a card, unless the window is narrower.
-const CARD_LEAST: f32 = 320.0;
+/// Width of the list.
+const LIST: f32 = 300.0;
+/// Maximum width of the settings of a source: longer lines are hard to read.
+const SUBJECT_MAX: f32 = 640.0;
+/// Minimum height of the drawn hand.
+const HAND_LEAST: f32 = 160.0;
 
-/// Text in progress.
+/// The chosen source, and text in progress.
 #[derive(Debug)]
 pub(crate) struct SourceCards {
+    chosen: SourceCard,
+    pad: PadCard,
+    hand: StillHand,
     stream: String,
     is_tcp: bool,
     share: String,
@@ -35,6 +42,9 @@ impl Default for SourceCards {
     /// Loopback by default; other addresses are the user's choice.
     fn default() -> Self {
         Self {
+            chosen: SourceCard::Stream,
+            pad: PadCard::default(),
+            hand: StillHand::default(),
             stream: "127.0.0.1:6010".into(),
             is_tcp: false,
             share: "127.0.0.1:6001".into(),
@@ -44,8 +54,8 @@ impl Default for SourceCards {
     }
 }
 
-/// Source that a card is about.
-#[derive(Debug, Clone, Copy)]
+/// One of the sources and readers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum SourceCard {
     Stream,
     Dds,
@@ -57,31 +67,77 @@ enum SourceCard {
 }
 
 impl SourceCards {
-    /// Draws all cards.
+    /// Draws the list, and the chosen source beside it.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         use SourceCard::{Dds, Exhibition, Gateway, Mirror, Pad, Stream, Viewers};
         let mirror = pane.state.hands.is_several().then_some(Mirror);
-        let cards = [Stream, Dds, Gateway, Viewers].into_iter().chain(mirror);
-        let cards: Vec<SourceCard> = cards.chain([Pad, Exhibition]).collect();
-        let grid = CardGrid {
-            salt: "share",
-            least: CARD_LEAST,
-            most: 3,
-            count: cards.len(),
-        };
-        grid.ui(ui, pane.look, |ui, nth| match cards.get(nth) {
-            Some(Stream) => self.stream_ui(ui, pane),
-            Some(Dds) => self.dds_ui(ui, pane),
-            Some(Gateway) => self.gateway_ui(ui, pane),
-            Some(Viewers) => self.viewers_ui(ui, pane),
-            Some(Mirror) => mirror_ui(ui, pane),
-            Some(Pad) => pad_source_ui(ui, pane),
-            Some(Exhibition) => exhibition_ui(ui, pane),
-            None => {}
+        let all = [Stream, Dds, Pad].into_iter().chain(mirror);
+        let all: Vec<SourceCard> = all.chain([Gateway, Viewers, Exhibition]).collect();
+        if !all.contains(&self.chosen) {
+            self.chosen = Stream;
+        }
+        let list = kit::bare(Panel::left("sources"), LIST, theme::GAP_RIGHT);
+        list.show(ui, |ui| {
+            kit::full_card_ui(ui, pane.look, |ui| {
+                for source in all {
+                    let row = self.row(pane, source);
+                    if row.ui(ui, pane, source == self.chosen) {
+                        self.chosen = source;
+                    }
+                }
+            });
+        });
+        kit::full_card_ui(ui, pane.look, |ui| {
+            let area = ScrollArea::vertical().auto_shrink(false);
+            area.show(ui, |ui| self.chosen_ui(ui, pane));
         });
     }
 
-    fn stream_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    fn row(&self, pane: &Pane<'_>, source: SourceCard) -> SourceRow {
+        match source {
+            SourceCard::Stream => self.stream_row(pane),
+            SourceCard::Dds => self.dds_row(pane),
+            SourceCard::Gateway => self.gateway_row(pane),
+            SourceCard::Viewers => self.viewers_row(pane),
+            SourceCard::Mirror => mirror_row(pane),
+            SourceCard::Pad => pad_row(pane),
+            SourceCard::Exhibition => SourceRow {
+                title: exhibit::ENTER,
+                switch: None,
+                kind: None,
+                words: String::new(),
+            },
+        }
+    }
+
+    fn chosen_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let row = self.row(pane, self.chosen);
+        ui.scope(|ui| {
+            ui.set_max_width(SUBJECT_MAX.min(ui.available_width()));
+            row.head_ui(ui, pane);
+            match self.chosen {
+                SourceCard::Stream => self.stream_ui(ui, pane, &row),
+                SourceCard::Dds => self.dds_ui(ui, pane, &row),
+                SourceCard::Gateway => self.gateway_ui(ui, pane, &row),
+                SourceCard::Viewers => self.viewers_ui(ui, pane, &row),
+                SourceCard::Mirror => mirror_ui(ui, pane, &row),
+                SourceCard::Pad => pad_source_ui(ui, pane, &row),
+                SourceCard::Exhibition => exhibition_ui(ui, pane),
+            }
+        });
+        if self.chosen == SourceCard::Pad && self.pad.ui(ui, pane) {
+            return;
+        }
+        let size = ui.available_size();
+        if size.y >= HAND_LEAST {
+            let (_, place) = ui.allocate_space(size);
+            let tips = heat::tips(pane);
+            let picture = picture(pane.hand(), &tips, pane.state.now);
+            self.hand.ui(ui, place, pane.look, &picture);
+        }
+    }
+
+    fn stream_row(&self, pane: &Pane<'_>) -> SourceRow {
         let look = pane.look;
         let at = pane.hand().inputs.stream_at;
         let wanted = place(&self.stream).map(|at| {
@@ -91,25 +147,9 @@ impl SourceCards {
                 StreamPlace::Udp(at)
             }
         });
-        let switch = CardSwitch {
-            title: inputs::STREAM,
-            turns_on: inputs::LISTEN,
-            is_on: at.is_some(),
-            action: InputAction::Listen(wanted.filter(|_| at.is_none())),
-            wrong: wanted.is_none().then_some(inputs::ADDRESS_WRONG),
-        };
-        switch_ui(ui, pane, switch);
-        ui.horizontal(|ui| {
-            ui.add_enabled_ui(at.is_none(), |ui| {
-                let both = [(false, inputs::UDP), (true, inputs::TCP)];
-                Pick::new(look, inputs::STREAM).ui(ui, &mut self.is_tcp, both);
-            });
-            PlaceField::new(look, inputs::STREAM_AT, at.map(socket)).ui(ui, &mut self.stream);
-        });
-        let hand = pane.hand();
-        let view = &hand.inputs.stream_view;
-        let owner = view.owner(pane.state.now).filter(|_| at.is_some());
+        let view = &pane.hand().inputs.stream_view;
         let sender = view.intake.sender.map(|(sender, _)| sender.to_string());
+        let owner = stream_owner(pane);
         let words = match (at, owner.and(sender)) {
             (None, _) => look.tr(inputs::OFF).to_owned(),
             (Some(_), None) if view.is_refusing(pane.state.now) => {
@@ -121,13 +161,32 @@ impl SourceCards {
                 look.fill(inputs::HZ_FROM, &[&rate, &sender])
             }
         };
-        state_ui(
-            ui,
-            pane,
-            Some(InputKind::Source(SourceKind::Stream)),
-            &words,
-        );
+        SourceRow {
+            title: inputs::STREAM,
+            switch: Some(SourceSwitch {
+                turns_on: inputs::LISTEN,
+                is_on: at.is_some(),
+                action: InputAction::Listen(wanted.filter(|_| at.is_none())),
+                wrong: wanted.is_none().then_some(inputs::ADDRESS_WRONG),
+            }),
+            kind: Some(InputKind::Source(SourceKind::Stream)),
+            words,
+        }
+    }
+
+    fn stream_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, row: &SourceRow) {
+        let look = pane.look;
+        let at = pane.hand().inputs.stream_at;
+        ui.horizontal(|ui| {
+            ui.add_enabled_ui(at.is_none(), |ui| {
+                let both = [(false, inputs::UDP), (true, inputs::TCP)];
+                Pick::new(look, inputs::STREAM).ui(ui, &mut self.is_tcp, both);
+            });
+            PlaceField::new(look, inputs::STREAM_AT, at.map(socket)).ui(ui, &mut self.stream);
+        });
+        row.state_ui(ui, pane);
         if at.is_some() {
+            let view = &pane.hand().inputs.stream_view;
             let refused = view.intake.refused.iter();
             let refused = refused.map(|(fault, count)| (inputs::fault(*fault), *count));
             let counts = [
@@ -138,30 +197,38 @@ impl SourceCards {
             let odd = odd.filter(|(_, count)| *count > 0);
             counts_ui(ui, pane, counts.into_iter().chain(odd).chain(refused));
         }
-        grant_ui(ui, pane, SourceKind::Stream, silence(pane, owner));
+        let missing = silence(pane, stream_owner(pane));
+        grant_ui(ui, pane, SourceKind::Stream, missing);
     }
 
-    fn dds_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    fn dds_row(&self, pane: &Pane<'_>) -> SourceRow {
         let look = pane.look;
         let view = pane.hand().inputs.dds_view.as_ref();
         let wanted = Some(self.dds.trim().to_owned()).filter(|name| !name.is_empty());
-        let switch = CardSwitch {
-            title: inputs::DDS,
-            turns_on: inputs::JOIN,
-            is_on: view.is_some(),
-            wrong: wanted.is_none().then_some(inputs::INTERFACE_WRONG),
-            action: InputAction::JoinDds(wanted.filter(|_| view.is_none())),
-        };
-        switch_ui(ui, pane, switch);
-        let at = view.map(|view| (view.at.into(), view.at.to_string()));
-        PlaceField::new(look, inputs::DDS_AT, at).ui(ui, &mut self.dds);
-        let owner = view.and_then(|view| view.view.owner(pane.state.now));
-        let words = match (view, owner) {
+        let words = match (view, dds_owner(pane)) {
             (None, _) => look.tr(inputs::OFF).to_owned(),
             (Some(_), None) => look.tr(inputs::NOBODY_SENDS).to_owned(),
             (Some(view), Some(_)) => format!("{:.0} Hz", view.view.rate_hz),
         };
-        state_ui(ui, pane, Some(InputKind::Source(SourceKind::Dds)), &words);
+        SourceRow {
+            title: inputs::DDS,
+            switch: Some(SourceSwitch {
+                turns_on: inputs::JOIN,
+                is_on: view.is_some(),
+                wrong: wanted.is_none().then_some(inputs::INTERFACE_WRONG),
+                action: InputAction::JoinDds(wanted.filter(|_| view.is_none())),
+            }),
+            kind: Some(InputKind::Source(SourceKind::Dds)),
+            words,
+        }
+    }
+
+    fn dds_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, row: &SourceRow) {
+        let look = pane.look;
+        let view = pane.hand().inputs.dds_view.as_ref();
+        let at = view.map(|view| (view.at.into(), view.at.to_string()));
+        PlaceField::new(look, inputs::DDS_AT, at).ui(ui, &mut self.dds);
+        row.state_ui(ui, pane);
         if let Some(view) = view {
             let counts = [
                 (inputs::STATES, view.told.states),
@@ -179,65 +246,88 @@ impl SourceCards {
         let other = view.and_then(|view| view.other.as_ref());
         let other =
             other.map(|other| look.fill(inputs::OTHER_FOLLOWS, &[&other.host, &other.name]));
-        let missing = other.as_deref().or(silence(pane, owner));
+        let missing = other.as_deref().or(silence(pane, dds_owner(pane)));
         grant_ui(ui, pane, SourceKind::Dds, missing);
     }
 
-    fn gateway_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    fn gateway_row(&self, pane: &Pane<'_>) -> SourceRow {
         let look = pane.look;
         let at = pane.hand().inputs.gateway_at;
         let wanted = place(&self.share);
-        let switch = CardSwitch {
-            title: inputs::GATEWAY,
-            turns_on: inputs::OPEN_GATEWAY,
-            is_on: at.is_some(),
-            action: InputAction::Share(wanted.filter(|_| at.is_none())),
-            wrong: wanted.is_none().then_some(inputs::ADDRESS_WRONG),
-        };
-        switch_ui(ui, pane, switch);
-        PlaceField::new(look, inputs::GATEWAY_AT, at.map(socket)).ui(ui, &mut self.share);
-        let clients = &pane.hand().inputs.clients;
-        let words = match (at, clients.len()) {
+        let words = match (at, pane.hand().inputs.clients.len()) {
             (None, _) => look.tr(inputs::OFF).to_owned(),
             (Some(_), 0) => look.tr(inputs::NO_CLIENTS).to_owned(),
             (Some(_), count) => look.fill(inputs::CLIENTS, &[&count]),
         };
-        state_ui(ui, pane, Some(InputKind::Gateway), &words);
+        SourceRow {
+            title: inputs::GATEWAY,
+            switch: Some(SourceSwitch {
+                turns_on: inputs::OPEN_GATEWAY,
+                is_on: at.is_some(),
+                action: InputAction::Share(wanted.filter(|_| at.is_none())),
+                wrong: wanted.is_none().then_some(inputs::ADDRESS_WRONG),
+            }),
+            kind: Some(InputKind::Gateway),
+            words,
+        }
+    }
+
+    fn gateway_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, row: &SourceRow) {
+        let look = pane.look;
+        let at = pane.hand().inputs.gateway_at;
+        PlaceField::new(look, inputs::GATEWAY_AT, at.map(socket)).ui(ui, &mut self.share);
+        row.state_ui(ui, pane);
         if pane.state.settings.first_client_moves {
             kit::small_text_ui(ui, look.tr(inputs::FIRST_CLIENT), look.palette.warn);
         }
-        for client in clients {
+        for client in &pane.hand().inputs.clients {
             client_ui(ui, pane, client);
         }
     }
 
-    fn viewers_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    fn viewers_row(&self, pane: &Pane<'_>) -> SourceRow {
         let look = pane.look;
         let served = pane.hand().inputs.foxglove_at;
         let wanted = place(&self.viewers);
-        let switch = CardSwitch {
+        SourceRow {
             title: inputs::VIEWERS,
-            turns_on: inputs::SHOW,
-            is_on: served.is_some(),
-            action: InputAction::Show(wanted.filter(|_| served.is_none())),
-            wrong: wanted.is_none().then_some(inputs::ADDRESS_WRONG),
-        };
-        switch_ui(ui, pane, switch);
-        let at = served.map(|(at, _)| socket(at));
-        PlaceField::new(look, inputs::VIEWERS_AT, at).ui(ui, &mut self.viewers);
-        let words = match served {
-            None => look.tr(inputs::OFF).to_owned(),
-            Some((_, count)) => look.fill(inputs::VIEWERS_NOW, &[&count]),
-        };
-        state_ui(ui, pane, Some(InputKind::Viewers), &words);
+            switch: Some(SourceSwitch {
+                turns_on: inputs::SHOW,
+                is_on: served.is_some(),
+                action: InputAction::Show(wanted.filter(|_| served.is_none())),
+                wrong: wanted.is_none().then_some(inputs::ADDRESS_WRONG),
+            }),
+            kind: Some(InputKind::Viewers),
+            words: match served {
+                None => look.tr(inputs::OFF).to_owned(),
+                Some((_, count)) => look.fill(inputs::VIEWERS_NOW, &[&count]),
+            },
+        }
+    }
+
+    fn viewers_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, row: &SourceRow) {
+        let at = pane.hand().inputs.foxglove_at.map(|(at, _)| socket(at));
+        PlaceField::new(pane.look, inputs::VIEWERS_AT, at).ui(ui, &mut self.viewers);
+        row.state_ui(ui, pane);
     }
 }
 
-/// Draws the card that starts the page for visitors.
+/// The program whose lines arrive; `None` if nobody sends.
+fn stream_owner(pane: &Pane<'_>) -> Option<Owner> {
+    let inputs = &pane.hand().inputs;
+    let owner = inputs.stream_view.owner(pane.state.now);
+    owner.filter(|_| inputs.stream_at.is_some())
+}
+
+/// The DDS sender whose commands arrive; `None` if nobody sends.
+fn dds_owner(pane: &Pane<'_>) -> Option<Owner> {
+    let view = pane.hand().inputs.dds_view.as_ref()?;
+    view.view.owner(pane.state.now)
+}
+
+/// Draws the buttons that start the page for visitors.
 fn exhibition_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    kit::head_ui(ui, look, look.tr(exhibit::ENTER), |_| ());
-    about_ui(ui, pane, exhibit::ENTER);
     ui.horizontal_wrapped(|ui| {
         for (text, tip, action) in [
             (exhibit::START, exhibit::ENTER, ExhibitAction::Enter),

@@ -8,7 +8,7 @@ use crate::app::state::State;
 use crate::inputs::mirror::MirrorScale;
 use crate::motion::source::SourceKind;
 use crate::ui::inputs::owner::leader_name;
-use crate::ui::inputs::source::{CardSwitch, grant_ui, state_ui, switch_ui};
+use crate::ui::inputs::source::{SourceRow, SourceSwitch, grant_ui};
 use crate::ui::kit::{self, Label, NumberField, Pane};
 use crate::ui::text::{Text, inputs};
 use egui::Ui;
@@ -16,26 +16,12 @@ use egui::Ui;
 /// Width of the captions.
 const NAME: f32 = 100.0;
 
-/// Draws the switch, the choice of leader, the state of the other hand, and the grant of control.
-pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+/// The row of the list.
+pub(crate) fn mirror_row(pane: &Pane<'_>) -> SourceRow {
     let (look, state) = (pane.look, pane.state);
     let mirror = state.hand().inputs.mirror.as_ref();
-    let is_led = state.hand().leader().is_some();
     let first = others(state).into_iter().next();
     let first = first.map(|(leader, _)| (leader, MirrorScale::WHOLE));
-    let switch = CardSwitch {
-        title: inputs::MIRROR,
-        turns_on: inputs::WATCH,
-        is_on: mirror.is_some(),
-        action: InputAction::Mirror(first.filter(|_| mirror.is_none())),
-        wrong: first.is_none().then_some(inputs::NO_OTHER_HAND),
-    };
-    switch_ui(ui, pane, switch);
-    let choice = ui.add_enabled_ui(!is_led, |ui| {
-        choice_ui(ui, pane, mirror);
-    });
-    let taken = look.tr(inputs::TAKEN);
-    choice.response.on_disabled_hover_text(taken);
     let words = match mirror {
         None => look.tr(inputs::OFF).to_owned(),
         Some(mirror) if mirror.view.owner(state.now).is_some() => {
@@ -44,7 +30,30 @@ pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         }
         Some(_) => look.tr(inputs::LEADER_SILENT).to_owned(),
     };
-    state_ui(ui, pane, None, &words);
+    SourceRow {
+        title: inputs::MIRROR,
+        switch: Some(SourceSwitch {
+            turns_on: inputs::WATCH,
+            is_on: mirror.is_some(),
+            action: InputAction::Mirror(first.filter(|_| mirror.is_none())),
+            wrong: first.is_none().then_some(inputs::NO_OTHER_HAND),
+        }),
+        kind: None,
+        words,
+    }
+}
+
+/// Draws the choice of leader, the state of the other hand, and the grant of control.
+pub(crate) fn mirror_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &SourceRow) {
+    let (look, state) = (pane.look, pane.state);
+    let mirror = state.hand().inputs.mirror.as_ref();
+    let is_led = state.hand().leader().is_some();
+    let choice = ui.add_enabled_ui(!is_led, |ui| {
+        choice_ui(ui, pane, mirror);
+    });
+    let taken = look.tr(inputs::TAKEN);
+    choice.response.on_disabled_hover_text(taken);
+    row.state_ui(ui, pane);
     let missing = missing(state, mirror).map(|text| look.tr(text));
     grant_ui(ui, pane, SourceKind::Mirror, missing);
 }

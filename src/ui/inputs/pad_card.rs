@@ -11,7 +11,7 @@ use crate::motion::source::SourceKind;
 use crate::ui::hand::tile::pose_ui;
 use crate::ui::inputs::pad_picture::{PadShown, PoseName, pad_picture_ui};
 use crate::ui::inputs::pad_table::pad_table_ui;
-use crate::ui::inputs::source::{CardSwitch, grant_ui, state_ui, switch_ui};
+use crate::ui::inputs::source::{SourceRow, SourceSwitch, grant_ui};
 use crate::ui::kit::{self, Look, Pane};
 use crate::ui::text::{errors, inputs};
 use crate::ui::theme;
@@ -28,62 +28,71 @@ pub(crate) struct PadCard {
 }
 
 impl PadCard {
-    /// Draws the card, if a gamepad is connected.
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    /// Draws the gamepad with what its controls do. False without a gamepad.
+    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> bool {
         let look = pane.look;
         let view = pane.hand().inputs.pad_view.as_ref();
         let Some(view) = view.filter(|view| view.name.is_some()) else {
-            return;
+            return false;
         };
-        kit::card_ui(ui, look, |ui| {
-            let name = view.name.as_deref().unwrap_or_default();
-            kit::head_ui(ui, look, name, |_| ());
-            kit::small_text_ui(ui, look.tr(inputs::PAD_CHANGE), look.palette.muted);
-            let (map, poses) = (pane.state.settings.pad_map(), pose_names(pane.state, look));
-            let shown = PadShown {
-                state: Some(&view.state),
-                map: &map,
-                chosen: self.chosen,
-                fingers: view.fingers,
-                poses: &poses,
-            };
-            let picture = ScrollArea::horizontal().id_salt("pad picture");
-            let clicked = picture.show(ui, |ui| pad_picture_ui(ui, look, &shown));
-            self.chosen = clicked.inner.or(self.chosen);
-            ui.add_space(theme::STEP);
-            ui.horizontal_top(|ui| {
-                let changed = ui.vertical(|ui| pad_table_ui(ui, look, &shown)).inner;
-                let map = changed.map(|map| Action::Input(InputAction::Map(map)));
-                pane.actions.extend(map);
-                dry_run_ui(ui, pane, view);
-            });
+        kit::small_text_ui(ui, look.tr(inputs::PAD_CHANGE), look.palette.muted);
+        let (map, poses) = (pane.state.settings.pad_map(), pose_names(pane.state, look));
+        let shown = PadShown {
+            state: Some(&view.state),
+            map: &map,
+            chosen: self.chosen,
+            fingers: view.fingers,
+            poses: &poses,
+        };
+        let picture = ScrollArea::horizontal().id_salt("pad picture");
+        let clicked = picture.show(ui, |ui| pad_picture_ui(ui, look, &shown));
+        self.chosen = clicked.inner.or(self.chosen);
+        ui.add_space(theme::STEP);
+        ui.horizontal_top(|ui| {
+            let changed = ui.vertical(|ui| pad_table_ui(ui, look, &shown)).inner;
+            let map = changed.map(|map| Action::Input(InputAction::Map(map)));
+            pane.actions.extend(map);
+            dry_run_ui(ui, pane, view);
         });
+        true
     }
 }
 
-/// Draws the switch for reading gamepads, the device found, and the grant of control.
-pub(crate) fn pad_source_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+/// The row of the list.
+pub(crate) fn pad_row(pane: &Pane<'_>) -> SourceRow {
     let look = pane.look;
     let view = pane.hand().inputs.pad_view.as_ref();
-    let switch = CardSwitch {
-        title: inputs::PAD,
-        turns_on: inputs::READ_PAD,
-        is_on: view.is_some(),
-        action: InputAction::ReadPad(view.is_none()),
-        wrong: None,
-    };
-    switch_ui(ui, pane, switch);
     let name = view.and_then(|view| view.name.as_ref());
     let words = match (view, name) {
-        (None, _) => look.tr(inputs::PAD_OFF).to_owned(),
+        (None, _) => look.tr(inputs::OFF).to_owned(),
         (Some(_), Some(name)) => name.clone(),
         (Some(view), None) => match &view.trouble {
             Some(trouble) => errors::pad(look, trouble),
             None => look.tr(inputs::PLUG_IN).to_owned(),
         },
     };
-    state_ui(ui, pane, Some(InputKind::Source(SourceKind::Pad)), &words);
-    let missing = name.is_none().then(|| look.tr(inputs::NONE));
+    SourceRow {
+        title: inputs::PAD,
+        switch: Some(SourceSwitch {
+            turns_on: inputs::READ_PAD,
+            is_on: view.is_some(),
+            action: InputAction::ReadPad(view.is_none()),
+            wrong: None,
+        }),
+        kind: Some(InputKind::Source(SourceKind::Pad)),
+        words,
+    }
+}
+
+/// Draws the gamepad found, and the grant of control.
+pub(crate) fn pad_source_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &SourceRow) {
+    let view = pane.hand().inputs.pad_view.as_ref();
+    let is_found = view.is_some_and(|view| view.name.is_some());
+    row.state_ui(ui, pane);
+    if view.is_none() {
+        kit::small_text_ui(ui, pane.look.tr(inputs::PAD_OFF), pane.look.palette.muted);
+    }
+    let missing = (!is_found).then(|| pane.look.tr(inputs::NONE));
     grant_ui(ui, pane, SourceKind::Pad, missing);
 }
 

@@ -311,7 +311,7 @@ fn pad_ui(ui: &mut Ui, look: Look, scale: f32, shown: &PadShown<'_>) -> Option<P
     }
     if shown.state.is_none() {
         let (at, center) = (drawing.at(pos2(0.0, -115.0)), Align2::CENTER_CENTER);
-        let (words, font) = (look.tr(inputs::NONE), theme::title());
+        let (words, font) = (look.tr(inputs::NONE), theme::body());
         ui.painter()
             .text(at, center, words, font, look.palette.muted);
     }

@@ -1,4 +1,4 @@
-//! Common parts of the source cards: switch, state, and grant of control.
+//! Common parts of all sources: row in the list, switch, state, and grant of control.
 
 use crate::app::action::Action;
 use crate::app::inputs::{InputAction, InputKind};
@@ -8,12 +8,21 @@ use crate::share::gateway::GatewayClient;
 use crate::ui::kit::{self, Button, Label, Pane, Weight};
 use crate::ui::text::{Text, errors, inputs, words};
 use crate::ui::theme;
-use egui::{Color32, Ui};
+use egui::{Color32, Id, Rect, Response, Ui, UiBuilder, vec2};
 
-/// A switch in the heading of a card.
-pub(crate) struct CardSwitch {
-    /// Name of the card, with its description as tip.
+/// A source or reader in the list: its switch and its state.
+pub(crate) struct SourceRow {
+    /// Name, with its description as tip.
     pub(crate) title: Text,
+    /// `None` for what is not switched.
+    pub(crate) switch: Option<SourceSwitch>,
+    pub(crate) kind: Option<InputKind>,
+    /// Its state in a few words.
+    pub(crate) words: String,
+}
+
+/// Switch of a source.
+pub(crate) struct SourceSwitch {
     /// Effect of turning it on.
     pub(crate) turns_on: Text,
     pub(crate) is_on: bool,
@@ -22,46 +31,80 @@ pub(crate) struct CardSwitch {
     pub(crate) wrong: Option<Text>,
 }
 
-/// Draws the name of a card with its switch, and its description.
-pub(crate) fn switch_ui(ui: &mut Ui, pane: &mut Pane<'_>, switch: CardSwitch) {
-    let look = pane.look;
-    let wrong = switch.wrong.filter(|_| !switch.is_on);
-    let wrong = wrong.map(|wrong| look.tr(wrong));
-    let reason = pane.recorded().or(no_hand(pane)).or(wrong);
-    let tip = if switch.is_on {
-        inputs::ON
-    } else {
-        switch.turns_on
-    };
-    let button = Button::new(look.tr(switch.turns_on), look.tip(tip));
-    let button = button.selected(switch.is_on).disabled(reason);
-    let title = look.tr(switch.title);
-    let pressed = kit::head_ui(ui, look, title, |ui| button.toggle_ui(ui, look).clicked());
-    if pressed {
-        pane.actions.push(Action::Input(switch.action));
+/// Height of a row in the list.
+const ROW: f32 = 52.0;
+
+impl SourceRow {
+    /// Draws the row in the list. True if it was clicked.
+    pub(crate) fn ui(&self, ui: &mut Ui, pane: &mut Pane<'_>, is_chosen: bool) -> bool {
+        let look = pane.look;
+        let title = look.tr(self.title);
+        let (_, place) = ui.allocate_space(vec2(ui.available_width(), ROW));
+        let button = Button::new(title, "").switch(is_chosen);
+        let id = Id::unique(("source", title));
+        let mut clicked = button.ground(ui, look, place, id).clicked();
+        let inner = place.shrink2(vec2(theme::PAD, theme::STEP));
+        let (upper, lower) = inner.split_top_bottom_at_fraction(0.5);
+        if let Some(switch) = &self.switch {
+            let size = vec2(theme::SWITCH, theme::CONTROL);
+            let corner = Rect::from_min_size(upper.right_top() - vec2(size.x, 0.0), size);
+            // A child moves no cursor.
+            let mut inner = ui.new_child(UiBuilder::new().max_rect(corner));
+            clicked |= switch.ui(&mut inner, pane).clicked();
+        }
+        let title = Label::new(title, look.palette.text);
+        title.paint(ui, upper.with_max_x(upper.right() - theme::SWITCH));
+        let (words, color) = self.state(pane, look.palette.muted);
+        Label::new(&words, color).small().put(ui, lower);
+        clicked
     }
-    about_ui(ui, pane, switch.title);
+
+    /// Draws name, description and state of the chosen source above its settings.
+    pub(crate) fn head_ui(&self, ui: &mut Ui, pane: &Pane<'_>) {
+        let look = pane.look;
+        let title = Label::text(look, self.title).large();
+        title.ui(ui);
+        kit::small_text_ui(ui, look.tip(self.title), look.palette.muted);
+        ui.add_space(theme::STEP);
+    }
+
+    /// State in words, or the reason why it could not be opened.
+    fn state(&self, pane: &Pane<'_>, live: Color32) -> (String, Color32) {
+        let look = pane.look;
+        let refused = pane.hand().inputs.refused.as_ref();
+        let refused = refused.filter(|(refused, _)| Some(*refused) == self.kind);
+        match refused {
+            Some((_, why)) => (errors::not_opened(look, why), look.palette.warn),
+            None => (self.words.clone(), live),
+        }
+    }
+
+    /// Draws the state in full, below the settings of the chosen source.
+    pub(crate) fn state_ui(&self, ui: &mut Ui, pane: &Pane<'_>) {
+        let (words, color) = self.state(pane, pane.look.palette.text);
+        Label::new(&words, color).wrap().ui(ui);
+    }
 }
 
-/// Draws the description of a card in the height of two lines, so that the content below aligns with that of its neighbours.
-pub(crate) fn about_ui(ui: &mut Ui, pane: &Pane<'_>, title: Text) {
-    let look = pane.look;
-    ui.scope(|ui| {
-        ui.set_min_height(2.0 * theme::TEXT_LINE);
-        kit::small_text_ui(ui, look.tip(title), look.palette.muted);
-    });
-}
-
-/// Draws the state on one line, or the reason why it could not be opened.
-pub(crate) fn state_ui(ui: &mut Ui, pane: &Pane<'_>, kind: Option<InputKind>, words: &str) {
-    let look = pane.look;
-    let refused = pane.hand().inputs.refused.as_ref();
-    let refused = refused.filter(|(refused, _)| Some(*refused) == kind);
-    let (words, color): (String, Color32) = match refused {
-        Some((_, why)) => (errors::not_opened(look, why), look.palette.warn),
-        None => (words.to_owned(), look.palette.text),
-    };
-    Label::new(&words, color).wrap().ui(ui);
+impl SourceSwitch {
+    fn ui(&self, ui: &mut Ui, pane: &mut Pane<'_>) -> Response {
+        let look = pane.look;
+        let wrong = self.wrong.filter(|_| !self.is_on);
+        let wrong = wrong.map(|wrong| look.tr(wrong));
+        let reason = pane.recorded().or(no_hand(pane)).or(wrong);
+        let tip = if self.is_on {
+            inputs::ON
+        } else {
+            self.turns_on
+        };
+        let button = Button::new(look.tr(self.turns_on), look.tip(tip));
+        let button = button.selected(self.is_on).disabled(reason);
+        let response = button.toggle_ui(ui, look);
+        if response.clicked() {
+            pane.actions.push(Action::Input(self.action.clone()));
+        }
+        response
+    }
 }
 
 /// Draws the button that grants a source control of the hand, or the fact that it has control.

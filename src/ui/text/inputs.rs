@@ -67,7 +67,7 @@ texts! {
     LISTENING: "Listening", "接收中";
     READ_PAD: "Read gamepad", "读取手柄", "Looks for a gamepad on this computer.", "在本机上查找手柄。";
     PLUG_IN: "No gamepad: plug one in, or pair it with this computer.", "没有手柄：请插入或与本机配对。";
-    PAD_OFF: "Off. Plug a gamepad in or pair it, then switch this on.", "已关闭。请插入或配对手柄，然后打开。";
+    PAD_OFF: "Plug a gamepad in or pair it, then switch this on.", "请插入或配对手柄，然后打开。";
     PAD_CHANGE: "Click a control to change what it does.", "点击控件可更改其动作。";
     FOLLOW_NOW: "{} counts ahead of the joints, {} ms from input to wire (99 %)", "领先关节 {}，输入到线路 {} ms（99 %）";
     LIMITS: "Limits for external control:", "外部控制的限制：";

@@ -135,6 +135,8 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     assert!(!bench.state().hand().inputs.is_open());
     bench.show(View::Inputs);
     bench.run(100);
+    bench.click_button("Gateway");
+    bench.run(60);
     bench.type_into("Address of the gateway", "127.0.0.1:0");
     bench.click_button("Open the gateway");
     bench.run(200);
@@ -294,6 +296,8 @@ fn the_first_client_moves_the_hand_only_where_the_settings_file_says_so() {
         });
         bench.wait(1000);
         bench.show(View::Inputs);
+        bench.run(60);
+        bench.click_button("Gateway");
         bench.act(Action::Input(InputAction::Share(
             "127.0.0.1:0".parse().ok(),
         )));
@@ -337,23 +341,31 @@ fn a_switch_shows_that_it_is_on_and_ends_where_it_began() {
 }
 
 #[test]
-fn all_cards_are_equally_wide_and_those_of_a_row_equally_high() {
-    for (size, columns) in [
-        (egui::vec2(1024.0, 640.0), 2),
-        (egui::vec2(1920.0, 1080.0), 3),
-        (egui::vec2(2560.0, 1440.0), 3),
-    ] {
+fn each_source_has_its_switch_in_the_list_and_the_chosen_one_its_settings() {
+    for size in [egui::vec2(1024.0, 640.0), egui::vec2(2560.0, 1440.0)] {
         let mut bench = Bench::open(SimConfig::default(), size);
         bench.wait(1000);
         bench.show(View::Inputs);
         bench.run(200);
-        let switches = ["Listen", "Join", "Open the gateway", "Show", "Read gamepad"];
+        let switches = ["Listen", "Join", "Read gamepad", "Open the gateway", "Show"];
         let places = switches.map(|name| bench.rects(name)[0]);
-        let in_first_row = places.iter().filter(|place| place.top() == places[0].top());
-        assert_eq!(in_first_row.count(), columns, "{size}: {places:?}");
-        let step = places[1].left() - places[0].left();
-        assert!(places[columns].left() == places[0].left(), "{places:?}");
-        assert!(step * f32::from(u8::try_from(columns).unwrap()) > size.x * 0.7);
+        for pair in places.windows(2) {
+            assert!(pair[0].left() == pair[1].left() && pair[0].bottom() < pair[1].top());
+        }
+        let settings = [
+            ("Another program", "Address for lines"),
+            ("DDS", "Interface of DDS"),
+            ("Gateway", "Address of the gateway"),
+            ("Live viewers", "Address for viewers"),
+        ];
+        for (source, field) in settings {
+            bench.click_button(source);
+            bench.run(60);
+            for (_, other) in settings {
+                assert_eq!(bench.shows(other), other == field, "{source}: {other}");
+            }
+        }
+        assert!(!bench.state().hand().inputs.is_open());
     }
 }
 
@@ -362,6 +374,8 @@ fn without_a_gamepad_neither_its_picture_nor_its_list_is_there() {
     let mut bench = Bench::live();
     bench.show(View::Inputs);
     bench.run(100);
+    bench.click_button("Gamepad");
+    bench.run(60);
     assert!(!bench.texts_with("Plug a gamepad in").is_empty());
     assert!(bench.all(Role::ComboBox).is_empty());
     assert!(!bench.shows("A (bottom): Pose Pinch"));
@@ -373,6 +387,8 @@ fn the_exhibition_is_started_from_its_card() {
     let mut bench = Bench::live();
     bench.show(View::Inputs);
     bench.run(100);
+    bench.click_button("Exhibition");
+    bench.run(60);
     bench.click_button("Start the exhibition");
     bench.run(200);
     assert!(bench.state().exhibit.is_some());

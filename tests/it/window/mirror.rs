@@ -41,6 +41,8 @@ fn show(bench: &mut Bench, at: usize) {
     bench.act(Action::Hands(HandsAction::Show(slot)));
     bench.show(View::Inputs);
     bench.run(60);
+    bench.click_button("Another hand");
+    bench.run(60);
 }
 
 /// The hand of one slot watches that of another.
