@@ -18,12 +18,16 @@ const BUDGET: [(Text, f32); 3] = [
     (notices::NOW, 72.0),
 ];
 
+/// Height of a window from which on the figures are open at first.
+const OPEN_FROM: f32 = 900.0;
+
 /// Draws state and rates of the link, and a collapsible section with all figures.
 pub(crate) fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::head_ui(ui, look, look.tr(panels::LINK_NOW), |_| ());
     state_ui(ui, pane);
-    let details = CollapsingHeader::new(look.tr(panels::DETAILS));
+    let is_high = ui.ctx().content_rect().height() >= OPEN_FROM;
+    let details = CollapsingHeader::new(look.tr(panels::DETAILS)).default_open(is_high);
     details.show_unindented(ui, |ui| {
         let [hand, rates, counts, troubles] = figures(pane);
         let groups = [vec![hand, rates, counts], vec![troubles]];

@@ -16,15 +16,21 @@ use crate::transport::endpoint::typed::{TypedError, other_kind, recognise, short
 use crate::ui::connection::detail::{KINDS, LinkFields, row_ui};
 use crate::ui::connection::hand_tiles::tiles_ui;
 use crate::ui::connection::scan::ScanPanel;
-use crate::ui::connection::shared::SharedPanel;
-use crate::ui::kit::{self, Button, CardGrid, Label, Look, Pane, TextField, Weight};
+use crate::ui::hand::panel::{StillHand, picture};
+use crate::ui::kit::{self, Button, Label, Look, Pane, TextField, Weight};
 use crate::ui::text::{errors, main, panels, scan as scan_text, window};
 use crate::ui::theme;
-use egui::{Key, ScrollArea, Ui, Vec2, vec2};
+use crate::ui::touch::heat;
+use egui::{Key, Panel, ScrollArea, Ui, Vec2, vec2};
 use std::net::Ipv4Addr;
 
 /// Minimum width of a link kind's tile, and its height.
 const WAY: Vec2 = vec2(296.0, 128.0);
+
+/// Width from which on the link is beside the address.
+const WIDE: f32 = 976.0;
+/// Minimum height of the drawn hand.
+const HAND_LEAST: f32 = 160.0;
 
 /// Result of parsing the typed text.
 type Meaning = Result<Endpoint, TypedError>;
@@ -36,7 +42,7 @@ pub(crate) struct ConnectionForm {
     /// The settings of the link are shown as fields.
     is_unfolded: bool,
     scan: ScanPanel,
-    shared: SharedPanel,
+    hand: StillHand,
     /// Endpoint that the text was filled from, so that a new one replaces the text.
     filled_from: Option<Endpoint>,
     /// Serial ports were listed.
@@ -76,26 +82,45 @@ impl ConnectionForm {
             pane.actions.push(Action::FindPorts);
         }
         let look = pane.look;
+        let is_wide = ui.available_width() >= WIDE;
+        if is_wide {
+            let width = (ui.available_width() * 0.42).round();
+            let panel = kit::bare(Panel::right("link"), width, theme::GAP_LEFT);
+            panel.show(ui, |ui| {
+                kit::full_card_ui(ui, look, |ui| self.link_ui(ui, pane));
+            });
+        }
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = theme::GAP;
-            let both = CardGrid {
-                salt: "connection",
-                least: 480.0,
-                most: 2,
-                count: 2,
-            };
-            both.ui(ui, look, |ui, nth| {
-                ui.spacing_mut().item_spacing.y = theme::STEP;
-                match nth {
-                    0 => self.address_ui(ui, pane),
-                    _ => figures::link_ui(ui, pane),
-                }
-            });
+            kit::card_ui(ui, look, |ui| self.address_ui(ui, pane));
+            if !is_wide {
+                kit::card_ui(ui, look, |ui| figures::link_ui(ui, pane));
+            }
             if let Some(address) = self.scan.ui(ui, pane) {
                 self.typed = address;
             }
-            self.shared.ui(ui, pane);
-            self.kinds_ui(ui, pane);
+            if self.needs_help(pane) {
+                self.kinds_ui(ui, pane);
+            }
+        });
+    }
+
+    /// True while the typed address is none, or no hand is connected: then the kinds of links are explained.
+    fn needs_help(&self, pane: &Pane<'_>) -> bool {
+        let typed = recognise(&self.typed, &pane.state.ports);
+        typed.is_err() || pane.hand().connection.endpoint.is_none()
+    }
+
+    /// Draws the link with its figures, above the hand at its other end.
+    fn link_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            figures::link_ui(ui, pane);
+            let size = ui.available_size();
+            if size.y >= HAND_LEAST {
+                let (_, place) = ui.allocate_space(size);
+                let picture = picture(pane.hand(), &heat::tips(pane), pane.state.now);
+                self.hand.ui(ui, place, pane.look, &picture);
+            }
         });
     }
 
@@ -249,7 +274,7 @@ impl ConnectionForm {
                     (self.is_unfolded, self.wants_focus) = (true, true);
                 }
                 let mut inner = hand_tiles::inside(ui, place);
-                Label::text(look, text).title().ui(&mut inner);
+                Label::text(look, text).ui(&mut inner);
                 kit::small_text_ui(&mut inner, look.tip(text), look.palette.muted);
             });
         });
@@ -274,12 +299,11 @@ fn slots_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// Draws the name of this hand, if there are several.
+/// Draws the name of this hand.
 fn name_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let (look, state) = (pane.look, pane.state);
     let hand = state.hand();
-    let endpoint = hand.connection.endpoint.as_ref();
-    let Some(endpoint) = endpoint.filter(|_| state.hands.is_several()) else {
+    let Some(endpoint) = &hand.connection.endpoint else {
         return;
     };
     let caption = look.tr(window::HAND_NAME);

@@ -4,6 +4,8 @@ use crate::app::action::Action;
 use crate::app::scan::{IdRange, ScanTarget};
 use crate::link::scan::ScanEvent;
 use crate::ui::connection::hand_tiles::{hand_tiles_ui, known_hands};
+use crate::ui::connection::shared;
+use crate::ui::connection::shared::{SharedInterface, shared_hands};
 use crate::ui::kit::{self, Button, Label, Pane};
 use crate::ui::text::{Text, scan};
 use crate::ui::theme;
@@ -16,35 +18,44 @@ const PRESETS: [(&str, Text); 3] = [
     ("192.168.123.211:6000", scan::PRESET_FIELD),
 ];
 
-/// View state of the scan.
+/// View state of the search for hands.
 #[derive(Debug, Default)]
 pub(crate) struct ScanPanel {
     /// Ids polled on every bus.
     pub(crate) ids: IdRange,
+    shared: SharedInterface,
 }
 
 impl ScanPanel {
-    /// Draws the scan and the known hands. Returns the address that the user chose.
+    /// Draws the search, and the known, found and shared hands. Returns the address that the user chose.
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) -> Option<String> {
         let look = pane.look;
         kit::card_ui(ui, look, |ui| {
             kit::head_ui(ui, look, look.tr(scan::HANDS), |_| ());
-            hand_tiles_ui(ui, pane, &known_hands(pane));
-            self.ports_ui(ui, pane);
+            self.search_ui(ui, pane);
             stage_ui(ui, pane);
             remarks_ui(ui, pane);
+            shared::remark_ui(ui, pane);
+            let mut tiles = known_hands(pane);
+            tiles.extend(shared_hands(pane));
+            hand_tiles_ui(ui, pane, &tiles);
             presets_ui(ui, pane)
         })
     }
 
-    fn ports_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    /// Draws the button that looks everywhere a hand may be, and its limits.
+    fn search_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ui.horizontal_wrapped(|ui| {
             if pane.state.scan.is_running() {
                 let cancel = Button::text(look, scan::CANCEL);
                 cancel.large().on_click(ui, pane, Action::CancelScan);
-            } else if start_ui(ui, pane, Button::text(look, scan::SCAN_PORTS).large()) {
+            } else if start_ui(ui, pane, Button::text(look, scan::FIND).large()) {
                 pane.actions.push(Action::Scan(ScanTarget::Ports(self.ids)));
+                let is_off = pane.state.fleet.interface().is_none();
+                let interface = self.shared.typed().filter(|_| is_off);
+                let look = interface.map(|interface| Action::FindShared(Some(interface)));
+                pane.actions.extend(look);
             }
             Label::muted(look, scan::IDS).ui(ui);
             for (range, text) in [(IdRange::Few, scan::IDS_FEW), (IdRange::All, scan::IDS_ALL)] {
@@ -56,6 +67,8 @@ impl ScanPanel {
                     self.ids = range;
                 }
             }
+            ui.add_space(theme::GAP);
+            self.shared.ui(ui, pane);
         });
     }
 }

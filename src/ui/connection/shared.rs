@@ -1,70 +1,66 @@
-//! Hands shared by other Handscopes: the interface to listen on, the hands found, and a tile to connect to each.
+//! Hands shared by other Handscopes: the interface to listen on, and the hands found.
 
 use crate::app::action::Action;
 use crate::share::fleet::{FleetHand, reachable};
-use crate::ui::connection::hand_tiles::{HandTile, hand_tiles_ui, side_words};
+use crate::ui::connection::hand_tiles::{HandTile, side_words};
 use crate::ui::connection::link_words::state_color;
 use crate::ui::kit::{self, Button, Label, Look, Pane};
 use crate::ui::text::{Text, errors, inputs, main, scan};
 use egui::Ui;
 
-/// Text in progress.
+/// The network interface on which shared hands are looked for.
 #[derive(Debug)]
-pub(crate) struct SharedPanel {
-    interface: String,
-}
+pub(super) struct SharedInterface(String);
 
-impl Default for SharedPanel {
+impl Default for SharedInterface {
     /// Loopback by default; other interfaces are the user's choice.
     fn default() -> Self {
-        Self {
-            interface: "127.0.0.1".into(),
-        }
+        Self("127.0.0.1".into())
     }
 }
 
-impl SharedPanel {
-    pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let look = pane.look;
-        kit::card_ui(ui, look, |ui| {
-            kit::head_ui(ui, look, look.tr(scan::SHARED), |_| ());
-            kit::small_text_ui(ui, look.tip(scan::SHARED), look.palette.muted);
-            self.switch_ui(ui, pane);
-            if let Some(error) = &pane.state.fleet.refused {
-                let text = errors::dds(look, error);
-                Label::new(&text, look.palette.warn).wrap().ui(ui);
-            }
-            if pane.state.fleet.interface().is_some() && pane.state.fleet.hands.is_empty() {
-                Label::muted(look, scan::SHARED_NONE).wrap().ui(ui);
-            }
-            let hands = pane.state.fleet.hands.iter();
-            let tiles: Vec<HandTile> = hands.map(|hand| tile(pane, hand)).collect();
-            hand_tiles_ui(ui, pane, &tiles);
-        });
+impl SharedInterface {
+    /// The name to look on; `None` if nothing is typed.
+    pub(super) fn typed(&self) -> Option<String> {
+        let name = self.0.trim();
+        (!name.is_empty()).then(|| name.to_owned())
     }
 
-    fn switch_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    /// Draws the field, or the button that leaves the interface.
+    pub(super) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        let is_on = pane.state.fleet.interface().is_some();
-        let text = if is_on {
-            scan::SHARED_STOP
-        } else {
-            scan::SHARED_FIND
-        };
-        ui.horizontal(|ui| {
-            ui.add_enabled_ui(!is_on, |ui| {
-                ui.set_max_width(240.0);
-                let name = look.tr(inputs::DDS_AT);
-                kit::edit_ui(ui, name, name, &mut self.interface);
-            });
-            let interface = self.interface.trim().to_owned();
-            let missing = interface.is_empty() && !is_on;
-            let missing = missing.then(|| look.tr(inputs::INTERFACE_WRONG));
-            let action = Action::FindShared((!is_on).then_some(interface));
-            let button = Button::text(look, text).disabled(missing);
-            button.on_click(ui, pane, action);
+        Label::muted(look, scan::SHARED)
+            .ui(ui)
+            .on_hover_text(look.tip(scan::SHARED));
+        if pane.state.fleet.interface().is_some() {
+            let leave = Button::text(look, scan::SHARED_STOP);
+            leave.on_click(ui, pane, Action::FindShared(None));
+            return;
+        }
+        let name = look.tr(inputs::DDS_AT);
+        ui.scope(|ui| {
+            ui.set_max_width(140.0);
+            kit::edit_ui(ui, name, name, &mut self.0);
         });
     }
+}
+
+/// Draws why the interface cannot be used, or that no hand is shared at it.
+pub(super) fn remark_ui(ui: &mut Ui, pane: &Pane<'_>) {
+    let (look, fleet) = (pane.look, &pane.state.fleet);
+    if let Some(error) = &fleet.refused {
+        let text = errors::dds(look, error);
+        Label::new(&text, look.palette.warn).wrap().ui(ui);
+    }
+    if fleet.interface().is_some() && fleet.hands.is_empty() {
+        Label::muted(look, scan::SHARED_NONE).wrap().ui(ui);
+    }
+}
+
+/// Hands that other Handscopes share.
+pub(super) fn shared_hands(pane: &Pane<'_>) -> Vec<HandTile> {
+    let hands = pane.state.fleet.hands.iter();
+    hands.map(|hand| tile(pane, hand)).collect()
 }
 
 /// Tile of a hand that connects to its gateway.

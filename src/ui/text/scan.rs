@@ -26,7 +26,7 @@ texts! {
     PLUGGED_IN: "now plugged in", "已插入";
     ANSWERED: "answered the scan", "扫描时有应答";
     LAST_USED: "last used {}", "上次使用：{}";
-    SCAN_PORTS: "Scan all ports", "扫描全部端口", "Queries all serial ports and CAN interfaces, at all speeds, in all protocols. It only reads.\nOpening a port resets some other devices, such as boards with an Arduino bootloader.", "在所有串口与 CAN 接口上，以各种波特率与协议查询。只读取，不写入。\n打开串口可能使某些其他设备复位，例如带 Arduino 引导程序的开发板。";
+    FIND: "Find hands", "查找灵巧手", "Queries all serial ports and CAN interfaces, at all speeds, in all protocols, and listens for hands that other Handscopes share at the network interface beside it. It only reads.\nOpening a port resets some other devices, such as boards with an Arduino bootloader.", "在所有串口与 CAN 接口上，以各种波特率与协议查询。只读取，不写入；同时在旁边的网络接口上查找其他 Handscope 共享的灵巧手。\n打开串口可能使某些其他设备复位，例如带 Arduino 引导程序的开发板。";
     CANCEL: "Cancel", "取消", "Ends the scan. What was found stays.", "结束扫描，保留已找到的结果。";
     RUNNING: "A scan is under way.", "正在扫描。";
     IDS: "Ids", "ID", "Ids queried on every bus. All of them take about two minutes a port.", "在每条总线上查询的 ID。全部 ID 每个端口约需两分钟。";
@@ -53,8 +53,7 @@ texts! {
     MORE: "more", "更多";
     AS_FOUND: "as the hand shows", "自动识别";
     PACKING_UNKNOWN: "unknown: not written", "未知：不写入";
-    SHARED: "Shared hands", "共享的灵巧手", "Hands that other Handscopes share: there, under Share, with DDS joined and the gateway open. To watch one costs its link nothing; to move it, ask for control there.", "其他 Handscope 共享的灵巧手：需在对方的“共享”中加入 DDS 并打开网关。观看不占用对方链路；控制需由对方的人允许。";
-    SHARED_FIND: "Look for them", "查找", "Joins DDS at this interface and listens. Nothing is connected to.", "在此接口加入 DDS 并监听，不会连接任何灵巧手。";
+    SHARED: "Shared at", "共享接口", "Hands that other Handscopes share: there, under Share, with DDS joined and the gateway open. To watch one costs its link nothing; to move it, ask for control there.", "其他 Handscope 共享的灵巧手：需在对方的“共享”中加入 DDS 并打开网关。观看不占用对方链路；控制需由对方的人允许。";
     SHARED_STOP: "Stop looking", "停止查找", "Leaves DDS; the list is cleared.", "退出 DDS，并清空列表。";
     SHARED_NONE: "No hand is shared at this interface.", "此接口上没有共享的灵巧手。";
     SHARED_UNREACHABLE: "Its gateway is closed, or not open to this network.", "对方的网关未打开，或未对此网络开放。";

@@ -38,7 +38,7 @@ fn is_done(bench: &Bench) -> bool {
 #[test]
 fn a_click_finds_the_hand_and_a_click_connects_without_a_write() {
     let mut bench = at_connection(SimConfig::default());
-    bench.click_button("Scan all ports");
+    bench.click_button("Find hands");
     bench.until(1000, |bench| !bench.state().scan.found.is_empty());
     assert!(bench.state().scan.is_running(), "further ids are asked");
     assert!(bench.shows("ID 1, RS485, 115200"));
@@ -62,7 +62,7 @@ fn progress_is_shown_and_cancel_ends_it_with_what_was_found() {
     let mut bench = at_connection(SimConfig::default());
     bench.click("Ids: 1 to 254");
     bench.run(40);
-    bench.click_button("Scan all ports");
+    bench.click_button("Find hands");
     bench.run(400);
     let progress = bench.reading("Scan progress");
     // One hand answers at once, so that 253 further ids of its line are left of 2032 questions: 16 s.
@@ -87,7 +87,7 @@ fn each_way_to_find_nothing_has_its_words() {
     };
     let mut bench = at_connection(far);
     assert!(!bench.texts_with("Nothing was scanned yet").is_empty());
-    bench.click_button("Scan all ports");
+    bench.click_button("Find hands");
     bench.until(8000, is_done);
     bench.run(40);
     assert!(
@@ -96,7 +96,7 @@ fn each_way_to_find_nothing_has_its_words() {
             .is_empty()
     );
     bench.list_ports(Vec::new());
-    bench.click_button("Scan all ports");
+    bench.click_button("Find hands");
     bench.until(1000, is_done);
     bench.run(40);
     assert!(
@@ -106,7 +106,7 @@ fn each_way_to_find_nothing_has_its_words() {
     );
     bench.list_ports(vec![usb_port(PORT)]);
     bench.unplug();
-    bench.click_button("Scan all ports");
+    bench.click_button("Find hands");
     bench.until(1000, is_done);
     bench.run(40);
     assert!(bench.shows("Nothing could be scanned:"));
@@ -116,14 +116,14 @@ fn each_way_to_find_nothing_has_its_words() {
 #[test]
 fn the_port_of_the_connected_hand_is_left_alone_with_words() {
     let mut bench = at_connection(SimConfig::default());
-    bench.click_button("Scan all ports");
+    bench.click_button("Find hands");
     bench.until(1000, |bench| !bench.state().scan.found.is_empty());
     bench.click(&format!("Connect: {URL}"));
     bench.until(1000, |bench| {
         bench.state().hand().connection.status.state == LinkState::Monitoring
     });
     let dials = bench.dials();
-    bench.click_button("Scan all ports");
+    bench.click_button("Find hands");
     bench.until(1000, is_done);
     bench.run(40);
     assert!(!bench.texts_with("Disconnect first to scan it").is_empty());
@@ -247,11 +247,13 @@ fn hands_that_others_share_are_listed_once_a_person_looks_and_a_click_watches_on
     let node = DdsNode::open(&DdsPlace { interface, domain }).unwrap();
     let other = node.writer(&fleet::topic());
     bench.type_into("Interface of DDS", "nowhere0");
-    bench.click_button("Look for them");
+    bench.click_button("Find hands");
     bench.run(100);
     assert!(!bench.texts_with("network interface nowhere0").is_empty());
+    bench.click_button("Cancel");
+    bench.run(60);
     bench.type_into("Interface of DDS", "127.0.0.1");
-    bench.click_button("Look for them");
+    bench.click_button("Find hands");
     bench.run(100);
     told_until(&mut bench, (&other, &hand), |bench| {
         bench.shows("their hand · lab")
@@ -324,7 +326,7 @@ fn the_window_tells_of_its_own_shared_hand_and_does_not_connect_to_it() {
     }
     bench.show(View::Connection);
     bench.run(100);
-    bench.click_button("Look for them");
+    bench.click_button("Find hands");
     let at = bench.state().hand().inputs.gateway_at;
     let is_own = |bench: &Bench| {
         let hands = &bench.state().fleet.hands;
