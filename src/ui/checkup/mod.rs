@@ -88,7 +88,7 @@ fn progress_ui(ui: &mut Ui, pane: &Pane<'_>, run: &CheckupRun) -> bool {
     let name = look.tr(checkup::PROGRESS);
     let (step, total) = (view.done + 1, view.total);
     let words = look.fill(checkup::STEP, &[&step, &total, &doing(look, run)]);
-    let label = Label::new(&words, palette.text).title().wrap();
+    let label = Label::new(&words, palette.text).large().wrap();
     label.named(name).ui(ui);
     if let Some(finger) = view.press {
         let words = look.fill(checkup::PRESS_NOW, &[&look.tr(words::finger(finger))]);
@@ -98,7 +98,7 @@ fn progress_ui(ui: &mut Ui, pane: &Pane<'_>, run: &CheckupRun) -> bool {
     let left = format::duration(run.left(pane.state.now));
     kit::small_text_ui(ui, &look.fill(tune::LEFT, &[&left]), palette.muted);
     kit::small_text_ui(ui, look.tr(tune::ANY_KEY), palette.muted);
-    let button = Button::text(look, checkup::END).weight(Weight::Stop);
+    let button = Button::text(look, checkup::END).weight(Weight::Danger);
     let response = button.large().ui(ui, look);
     kit::pressed(ui, &response)
 }

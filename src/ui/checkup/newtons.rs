@@ -30,9 +30,7 @@ impl NewtonsPanel {
     pub(super) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ui.separator();
-        Label::new(look.tr(checkup::NEWTONS), look.palette.text)
-            .title()
-            .ui(ui);
+        Label::new(look.tr(checkup::NEWTONS), look.palette.text).ui(ui);
         if pane.hand().running.calibrates() {
             running_ui(ui, pane);
             return;

@@ -6,10 +6,13 @@ use crate::app::files::export::Export;
 use crate::app::recordings::RecordingAction;
 use crate::checkup::subject::Grade;
 use crate::checkup::trend::day;
+use crate::hand::Dof;
 use crate::ui::checkup::table;
+use crate::ui::hand::panel::{StillHand, picture};
 use crate::ui::kit::{self, Button, Label, Pane};
 use crate::ui::text::{checkup, tune};
 use crate::ui::theme;
+use crate::ui::touch::heat;
 use egui::Ui;
 
 /// View state of the report.
@@ -17,6 +20,7 @@ use egui::Ui;
 pub(super) struct ReportView {
     /// Only values that are not fine.
     only: bool,
+    hand: StillHand,
 }
 
 impl ReportView {
@@ -29,6 +33,10 @@ impl ReportView {
                 kit::small_text_ui(ui, recorded, look.palette.muted);
                 return;
             }
+            if let Some(run) = state.hand().running.checkup_run() {
+                self.hand_ui(ui, pane, run.view.joint);
+                return;
+            }
             match (&own.last, &own.unread) {
                 (Some(shown), _) => self.shown_ui(ui, pane, shown),
                 (None, Some(error)) => {
@@ -39,10 +47,20 @@ impl ReportView {
                     kit::small_text_ui(ui, look.tr(checkup::READING), look.palette.muted);
                 }
                 (None, None) => {
-                    kit::small_text_ui(ui, look.tr(checkup::NEVER), look.palette.text);
+                    Label::text(look, checkup::NEVER).large().wrap().ui(ui);
+                    kit::small_text_ui(ui, look.tip(checkup::NEVER), look.palette.muted);
+                    self.hand_ui(ui, pane, None);
                 }
             }
         });
+    }
+
+    /// Draws the hand, with the joint that moves now in its colour.
+    fn hand_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, moves: Option<Dof>) {
+        let (_, place) = ui.allocate_space(ui.available_size());
+        let mut picture = picture(pane.hand(), &heat::tips(pane), pane.state.now);
+        picture.lit = moves;
+        self.hand.ui(ui, place, pane.look, &picture);
     }
 
     fn shown_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownCheckup) {

@@ -199,7 +199,7 @@ impl FaultRecordingsView {
                 let title = title(pane, recording);
                 let title = format!("{}: {title}", look.tr(notices::RECORDING));
                 kit::left_ui(ui, |ui| {
-                    let title = Label::new(&title, look.palette.text).title();
+                    let title = Label::new(&title, look.palette.text);
                     title.ui(ui).on_hover_text(about(pane, recording));
                 });
             });

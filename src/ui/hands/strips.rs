@@ -19,6 +19,8 @@ const STRIP: f32 = 44.0;
 /// Maximum and minimum width of a strip; if a row of minimum width does not fit, there are two rows.
 const WIDTH_MAX: f32 = 280.0;
 const WIDTH_LEAST: f32 = 140.0;
+/// Width of a strip beside other content.
+const WIDTH_BESIDE: f32 = 204.0;
 /// Width of a strip's STOP.
 const STOP: f32 = 60.0;
 /// Width of a hand's number.
@@ -47,6 +49,12 @@ impl StripRows {
         let width = width(in_row).min(WIDTH_MAX);
         Self { in_row, width }
     }
+}
+
+/// Width of the strips of `count` hands beside other content.
+pub(crate) fn width(count: usize) -> f32 {
+    let count = f32::from(u8::try_from(count).unwrap_or(u8::MAX));
+    count * (WIDTH_BESIDE + theme::GAP) + SWITCH
 }
 
 /// Height of the strips of `count` hands, with the space around them.
@@ -167,7 +175,7 @@ impl HandStrip {
         let (number, inner) = inner.split_left_right_at_x(inner.left() + NUMBER);
         let (upper, lower) = inner.split_top_bottom_at_fraction(0.5);
         let digit = words.number.to_string();
-        let label = Label::new(&digit, palette.muted).font(theme::title());
+        let label = Label::new(&digit, palette.muted);
         label.paint(ui, number);
         let width = kit::text_width(ui, letter, theme::small()) + theme::STEP;
         let is_wide = width < upper.width() * 0.5;
@@ -194,10 +202,10 @@ impl HandStrip {
         let look = pane.look;
         let name = look.fill(window::STOP_ONE, &[&self.words.number]);
         let button = Button::new(look.tr(main::STOP), look.tip(window::STOP_ONE));
-        let button = button.named(&name).weight(Weight::Stop);
+        let button = button.named(&name).weight(Weight::Danger);
         let response = button.ground(ui, look, rect, ui.scope_id().with("stop"));
-        let word = Label::new(look.tr(main::STOP), look.palette.on_strong);
-        word.title().center().paint(ui, rect);
+        let word = Label::new(look.tr(main::STOP), look.palette.bad);
+        word.center().paint(ui, rect);
         if kit::pressed(ui, &response) {
             let stop = HandsAction::StopOne(self.slot);
             pane.actions.push(Action::Hands(stop));

@@ -281,7 +281,7 @@ impl CardView {
     ) -> (Option<usize>, f32) {
         let (look, palette) = (card.look, card.look.palette);
         let title = Label::new(&card.title, palette.text);
-        title.font(theme::large()).wrap().ui(ui);
+        title.large().wrap().ui(ui);
         let lines = ScrollArea::vertical().max_height(most).show(ui, |ui| {
             for line in &card.lines {
                 line_ui(ui, look, line);

@@ -66,9 +66,9 @@ impl<'a> Label<'a> {
         self.font(theme::small())
     }
 
-    /// Uses the title font.
-    pub(crate) fn title(self) -> Self {
-        self.font(theme::title())
+    /// Uses the font of what is read first.
+    pub(crate) fn large(self) -> Self {
+        self.font(theme::large())
     }
 
     /// Uses digits of equal width.
@@ -111,7 +111,9 @@ impl<'a> Label<'a> {
         } else {
             label.truncate()
         });
-        self.name_reading(&response);
+        if let Some(name) = self.name {
+            name_reading(&response, name, self.text);
+        }
         response
     }
 
@@ -132,24 +134,19 @@ impl<'a> Label<'a> {
         ui.skip_ahead_auto_ids(1);
         let mut response = ui.interact(rect, id, Sense::hover());
         let elided = self.paint(ui, rect);
-        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
-        self.name_reading(&response);
+        self.name_node(&response);
         if elided {
             response = response.on_hover_text(self.text);
         }
         response
     }
 
-    /// Gives a screen reader the name of the quantity with its value: it reads the value of a label alone.
-    fn name_reading(&self, response: &Response) {
-        let Some(name) = self.name else {
-            return;
-        };
-        let value = format!("{name}: {}", self.text.trim());
-        response.ctx.accesskit_node_builder(response.id, |node| {
-            node.set_label(name);
-            node.set_value(value);
-        });
+    /// Makes a sensed area this label for screen readers.
+    pub(crate) fn name_node(&self, response: &Response) {
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, self.text));
+        if let Some(name) = self.name {
+            name_reading(response, name, self.text);
+        }
     }
 
     /// Paints the text only: no accessibility node, no tooltip. True if it was truncated.
@@ -163,6 +160,15 @@ impl<'a> Label<'a> {
         ui.painter().galley(at, galley, self.color);
         elided
     }
+}
+
+/// Gives a screen reader the name of the quantity with its value: it reads the value of a label alone.
+fn name_reading(response: &Response, name: &str, text: &str) {
+    let value = format!("{name}: {}", text.trim());
+    response.ctx.accesskit_node_builder(response.id, |node| {
+        node.set_label(name);
+        node.set_value(value);
+    });
 }
 
 /// Sets the accessible name of a widget, in place of its text.
@@ -352,7 +358,7 @@ impl<'a> Button<'a> {
 
     /// Draws it as a knob on a track, on at the right end.
     pub(crate) fn toggle_ui(self, ui: &mut Ui, look: Look) -> Response {
-        let (id, place) = ui.allocate_space(vec2(40.0, theme::CONTROL));
+        let (id, place) = ui.allocate_space(vec2(theme::SWITCH, theme::CONTROL));
         let response = self.weight(Weight::Quiet).ground(ui, look, place, id);
         let is_on = self.selected == Some(true);
         let share = ui.ctx().animate_bool_responsive(id, is_on);
@@ -503,56 +509,6 @@ pub(crate) fn card_ui<R>(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui) -> R
     shown.inner
 }
 
-/// A grid of cards of equal width, as many per row as fit, each as high as the highest of its row.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct CardGrid {
-    /// Id under which the card heights are stored.
-    pub(crate) salt: &'static str,
-    /// Minimum card width in points, unless not even one fits.
-    pub(crate) least: f32,
-    /// Maximum cards per row.
-    pub(crate) most: u8,
-    /// Number of cards.
-    pub(crate) count: usize,
-}
-
-impl CardGrid {
-    /// Draws the grid; `add` draws the content of the card with the given index.
-    pub(crate) fn ui(self, ui: &mut Ui, look: Look, mut add: impl FnMut(&mut Ui, usize)) {
-        let width = ui.available_width();
-        let gaps = |columns: u8| theme::GAP * (f32::from(columns) - 1.0);
-        let fits = |columns: &u8| f32::from(*columns) * self.least + gaps(*columns) <= width;
-        let columns = (1..=self.most).rev().find(fits).unwrap_or(1);
-        let card = ((width - gaps(columns)) / f32::from(columns)).floor();
-        let id = ui.scope_id().with(self.salt);
-        let before: Vec<f32> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
-        let mut heights = Vec::with_capacity(self.count);
-        let all: Vec<usize> = (0..self.count).collect();
-        for row in all.chunks(columns.into()) {
-            let known = row.iter().filter_map(|nth| before.get(*nth));
-            let high = known.copied().fold(0.0, f32::max);
-            ui.horizontal_top(|ui| {
-                ui.spacing_mut().item_spacing.x = theme::GAP;
-                for nth in row {
-                    let top = Layout::top_down(Align::Min);
-                    ui.allocate_ui_with_layout(vec2(card, 0.0), top, |ui| {
-                        ui.set_width(card);
-                        card_ui(ui, look, |ui| {
-                            ui.set_min_height(high);
-                            let own = ui.vertical(|ui| add(ui, *nth));
-                            heights.push(own.response.rect.height());
-                        });
-                    });
-                }
-            });
-        }
-        if heights != before {
-            ui.data_mut(|data| data.insert_temp(id, heights));
-            ui.ctx().request_discard("cards of a row are equally high");
-        }
-    }
-}
-
 /// A card over all the available space.
 pub(crate) fn full_card_ui(ui: &mut Ui, look: Look, add: impl FnOnce(&mut Ui)) {
     card_ui(ui, look, |ui| {
@@ -583,8 +539,8 @@ pub(crate) fn head_ui<R>(
 ) -> R {
     let row = ui.horizontal(|ui| {
         ui.set_min_height(theme::CONTROL);
-        let title = RichText::new(title).font(theme::title());
-        ui.add(egui::Label::new(title.color(look.palette.text)));
+        let title = RichText::new(title).font(theme::body());
+        ui.add(egui::Label::new(title.color(look.palette.muted)));
         let left = Layout::right_to_left(Align::Center);
         ui.with_layout(left, right).inner
     });

@@ -17,7 +17,7 @@ pub(crate) fn file_ui(ui: &mut Ui, pane: &mut Pane<'_>, compared: &FileCompariso
     let palette = look.palette;
     let file = &compared.file;
     let title = format!("{}: {}", look.tr(device::COMPARED), compared.name);
-    Label::new(&title, palette.text).title().ui(ui);
+    Label::new(&title, palette.text).ui(ui);
     let parts = [
         file.hand.clone(),
         moment(&file.at),

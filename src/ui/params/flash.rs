@@ -139,7 +139,7 @@ fn files_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 .push(Action::Param(ParamAction::Open(Some(path))));
         }
     }
-    Label::text(look, device::BACKUPS).title().ui(ui);
+    Label::text(look, device::BACKUPS).ui(ui);
     let backups = &pane.hand().params.backups;
     let most = ui.available_height() - theme::CONTROL - theme::GAP;
     let area = ScrollArea::vertical().auto_shrink(false).max_height(most);

@@ -96,7 +96,7 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
                 continue;
             }
             line_ui(&mut body, theme::CONTROL_LARGE, |ui| {
-                Label::text(look, title).title().ui(ui);
+                Label::text(look, title).ui(ui);
                 Label::note(look, about).ui(ui);
             });
             for id in own {

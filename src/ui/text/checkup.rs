@@ -25,7 +25,7 @@ texts! {
     ALL_JOINTS: "all joints", "全部自由度";
     PRESS_NOW: "Press and release the fingertip of {}. Nothing moves now.", "请按压{}的指尖后松开。灵巧手不会再动。";
     PROGRESS: "Check-up progress", "体检进度";
-    NEVER: "No check-up of this hand is known here. The first check-up is the reference for later ones: confirm at the left that the hand is empty, and begin.", "此处没有这只手的体检记录。首次体检作为它的初始档案，供以后比较：请在左侧确认手中没有物体，然后开始。";
+    NEVER: "No check-up of this hand yet", "这只手还没有体检记录", "The first one is the reference for later ones: confirm at the left that the hand is empty, and begin.", "首次体检将作为以后比较的依据：请在左侧确认手中没有物体，然后开始。";
     READING: "Reading earlier check-ups.", "正在读取以前的体检记录。";
     UNREAD: "The earlier check-ups cannot be read: {}", "无法读取以前的体检记录：{}";
     OF: "Check-up of {}", "{} 的体检";

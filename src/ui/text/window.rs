@@ -41,6 +41,7 @@ texts! {
     STOP_ONE: "STOP hand {}", "停止灵巧手 {}", "Holds this hand and no other. STOP at the right, Space and Esc hold all hands.", "仅停止此灵巧手。右侧的“停止”、空格与 Esc 停止所有灵巧手。";
     ALL_HANDS: "All hands", "所有灵巧手", "Shows all hands side by side, in place of the plots of one.", "并排显示所有灵巧手，代替单只的曲线。";
     POSES_FOR_ALL: "To all armed hands", "用于全部已使能的手", "A pose or demo goes to every hand that is armed, not only to the one that is shown.", "姿态或演示会用于每只已使能的灵巧手，而不仅是当前显示的一只。";
+    SHOW_HAND: "Show hand", "显示灵巧手";
     ADD_HAND: "Add a hand", "添加灵巧手", "Another hand in this window, beside those that are open: at most eight. Connects to nothing by itself.", "在本窗口再打开一只灵巧手，最多八只。不会自动连接。";
     ADD_HAND_FULL: "Eight hands are open, which is all that fit.", "已打开八只灵巧手，不能再添加。";
     REMOVE_HAND: "Remove this hand", "移除此灵巧手", "Stops this hand if it may be moving, disconnects it, and takes it out of the window.", "若此灵巧手可能在运动则先停止，然后断开并从窗口移除。";

@@ -2,24 +2,19 @@
 
 use egui::{FontFamily, FontId};
 
-/// Labels, hints, and narrow places.
+/// Labels, units, hints, and narrow places.
 pub(crate) const fn small() -> FontId {
-    FontId::proportional(13.0)
+    FontId::proportional(12.0)
 }
 
-/// Body text and buttons.
+/// Body text, titles of cards, and buttons.
 pub(crate) const fn body() -> FontId {
     FontId::proportional(14.0)
 }
 
-/// Titles of cards.
-pub(crate) const fn title() -> FontId {
-    FontId::proportional(15.0)
-}
-
-/// The stop button, and state badges.
+/// What is read first in a view: a state, the title of a dialog or an empty page, the stop button.
 pub(crate) const fn large() -> FontId {
-    FontId::proportional(17.0)
+    FontId::proportional(20.0)
 }
 
 /// Numbers, with digits of equal width.
@@ -116,15 +111,10 @@ mod tests {
     }
 
     #[test]
-    fn no_text_is_smaller_than_thirteen_points() {
-        for font in [
-            fonts::small(),
-            fonts::body(),
-            fonts::title(),
-            fonts::large(),
-            fonts::number(),
-        ] {
-            assert!(font.size >= 13.0, "{font:?}");
-        }
+    fn there_are_three_levels_of_type() {
+        let sizes = [fonts::large(), fonts::body(), fonts::small()].map(|font| font.size);
+        assert_eq!(sizes, [20.0, 14.0, 12.0]);
+        // Digits of equal width look larger than letters of their size.
+        assert_eq!(fonts::number().size, 13.0);
     }
 }

@@ -58,10 +58,10 @@ pub(crate) const FIGURE_ROW: f32 = 18.0;
 
 /// Height of an entry's first line.
 pub(crate) const TITLE_LINE: f32 = 20.0;
+/// Width of a switch.
+pub(crate) const SWITCH: f32 = 40.0;
 /// Width of a number field.
 pub(crate) const FIELD: f32 = 52.0;
-/// Width of a word and a number on a slider.
-pub(crate) const OTHER: f32 = 62.0;
 /// Padding of a number field.
 pub(crate) const NUMBER_INSET: Margin = Margin::symmetric(6, 0);
 /// Padding of a text field.

@@ -1,7 +1,7 @@
 //! egui's own widgets in this program's colours and sizes.
 
 use crate::app::settings::Theme;
-use crate::ui::theme::fonts::{body, number, small, title};
+use crate::ui::theme::fonts::{body, large, number, small};
 use crate::ui::theme::palette::Palette;
 use crate::ui::theme::sizes::{CONTROL, GAP, ROUND, ROUND_SMALL, STEP};
 use egui::style::{Selection, WidgetVisuals};
@@ -23,7 +23,7 @@ pub(crate) fn style(theme: Theme, before: &Style) -> Style {
         (TextStyle::Body, body()),
         (TextStyle::Button, body()),
         (TextStyle::Monospace, number()),
-        (TextStyle::Heading, title()),
+        (TextStyle::Heading, large()),
     ]
     .into();
     spacing(&mut style);

@@ -125,7 +125,7 @@ pub(crate) fn best_ui(
             star.named(look.tr(tune::BEST_SIGN)).ui(ui);
         }
         let label = Label::new(&text, color).named(look.tr(tune::BEST));
-        label.title().ui(ui);
+        label.ui(ui);
         if promotes {
             promotion.button_ui(ui, pane, tune::PROMOTE);
         }

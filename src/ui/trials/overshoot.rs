@@ -109,7 +109,7 @@ pub(crate) fn no_trials_ui(ui: &mut Ui, look: Look, title: Text, body: Text) {
     let sign = Label::new(theme::TUNE, look.palette.faint);
     let sign = sign.font(theme::icon_high(size.y)).center();
     sign.paint(ui, place);
-    Label::text(look, title).title().ui(ui);
+    Label::text(look, title).ui(ui);
     Label::muted(look, body).wrap().ui(ui);
 }
 

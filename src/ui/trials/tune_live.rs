@@ -29,13 +29,13 @@ pub(crate) fn progress_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let trial = look.fill(tune::TRIAL, &[&number, &total, &stage]);
     let name = look.tr(tune::PROGRESS);
     ui.horizontal(|ui| {
-        let button = Button::text(look, tune::STOP_SERIES).weight(Weight::Stop);
+        let button = Button::text(look, tune::STOP_SERIES).weight(Weight::Danger);
         let response = button.large().ui(ui, look);
         if kit::pressed(ui, &response) {
             pane.actions.push(Action::Stop);
         }
         ui.vertical(|ui| {
-            let label = Label::new(&trial, palette.text).title();
+            let label = Label::new(&trial, palette.text).large();
             label.named(name).ui(ui);
             let search = pane.state.trials.running_search();
             let progress = search.and_then(|search| search.progress.as_ref());

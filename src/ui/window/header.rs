@@ -3,12 +3,13 @@
 use crate::app::action::Action;
 use crate::app::hand::Hand;
 use crate::app::recordings::RecordingAction;
+use crate::hand::kinematics::Side;
 use crate::record::ArmRefusal;
 use crate::record::file::RecorderStatus;
 use crate::ui::connection::link_words::{self, link_words};
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::kit::{self, Button, Label, Look, Pane, ViewRequest, Weight, format};
-use crate::ui::text::{inputs, main, notices, recordings, words};
+use crate::ui::text::{inputs, main, notices, panels, recordings, window, words};
 use crate::ui::theme;
 use crate::ui::view::{Tab, View};
 use crate::ui::window::rooms;
@@ -16,6 +17,8 @@ use egui::{Color32, Rect, Response, Ui, pos2, vec2};
 
 /// Width of STOP, in points.
 const STOP: f32 = 132.0;
+/// Maximum width of the hand's name.
+const NAME_MAX: f32 = 150.0;
 /// Minimum width at which the lamp of the recording has a label.
 const WORDS: f32 = 1000.0;
 /// Width of a lamp without a label.
@@ -58,7 +61,7 @@ fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let strong = look.palette.on_strong;
     let (upper, lower) = rect.shrink(theme::BAR).split_top_bottom_at_fraction(0.6);
     let word = Label::new(look.tr(main::STOP), strong).center();
-    word.font(theme::large()).paint(ui, upper);
+    word.large().paint(ui, upper);
     let keys = Label::new(look.tr(main::STOP_KEYS), strong).center();
     keys.small().paint(ui, lower);
     if kit::pressed(ui, &response) {
@@ -229,9 +232,12 @@ fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-/// Name of the hand, with state and quality of its link, then its address as far as there is space.
+/// Name of the hand, with state and quality of its link.
 fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    badge_ui(ui, pane);
+    // With several hands the strips below say this of each.
+    if !pane.state.hands.is_several() || pane.state.timeline.is_some() {
+        badge_ui(ui, pane);
+    }
     let look = pane.look;
     let (word, color) = link_words(pane);
     let word = look.tr(word);
@@ -245,27 +251,11 @@ fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let most = format!("{} 9999", look.tr(main::ERRORS));
     let errors_width = kit::text_width(ui, &most, theme::small());
     let spare = ui.available_width() - LAMP_BUTTON - 2.0 * theme::GAP - errors_width;
-    address_ui(ui, pane, spare - theme::GAP);
     let errors = errors(pane);
     if errors > 0 && spare >= 0.0 && pane.state.timeline.is_none() {
         let words = format!("{} {errors}", look.tr(main::ERRORS));
         let label = Label::new(&words, look.palette.warn).small();
         label.ui(ui).on_hover_text(look.tip(main::ERRORS));
-    }
-}
-
-/// Address of a real hand, if it fits into this width in points.
-fn address_ui(ui: &mut Ui, pane: &Pane<'_>, width: f32) {
-    let connection = &pane.hand().connection;
-    let Some(endpoint) = &connection.endpoint else {
-        return;
-    };
-    let text = endpoint.to_string();
-    let fits = kit::text_width(ui, &text, theme::number()) <= width;
-    if fits && !connection.is_simulated() {
-        let label = Label::new(&text, pane.look.palette.muted).number();
-        let tip = pane.look.tr(main::ENDPOINT_TIP);
-        label.ui(ui).on_hover_text(tip);
     }
 }
 
@@ -294,31 +284,45 @@ fn link_tip(pane: &Pane<'_>) -> String {
     )
 }
 
-/// Badge of the built-in hand, of a real one or of a recording.
+/// Badge of the built-in hand, of a recording, or with the name and side of a real hand; its address is in the tooltip.
 fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     let palette = look.palette;
-    let connection = &pane.hand().connection;
+    let hand = pane.hand();
+    let connection = &hand.connection;
     let simulated = connection.is_simulated();
     let recorded = pane.state.timeline.is_some();
-    let (text, fill, color) = match (&connection.endpoint, simulated) {
-        _ if recorded => (recordings::RECORDED, palette.warn, palette.on_accent),
-        (_, true) => (main::SIMULATED, palette.simulated, palette.on_accent),
-        (Some(_), _) => (main::REAL_HAND, palette.control, palette.text),
-        (None, _) => (main::NO_HAND, palette.control, palette.muted),
+    let (letter, side) = match hand.side {
+        Side::Right => (window::SIDE_RIGHT, panels::RIGHT_HAND),
+        Side::Left => (window::SIDE_LEFT, panels::LEFT_HAND),
     };
-    let text = look.tr(text);
-    let width = kit::text_width(ui, text, theme::body()) + 2.0 * theme::PAD;
-    let (_, place) = ui.allocate_space(vec2(width, theme::CONTROL));
+    let name = format!("{} · {}", hand.label.name, look.tr(letter));
+    let (text, fill, color) = match (&connection.endpoint, simulated) {
+        _ if recorded => (
+            look.tr(recordings::RECORDED),
+            palette.warn,
+            palette.on_accent,
+        ),
+        (_, true) => (
+            look.tr(main::SIMULATED),
+            palette.simulated,
+            palette.on_accent,
+        ),
+        (Some(_), _) => (name.as_str(), palette.control, palette.text),
+        (None, _) => (look.tr(main::NO_HAND), palette.control, palette.muted),
+    };
+    let width = kit::text_width(ui, text, theme::body()).min(NAME_MAX);
+    let (_, place) = ui.allocate_space(vec2(width + 2.0 * theme::PAD, theme::CONTROL));
     ui.painter().rect_filled(place, 12.0, fill);
-    let badge = Label::new(text, color).center().put(ui, place);
+    let inner = place.shrink2(vec2(theme::PAD, 0.0));
+    let badge = Label::new(text, color).center().put(ui, inner);
     if recorded {
         badge.on_hover_text(look.tip(recordings::RECORDED));
     } else if simulated {
         badge.on_hover_text(look.tip(main::SIMULATED));
     } else if let Some(endpoint) = &connection.endpoint {
-        // A narrow window has no space for the address itself.
-        badge.on_hover_text(endpoint.to_string());
+        let tip = look.tr(main::ENDPOINT_TIP);
+        badge.on_hover_text(format!("{endpoint}\n{}\n{tip}", look.tr(side)));
     }
 }
 

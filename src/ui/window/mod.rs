@@ -46,7 +46,7 @@ use crate::ui::window::key_list::KeyList;
 use crate::ui::window::keys::{Escape, Wish};
 use crate::ui::window::palette::{CommandPalette, PaletteCommand};
 use crate::ui::window::stop_first::stop_first;
-use egui::{Frame, Key, Margin, Panel, Stroke, Ui};
+use egui::{Frame, Key, Margin, Panel, Rect, Stroke, Ui, UiBuilder, vec2};
 use std::time::Duration;
 
 /// Time after a field lost the focus in which a key may still be meant for it.
@@ -295,24 +295,45 @@ impl Window {
         top_bar("header", theme::TOP_BAR, header).show(ui, |ui| {
             header::header_ui(ui, pane, self.body.view, is_free);
         });
-        let status = Frame::new().fill(palette.card);
-        top_bar("status", status::HEIGHT, status).show(ui, |ui| {
-            if !is_free {
-                ui.disable();
-            }
-            self.body.own.status.ui(ui, pane);
-        });
-        if pane.state.hands.is_several() {
-            let frame = Frame::new().fill(palette.card).inner_margin(STRIPS_MARGIN);
-            let room = ui.available_width() - STRIPS_MARGIN.sum().x;
-            let height = strips::height(room, pane.state.hands.count());
-            top_bar("hands", height, frame).show(ui, |ui| {
+        let hands = &pane.state.hands;
+        let room = ui.available_width() - STRIPS_MARGIN.sum().x;
+        let height = strips::height(room, hands.count());
+        let wanted = strips::width(hands.count());
+        // Few hands and the status share a row where both fit.
+        let is_one_row = hands.is_several() && room - wanted >= STATUS_LEAST;
+        if !is_one_row {
+            let status = Frame::new().fill(palette.card);
+            let bar = top_bar("status", status::HEIGHT, status);
+            bar.show(ui, |ui| self.status_ui(ui, pane, is_free));
+        }
+        if !pane.state.hands.is_several() {
+            return;
+        }
+        let frame = Frame::new().fill(palette.card).inner_margin(STRIPS_MARGIN);
+        top_bar("hands", height, frame).show(ui, |ui| {
+            let place = ui.available_rect_before_wrap();
+            let width = if is_one_row { wanted } else { place.width() };
+            let (strips, status) = place.split_left_right_at_x(place.left() + width);
+            ui.scope_builder(UiBuilder::new().max_rect(strips), |ui| {
                 let is_on = self.body.shows_all();
                 if strips::strips_ui(ui, pane, is_free, is_on) {
                     self.body.show_all(!is_on);
                 }
             });
+            if is_one_row {
+                let size = vec2(status.width(), status::HEIGHT);
+                let status = Rect::from_center_size(status.center(), size);
+                let builder = UiBuilder::new().max_rect(status);
+                ui.scope_builder(builder, |ui| self.status_ui(ui, pane, is_free));
+            }
+        });
+    }
+
+    fn status_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) {
+        if !is_free {
+            ui.disable();
         }
+        self.body.own.status.ui(ui, pane);
     }
 
     /// Draws the plots alone over all of `ui`, into a context of their own: for pictures.
@@ -326,6 +347,8 @@ impl Window {
     }
 }
 
+/// Minimum width of the status beside the strips of the hands.
+const STATUS_LEAST: f32 = 480.0;
 const MARGIN: Margin = Margin::same(8);
 const STRIPS_MARGIN: Margin = Margin::symmetric(12, 4);
 

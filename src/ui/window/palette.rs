@@ -6,13 +6,15 @@ use crate::app::exhibit::ExhibitAction;
 use crate::app::hand::list::HandsAction;
 use crate::app::layout::RoomLayouts;
 use crate::app::recordings::RecordingAction;
+use crate::app::scan::{IdRange, ScanTarget};
 use crate::app::settings::PlotWindow;
 use crate::poses::library::EntryId;
 use crate::transport::Endpoint;
 use crate::ui::connection::hand_tiles::side_words;
 use crate::ui::kit::{self, Button, Look, Pane, ViewRequest, Weight};
 use crate::ui::plots::head::span_text;
-use crate::ui::text::{Text, exhibit, inputs, panels, poses, recordings, window};
+use crate::ui::plots::panels::PANELS;
+use crate::ui::text::{Text, exhibit, inputs, main, panels, poses, recordings, scan, window};
 use crate::ui::theme;
 use crate::ui::view::{Tab, View};
 use crate::ui::window::header::toggle_recording;
@@ -204,6 +206,10 @@ fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, String, Action)> {
         (exhibit::ENTER, Action::Exhibit(ExhibitAction::Enter)),
         (exhibit::ENTER_FILE, enter_file),
         (side_words(other), Action::Side(other)),
+        (
+            main::UNIT_NAME,
+            Action::AngleUnit(settings.angle_unit.next()),
+        ),
     ]
     .map(|(text, action)| (text, String::new(), action))
     .into();
@@ -212,12 +218,20 @@ fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, String, Action)> {
         let action = Action::PlotWindow(span);
         acts.push((panels::WINDOW_NAME, span_text(span).to_owned(), action));
     }
+    for panel in PANELS
+        .iter()
+        .filter(|panel| settings.plots.shows(panel.kind))
+    {
+        let title = pane.look.tr(panel.title).to_owned();
+        acts.push((panels::GROW, title, Action::GrowPlot(panel.kind)));
+    }
     let mut act = |text, action| acts.push((text, String::new(), action));
     if pane.state.hands.has_room() {
         act(window::ADD_HAND, Action::Hands(HandsAction::Add));
     }
     if pane.recorded().is_none() {
         act(window::RECORD, toggle_recording(hand));
+        act(scan::FIND, Action::Scan(ScanTarget::Ports(IdRange::Few)));
         if hand.readings.faults.nothing_to_clear().is_none() {
             act(panels::CLEAR, Action::ClearErrors);
         }
@@ -229,6 +243,7 @@ fn unkeyed(ui: &Ui, pane: &Pane<'_>) -> Vec<(Text, String, Action)> {
             act(panels::DISCONNECT, Action::Disconnect);
         }
         acts.extend(hands(pane));
+        acts.extend(open_hands(pane));
     }
     acts.extend(recorded(pane));
     acts
@@ -247,6 +262,17 @@ fn hands(pane: &Pane<'_>) -> impl Iterator<Item = (Text, String, Action)> {
         let name = settings.hand_name(&endpoint).unwrap_or_default();
         let name = format!("{name} {endpoint}").trim().to_owned();
         (panels::CONNECT, name, Action::Connect(endpoint))
+    })
+}
+
+/// Commands that show another open hand.
+fn open_hands(pane: &Pane<'_>) -> impl Iterator<Item = (Text, String, Action)> {
+    let shown = pane.hand().label.slot;
+    let others = pane.state.hands.iter().map(|hand| &hand.label);
+    let others = others.filter(move |label| label.slot != shown);
+    others.map(|label| {
+        let show = Action::Hands(HandsAction::Show(label.slot));
+        (window::SHOW_HAND, label.name.to_string(), show)
     })
 }
 

@@ -484,7 +484,7 @@ fn warning_ui(ui: &mut Ui, pane: &mut Pane<'_>, worst: &Warning, all: &[Warning]
 fn words_ui(ui: &mut Ui, pane: &Pane<'_>, warning: &Warning) {
     let look = pane.look;
     let title = Label::new(look.tr(warning.title), warning.color);
-    title.title().ui(ui);
+    title.large().ui(ui);
     let width = kit::text_width(ui, &warning.body, theme::body());
     let words = Label::new(&warning.body, look.palette.text);
     let is_long = width > ui.available_width();

@@ -723,6 +723,10 @@ fn with_gamepad() -> State {
 fn once_there_is_a_gamepad_its_picture_and_its_list_are_shown() {
     let mut harness = open_at(with_gamepad(), View::Inputs, vec2(1440.0, 2000.0));
     harness.run_steps(3);
+    harness
+        .get_by_role_and_label(Role::Button, "Gamepad")
+        .click();
+    harness.run_steps(3);
     assert!(harness.query_all_by_label("Test pad").count() > 0);
     // In the picture and beside it.
     let pinch = "A (bottom): Pose Pinch";

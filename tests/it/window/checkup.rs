@@ -75,7 +75,7 @@ fn folder(shown: &ShownCheckup) -> PathBuf {
 #[test]
 fn a_hand_that_was_never_checked_says_so_and_nothing_begins_before_it_is_said_to_be_empty() {
     let mut bench = with(BodyParams::default());
-    said(&bench, "No check-up of this hand is known");
+    said(&bench, "No check-up of this hand yet");
     said(&bench, "Confirm that the hand is empty.");
     hold(&mut bench);
     assert!(!runs(&bench) && !bench.state().hand().connection.is_armed());
