@@ -19,7 +19,7 @@ const BUDGET: [(Text, f32); 3] = [
 ];
 
 /// Height of a window from which on the figures are open at first.
-const OPEN_FROM: f32 = 900.0;
+const OPEN_FROM: f32 = 960.0;
 
 /// Draws state and rates of the link, and a collapsible section with all figures.
 pub(crate) fn link_ui(ui: &mut Ui, pane: &mut Pane<'_>) {

@@ -82,7 +82,8 @@ impl ConnectionForm {
             pane.actions.push(Action::FindPorts);
         }
         let look = pane.look;
-        let is_wide = ui.available_width() >= WIDE;
+        let has_hand = endpoint.is_some();
+        let is_wide = has_hand && ui.available_width() >= WIDE;
         if is_wide {
             let width = (ui.available_width() * 0.42).round();
             let panel = kit::bare(Panel::right("link"), width, theme::GAP_LEFT);
@@ -105,10 +106,11 @@ impl ConnectionForm {
         });
     }
 
-    /// True while the typed address is none, or no hand is connected: then the kinds of links are explained.
+    /// True while the typed address is none, or no real hand is connected: then the kinds of links are explained.
     fn needs_help(&self, pane: &Pane<'_>) -> bool {
         let typed = recognise(&self.typed, &pane.state.ports);
-        typed.is_err() || pane.hand().connection.endpoint.is_none()
+        let connection = &pane.hand().connection;
+        typed.is_err() || connection.endpoint.is_none() || connection.is_simulated()
     }
 
     /// Draws the link with its figures, above the hand at its other end.

@@ -377,7 +377,7 @@ fn a_drag_turns_the_hand_and_a_double_click_turns_it_back() {
 fn an_open_fingertip_is_seen_from_the_front_unless_the_user_turned_the_hand() {
     let context = Context::default();
     let mut view = HandView::default();
-    let mut turn = |is_frontal: bool, view: &mut HandView| {
+    let turn = |is_frontal: bool, view: &mut HandView| {
         let mut output = context.run_ui(RawInput::default(), |ui| {
             ui.style_mut().animation_time = 0.0;
             view.face(ui, is_frontal);

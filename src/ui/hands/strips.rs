@@ -20,7 +20,7 @@ const STRIP: f32 = 44.0;
 const WIDTH_MAX: f32 = 280.0;
 const WIDTH_LEAST: f32 = 140.0;
 /// Width of a strip beside other content.
-const WIDTH_BESIDE: f32 = 204.0;
+const WIDTH_BESIDE: f32 = 252.0;
 /// Width of a strip's STOP.
 const STOP: f32 = 60.0;
 /// Width of a hand's number.

@@ -40,20 +40,22 @@ impl SourceRow {
         let look = pane.look;
         let title = look.tr(self.title);
         let (_, place) = ui.allocate_space(vec2(ui.available_width(), ROW));
-        let button = Button::new(title, "").switch(is_chosen);
+        let end = place.right() - theme::SWITCH - theme::GAP;
+        let (place, end) = place.split_left_right_at_x(end);
+        let name = look.pair(look.tr(inputs::TITLE), title);
+        let button = Button::new(title, "").named(&name).switch(is_chosen);
         let id = Id::unique(("source", title));
         let mut clicked = button.ground(ui, look, place, id).clicked();
-        let inner = place.shrink2(vec2(theme::PAD, theme::STEP));
-        let (upper, lower) = inner.split_top_bottom_at_fraction(0.5);
         if let Some(switch) = &self.switch {
             let size = vec2(theme::SWITCH, theme::CONTROL);
-            let corner = Rect::from_min_size(upper.right_top() - vec2(size.x, 0.0), size);
+            let corner = Rect::from_center_size(end.center(), size);
             // A child moves no cursor.
             let mut inner = ui.new_child(UiBuilder::new().max_rect(corner));
             clicked |= switch.ui(&mut inner, pane).clicked();
         }
-        let title = Label::new(title, look.palette.text);
-        title.paint(ui, upper.with_max_x(upper.right() - theme::SWITCH));
+        let inner = place.shrink2(vec2(theme::PAD, theme::STEP));
+        let (upper, lower) = inner.split_top_bottom_at_fraction(0.5);
+        Label::new(title, look.palette.text).paint(ui, upper);
         let (words, color) = self.state(pane, look.palette.muted);
         Label::new(&words, color).small().put(ui, lower);
         clicked

@@ -4,7 +4,7 @@ use crate::app::action::Action;
 use crate::hand::Dof;
 use crate::hand::impact::NOTABLE_G;
 use crate::hand::overshoot::Stages;
-use crate::ui::faults::entry::{unseen_mark_ui, unseen_ring_ui};
+use crate::ui::faults::entry::unseen_ring_ui;
 use crate::ui::hand::pointed::{self, PointedPlace};
 use crate::ui::joints::row::{CAPTION, JointRow, READING, cell};
 use crate::ui::joints::tracks;
@@ -73,6 +73,7 @@ pub(crate) fn row_ui(ui: &mut Ui, pane: &mut Pane<'_>, dof: Dof, style: RowStyle
             });
             line_ui(ui, style.line, |ui| {
                 tracks::speed_ui(ui, pane, Some(&row));
+                kit::right_ui(ui, |ui| impact_ui(ui, pane, &row));
             });
         }
     });
@@ -95,17 +96,13 @@ fn line_ui(ui: &mut Ui, height: f32, add: impl FnOnce(&mut Ui)) {
 }
 
 fn head_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
-    let name = cell(ui, 96.0);
+    let name = cell(ui, 90.0);
     Label::new(row.name, pane.look.palette.text).put(ui, name);
     kit::right_ui(ui, |ui| {
         lock_ui(ui, pane, row);
         let place = cell(ui, if each { READING } else { 96.0 });
         row.drive_reading_ui(ui, place, pane);
-        if each {
-            impact_ui(ui, pane, row);
-            unseen_mark_ui(ui, pane, row.dof);
-        }
-        status_ui(ui, pane, row, each);
+        status_ui(ui, pane, row);
     });
 }
 
@@ -121,18 +118,15 @@ fn warnings_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
 }
 
 /// Draws lamp and text of the drive: a click explains them.
-fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow, each: bool) {
+fn status_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: &JointRow) {
     let rect = cell(ui, ui.available_width());
     let drive = DriveWords::of(pane, row.dof);
     row.explain_ui(ui, pane, rect, &drive);
     let lamp = pos2(rect.left() + theme::LAMP_AT, rect.center().y);
     kit::lamp(ui, lamp, drive.lamp);
-    if !each {
-        unseen_ring_ui(ui, pane, row.dof, lamp);
-    }
+    unseen_ring_ui(ui, pane, row.dof, lamp);
     let name = row.named(pane, main::STATUS);
-    let title = if each { &drive.title } else { &drive.short };
-    let label = Label::new(title, drive.text).small().named(&name);
+    let label = Label::new(&drive.short, drive.text).small().named(&name);
     label.put(ui, rect.with_min_x(rect.left() + 17.0));
 }
 

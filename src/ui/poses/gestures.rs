@@ -220,9 +220,12 @@ fn chosen_ui(ui: &mut Ui, pane: &mut Pane<'_>, gesture: Gesture) {
             .gesture_name(gesture)
             .unwrap_or_default();
         let field = TextField::new(&name, NAME_MAX).hint(look.tr(panels::GESTURE_NAME_HINT));
-        if let Some(name) = field.ui(ui, pane, known) {
-            pane.actions.push(Action::NameGesture(gesture, name));
-        }
+        ui.scope(|ui| {
+            ui.set_width(160.0);
+            if let Some(name) = field.ui(ui, pane, known) {
+                pane.actions.push(Action::NameGesture(gesture, name));
+            }
+        });
         let name = look.tr_with(panels::GESTURE_START, number);
         let start = Button::text(look, poses::START)
             .named(&name)

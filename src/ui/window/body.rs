@@ -159,7 +159,7 @@ impl WindowViews {
             rail.show(ui, |ui| joint_rail::rail_ui(ui, pane, sets_joints));
             return;
         }
-        let designed = ui.ctx().content_rect().width() * 0.29;
+        let designed = ui.ctx().content_rect().width() * 0.295;
         let size = RoomSize {
             room: WindowRoom::Joints,
             designed: designed.clamp(JOINTS_LEAST, 520.0) + theme::GAP,

@@ -17,8 +17,9 @@ use egui::{Color32, Rect, Response, Ui, pos2, vec2};
 
 /// Width of STOP, in points.
 const STOP: f32 = 132.0;
-/// Maximum width of the hand's name.
+/// Maximum width of the hand's name, and the minimum in a narrow window.
 const NAME_MAX: f32 = 150.0;
+const NAME_LEAST: f32 = 64.0;
 /// Minimum width at which the lamp of the recording has a label.
 const WORDS: f32 = 1000.0;
 /// Width of a lamp without a label.
@@ -234,17 +235,20 @@ fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// Name of the hand, with state and quality of its link.
 fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let all = link_words::all().map(|text| look.tr(text));
     // With several hands the strips below say this of each.
     if !pane.state.hands.is_several() || pane.state.timeline.is_some() {
-        badge_ui(ui, pane);
+        let width = |text: &&str| kit::text_width(ui, text, theme::body());
+        let link = all.iter().map(width).fold(0.0, f32::max) + LAMP_BUTTON;
+        let spare = ui.available_width() - link - LAMP_BUTTON - 4.0 * theme::GAP;
+        badge_ui(ui, pane, spare - 2.0 * theme::GAP);
     }
-    let look = pane.look;
     let (word, color) = link_words(pane);
     let word = look.tr(word);
     let name = format!("{}: {word}", look.tr(main::LINK_BUTTON));
     let tip = link_tip(pane);
     let button = Button::new(word, &tip).named(&name).weight(Weight::Quiet);
-    let all = link_words::all().map(|text| look.tr(text));
     if lamp_button_ui(ui, look, button, Some(color), &all).clicked() {
         pane.open(ViewRequest::View(View::Connection));
     }
@@ -284,8 +288,9 @@ fn link_tip(pane: &Pane<'_>) -> String {
     )
 }
 
-/// Badge of the built-in hand, of a recording, or with the name and side of a real hand; its address is in the tooltip.
-fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
+/// Badge of the built-in hand, of a recording, or with the name and side of a real hand, at most this wide; its address is in the
+/// tooltip.
+fn badge_ui(ui: &mut Ui, pane: &Pane<'_>, most: f32) {
     let look = pane.look;
     let palette = look.palette;
     let hand = pane.hand();
@@ -311,11 +316,23 @@ fn badge_ui(ui: &mut Ui, pane: &Pane<'_>) {
         (Some(_), _) => (name.as_str(), palette.control, palette.text),
         (None, _) => (look.tr(main::NO_HAND), palette.control, palette.muted),
     };
-    let width = kit::text_width(ui, text, theme::body()).min(NAME_MAX);
-    let (_, place) = ui.allocate_space(vec2(width + 2.0 * theme::PAD, theme::CONTROL));
+    let most = most.clamp(NAME_LEAST, NAME_MAX);
+    // In a narrow window the name alone, then a small one.
+    let own = hand.label.name.as_ref();
+    let is_own = text == name;
+    let fits = |text: &str, font| kit::text_width(ui, text, font) <= most;
+    let (text, font) = if !is_own || fits(text, theme::body()) {
+        (text, theme::body())
+    } else if fits(own, theme::body()) {
+        (own, theme::body())
+    } else {
+        (own, theme::small())
+    };
+    let width = kit::text_width(ui, text, font.clone()).min(most);
+    let (_, place) = ui.allocate_space(vec2(width + 2.0 * theme::GAP, theme::CONTROL));
     ui.painter().rect_filled(place, 12.0, fill);
-    let inner = place.shrink2(vec2(theme::PAD, 0.0));
-    let badge = Label::new(text, color).center().put(ui, inner);
+    let inner = place.shrink2(vec2(theme::GAP, 0.0));
+    let badge = Label::new(text, color).font(font).center().put(ui, inner);
     if recorded {
         badge.on_hover_text(look.tip(recordings::RECORDED));
     } else if simulated {

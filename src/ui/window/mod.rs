@@ -348,7 +348,7 @@ impl Window {
 }
 
 /// Minimum width of the status beside the strips of the hands.
-const STATUS_LEAST: f32 = 480.0;
+const STATUS_LEAST: f32 = 440.0;
 const MARGIN: Margin = Margin::same(8);
 const STRIPS_MARGIN: Margin = Margin::symmetric(12, 4);
 

@@ -342,7 +342,7 @@ async fn a_recording_that_finds_no_disk_says_so_until_it_does() {
 async fn the_hands_that_a_user_opened_are_open_at_the_next_start() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("settings.toml");
-    let endpoints = ["sim:?id=1", "sim:?id=2", "sim:?id=3"].map(|text| text.parse().unwrap());
+    let endpoints = ["sim:?seed=1", "sim:?seed=2", "sim:?seed=3"].map(|text| text.parse().unwrap());
     let open = |app: &App| -> Vec<String> {
         let hands = app.state().hands.iter();
         let endpoints = hands.filter_map(|hand| hand.connection.endpoint.as_ref());
@@ -377,7 +377,7 @@ async fn the_hands_that_a_user_opened_are_open_at_the_next_start() {
     // An address on the command line opens that hand alone, and changes nothing of the next start.
     let env = env();
     let clock = env.clock;
-    let mut app = start(env, kept.clone(), Some("sim:?id=9"));
+    let mut app = start(env, kept.clone(), Some("sim:?seed=9"));
     run(&mut app, clock, 300).await;
     assert_eq!(open(&app).len(), 1);
     assert_eq!(app.state().settings.beside, kept.beside);

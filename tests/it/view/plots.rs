@@ -59,6 +59,9 @@ fn known() -> State {
     state
 }
 
+/// A window that is too low for four tall plots.
+const LOW: Vec2 = vec2(1440.0, 880.0);
+
 fn open() -> Harness<'static, Shown> {
     open_at(known(), LARGE)
 }
@@ -172,7 +175,7 @@ fn the_values_under_the_pointer_are_read_out_while_live() {
 
 #[test]
 fn a_long_title_leaves_room_for_all_values_under_the_pointer() {
-    let mut harness = open();
+    let mut harness = open_at(known(), LOW);
     hover(&mut harness, 0.5);
     let values = harness.query_all_by_role(Role::Label);
     let values = values.filter_map(|node| {
@@ -614,7 +617,7 @@ fn a_hidden_joint_is_neither_read_out_nor_in_the_table() {
 
 #[test]
 fn a_sparkline_grows_at_a_click_and_another_plot_shrinks() {
-    let mut harness = open();
+    let mut harness = open_at(known(), LOW);
     let grown = |harness: &Harness<'static, Shown>| -> Vec<PlotKind> {
         let settings = &harness.state().state.settings;
         settings.tall_plots.of(&settings.plots, 2)
@@ -636,6 +639,37 @@ fn a_sparkline_grows_at_a_click_and_another_plot_shrinks() {
     harness.drop_at(line.center());
     harness.run_steps(3);
     assert_eq!(grown(&harness), [PlotKind::Temperature, PlotKind::Current]);
+}
+
+#[test]
+fn in_a_high_window_all_four_plots_have_their_axes() {
+    let titles = [
+        "Force, g",
+        "Current, mA",
+        "Temperature, °C",
+        "Angle, 0 bent to 1000 open",
+    ];
+    let scales = |harness: &Harness<'static, Shown>| -> Vec<bool> {
+        let has = |title: &str| {
+            let scale = format!("Value scale: {title}");
+            harness.query_by_label(&scale).is_some()
+        };
+        titles.iter().map(|title| has(title)).collect()
+    };
+    let mut harness = open();
+    assert_eq!(scales(&harness), [true; 4]);
+    for pair in titles.windows(2) {
+        let [above, below] = [pair[0], pair[1]].map(|title| rect(&harness, Role::Image, title));
+        assert!(
+            above.bottom() <= below.top() && above.height() >= 80.0,
+            "{above}"
+        );
+    }
+    // Below 900 points two are tall, and a click grows another.
+    harness = open_at(known(), LOW);
+    assert_eq!(scales(&harness), [true, false, false, true]);
+    press(&mut harness, "Grow: Current, mA");
+    assert_eq!(scales(&harness), [true, true, false, false]);
 }
 
 #[test]
@@ -686,7 +720,7 @@ fn the_rows_under_the_plots_tell_what_each_drive_said_and_since_when() {
         };
         state.hand_mut().measured.history.push(&sample, fresh);
     }
-    let mut harness = open_at(state, LARGE);
+    let mut harness = open_at(state, LOW);
     let rows = rect(&harness, Role::Image, "Status");
     let plot = ground(&harness);
     let mut told = |part: f32, row: u8| {

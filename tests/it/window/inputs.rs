@@ -135,7 +135,7 @@ fn nothing_listens_before_a_person_says_so_or_after_the_hand_is_left() {
     assert!(!bench.state().hand().inputs.is_open());
     bench.show(View::Inputs);
     bench.run(100);
-    bench.click_button("Gateway");
+    bench.click_button("Share: Gateway");
     bench.run(60);
     bench.type_into("Address of the gateway", "127.0.0.1:0");
     bench.click_button("Open the gateway");
@@ -297,7 +297,7 @@ fn the_first_client_moves_the_hand_only_where_the_settings_file_says_so() {
         bench.wait(1000);
         bench.show(View::Inputs);
         bench.run(60);
-        bench.click_button("Gateway");
+        bench.click_button("Share: Gateway");
         bench.act(Action::Input(InputAction::Share(
             "127.0.0.1:0".parse().ok(),
         )));
@@ -359,7 +359,7 @@ fn each_source_has_its_switch_in_the_list_and_the_chosen_one_its_settings() {
             ("Live viewers", "Address for viewers"),
         ];
         for (source, field) in settings {
-            bench.click_button(source);
+            bench.click_button(&format!("Share: {source}"));
             bench.run(60);
             for (_, other) in settings {
                 assert_eq!(bench.shows(other), other == field, "{source}: {other}");
@@ -374,7 +374,7 @@ fn without_a_gamepad_neither_its_picture_nor_its_list_is_there() {
     let mut bench = Bench::live();
     bench.show(View::Inputs);
     bench.run(100);
-    bench.click_button("Gamepad");
+    bench.click_button("Share: Gamepad");
     bench.run(60);
     assert!(!bench.texts_with("Plug a gamepad in").is_empty());
     assert!(bench.all(Role::ComboBox).is_empty());
@@ -387,7 +387,7 @@ fn the_exhibition_is_started_from_its_card() {
     let mut bench = Bench::live();
     bench.show(View::Inputs);
     bench.run(100);
-    bench.click_button("Exhibition");
+    bench.click_button("Share: Exhibition");
     bench.run(60);
     bench.click_button("Start the exhibition");
     bench.run(200);

@@ -259,6 +259,23 @@ fn what_the_hand_holds_otherwise_stands_beside_what_is_set() {
 }
 
 #[test]
+fn one_line_says_what_the_hand_holds_and_a_click_keeps_that() {
+    let mut bench = Bench::live();
+    bench.gentle();
+    bench.run(60);
+    let told = bench.texts_with("Hand: speed 1000, force 1000");
+    assert_eq!(told.len(), 1, "{told:?}");
+    bench.click_button("Keep the hand's");
+    bench.run(60);
+    for setting in ["Index force number", "Little speed number"] {
+        assert_eq!(bench.typed(setting), "1000");
+    }
+    assert!(bench.texts_with("Hand: speed").is_empty());
+    bench.run(500);
+    assert!(bench.writes().is_empty());
+}
+
+#[test]
 fn newtons_stand_beside_the_grams_of_a_joint_that_was_measured() {
     let measured: Endpoint = "tcp:127.0.0.1:6000?unit=1".parse().unwrap();
     let mut bench = Bench::kept(SimConfig::default(), "tcp:127.0.0.1:6000?unit=2", LARGE);

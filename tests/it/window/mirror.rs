@@ -41,7 +41,7 @@ fn show(bench: &mut Bench, at: usize) {
     bench.act(Action::Hands(HandsAction::Show(slot)));
     bench.show(View::Inputs);
     bench.run(60);
-    bench.click_button("Another hand");
+    bench.click_button("Share: Another hand");
     bench.run(60);
 }
 
@@ -245,6 +245,8 @@ fn a_lost_follower_stops_a_leader_that_is_moved_here() {
     bench.unplug_at(SECOND);
     let lost = bench.now();
     bench.until(1500, |bench| !hand(bench, 0).connection.is_armed());
+    // The window knows of its stop before the wire carries it.
+    bench.run(60);
     let writes = bench.writes();
     let held = writes.iter().rev().find(|write| write.address == ANGLE_SET);
     assert!(held.unwrap().at > lost);

@@ -307,6 +307,8 @@ fn a_hand_elsewhere_that_follows_on_dds_keeps_this_one_from_following_too() {
         owner: Some(Owner::Dds),
     };
     told_until(&mut bench, (&writer, &hand), |bench| other(bench).is_some());
+    bench.click_button("Share: DDS");
+    bench.run(60);
     assert_eq!(other(&bench).map(|card| card.name), Some("first".into()));
     assert!(bench.is_disabled(Role::Button, "Let it move the hand: DDS"));
     bench.act(Action::Input(InputAction::Grant(SourceKind::Dds)));
