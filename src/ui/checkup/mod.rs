@@ -59,7 +59,8 @@ impl CheckupPanel {
     fn begin_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let (look, palette) = (pane.look, pane.look.palette);
         let time = format::duration(expected(self.plan));
-        kit::small_text_ui(ui, &look.fill(checkup::ABOUT, &[&time]), palette.muted);
+        let about = kit::small_text_ui(ui, &look.fill(checkup::ABOUT, &[&time]), palette.muted);
+        about.on_hover_text(look.tip(checkup::ABOUT));
         let ticks = [
             (&mut self.is_empty, checkup::EMPTY),
             (&mut self.plan.press, checkup::PRESS),

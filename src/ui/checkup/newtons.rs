@@ -30,12 +30,12 @@ impl NewtonsPanel {
     pub(super) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
         ui.separator();
-        Label::new(look.tr(checkup::NEWTONS), look.palette.text).ui(ui);
+        let title = Label::text(look, checkup::NEWTONS).ui(ui);
+        title.on_hover_text(look.tr(checkup::NEWTONS_ABOUT));
         if pane.hand().running.calibrates() {
             running_ui(ui, pane);
             return;
         }
-        kit::small_text_ui(ui, look.tr(checkup::NEWTONS_ABOUT), look.palette.muted);
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
             for dof in Finger::ALL.map(Finger::bend) {

@@ -176,10 +176,6 @@ pub(super) fn tiles_ui<T>(
 }
 
 /// A child `Ui` for the content of a tile, from its top.
-pub(super) fn inside(ui: &mut Ui, place: Rect) -> Ui {
-    inside_of(ui, place.shrink(theme::PAD))
-}
-
 fn inside_of(ui: &mut Ui, place: Rect) -> Ui {
     let layout = Layout::top_down(Align::Min);
     ui.new_child(UiBuilder::new().max_rect(place).layout(layout))

@@ -25,7 +25,7 @@ use egui::{Key, Panel, ScrollArea, Ui, Vec2, vec2};
 use std::net::Ipv4Addr;
 
 /// Minimum width of a link kind's tile, and its height.
-const WAY: Vec2 = vec2(296.0, 128.0);
+const WAY: Vec2 = vec2(140.0, 40.0);
 
 /// Width from which on the link is beside the address.
 const WIDE: f32 = 976.0;
@@ -266,7 +266,7 @@ impl ConnectionForm {
                 let text = panels::kind(kind);
                 let name = look.pair(look.tr(panels::CONNECTION_KIND), look.tr(text));
                 let is_now = spelled.split(':').next() == Some(kind);
-                let button = Button::new(look.tr(text), "").named(&name);
+                let button = Button::new(look.tr(text), look.tip(text)).named(&name);
                 let button = button.switch(is_now);
                 if button.ground(ui, look, place, id).clicked() && !is_now {
                     self.typed = match first.parse() {
@@ -275,9 +275,7 @@ impl ConnectionForm {
                     };
                     (self.is_unfolded, self.wants_focus) = (true, true);
                 }
-                let mut inner = hand_tiles::inside(ui, place);
-                Label::text(look, text).ui(&mut inner);
-                kit::small_text_ui(&mut inner, look.tip(text), look.palette.muted);
+                Label::text(look, text).center().paint(ui, place);
             });
         });
     }

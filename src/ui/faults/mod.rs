@@ -16,7 +16,7 @@ use crate::ui::kit::DriveWords;
 use crate::ui::kit::{self, Button, Label, Pane, ViewRequest, Weight};
 use crate::ui::text::{main, notices, panels, words};
 use crate::ui::theme;
-use egui::{Margin, Panel, Ui};
+use egui::{CollapsingHeader, Margin, Panel, Ui};
 
 /// View state.
 #[derive(Debug, Default)]
@@ -192,15 +192,17 @@ fn drive_ui(ui: &mut Ui, pane: &Pane<'_>, dof: Dof) -> bool {
 fn meanings_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let look = pane.look;
     ui.separator();
-    kit::head_ui(ui, look, look.tr(notices::MEANINGS), |_| ());
-    kit::small_text_ui(ui, look.tr(notices::MEANINGS_FAULT), look.palette.muted);
-    for fault in (0..5).map(Fault::from_bit) {
-        meaning_ui(ui, pane, words::fault(fault, look.language));
-    }
-    kit::small_text_ui(ui, look.tr(notices::MEANINGS_STATUS), look.palette.muted);
-    for status in [0, 1, 2, 3, 5, 6, 7].map(Status::from_raw) {
-        meaning_ui(ui, pane, words::status(status, look.language));
-    }
+    let all = CollapsingHeader::new(look.tr(notices::MEANINGS)).id_salt("meanings");
+    all.show_unindented(ui, |ui| {
+        kit::small_text_ui(ui, look.tr(notices::MEANINGS_FAULT), look.palette.muted);
+        for fault in (0..5).map(Fault::from_bit) {
+            meaning_ui(ui, pane, words::fault(fault, look.language));
+        }
+        kit::small_text_ui(ui, look.tr(notices::MEANINGS_STATUS), look.palette.muted);
+        for status in [0, 1, 2, 3, 5, 6, 7].map(Status::from_raw) {
+            meaning_ui(ui, pane, words::status(status, look.language));
+        }
+    });
 }
 
 fn meaning_ui(ui: &mut Ui, pane: &Pane<'_>, words: Words) {

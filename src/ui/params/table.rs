@@ -96,8 +96,8 @@ pub(crate) fn table_ui(ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownRows) {
                 continue;
             }
             line_ui(&mut body, theme::CONTROL_LARGE, |ui| {
-                Label::text(look, title).ui(ui);
-                Label::note(look, about).ui(ui);
+                let title = Label::text(look, title).ui(ui);
+                title.on_hover_text(look.tr(about));
             });
             for id in own {
                 let height = if id.is_place() { 62.0 } else { ROW };

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 texts! {
     TITLE: "Check-up", "体检";
-    ABOUT: "Each joint bends and opens alone at two speeds, then all together; the readings are compared with good hands, and with this hand's first check-up. About {}.", "各自由度先以两种速度单独弯曲与张开，再一起动作；传感器读数将与正常的手以及这只手的首次体检比较。约需 {}。";
+    ABOUT: "Moves each joint. About {}.", "各自由度依次动作，约需 {}。", "Each joint bends and opens alone at two speeds, then all together; the readings are compared with good hands, and with this hand's first check-up.", "各自由度先以两种速度单独弯曲与张开，再一起动作；传感器读数将与正常的手以及这只手的首次体检比较。";
     EMPTY: "The hand is empty, and nothing is in its way", "手中没有物体，周围没有障碍", "Confirm before each check-up. A joint that meets something ends it.", "每次体检前都须确认。任何自由度碰到物体都会立即结束。";
     PRESS: "Then press each fingertip", "最后逐个按压指尖", "Once the hand is at rest and not armed, it asks for a press of each fingertip, and judges which channels respond.", "全部动作结束并取消使能后，请逐个按压指尖，以判断各通道是否有反应。";
     SAY_EMPTY: "Confirm that the hand is empty.", "请先确认手中没有物体。";

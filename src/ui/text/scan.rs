@@ -26,7 +26,7 @@ texts! {
     PLUGGED_IN: "now plugged in", "已插入";
     ANSWERED: "answered the scan", "扫描时有应答";
     LAST_USED: "last used {}", "上次使用：{}";
-    FIND: "Find hands", "查找灵巧手", "Queries all serial ports and CAN interfaces, at all speeds, in all protocols, and listens for hands that other Handscopes share at the network interface beside it. It only reads.\nOpening a port resets some other devices, such as boards with an Arduino bootloader.", "在所有串口与 CAN 接口上，以各种波特率与协议查询。只读取，不写入；同时在旁边的网络接口上查找其他 Handscope 共享的灵巧手。\n打开串口可能使某些其他设备复位，例如带 Arduino 引导程序的开发板。";
+    FIND: "Find hands", "查找灵巧手", "Queries all serial ports and CAN interfaces, at all speeds, in all protocols, and listens for hands that other Handscopes share at the network interface beside it. It only reads, and tries no address in the network that you do not name.\nOpening a port resets some other devices, such as boards with an Arduino bootloader.", "在所有串口与 CAN 接口上，以各种波特率与协议查询。只读取，不写入，也不会尝试未指定的网络地址；同时在旁边的网络接口上查找其他 Handscope 共享的灵巧手。\n打开串口可能使某些其他设备复位，例如带 Arduino 引导程序的开发板。";
     CANCEL: "Cancel", "取消", "Ends the scan. What was found stays.", "结束扫描，保留已找到的结果。";
     RUNNING: "A scan is under way.", "正在扫描。";
     IDS: "Ids", "ID", "Ids queried on every bus. All of them take about two minutes a port.", "在每条总线上查询的 ID。全部 ID 每个端口约需两分钟。";
@@ -36,7 +36,7 @@ texts! {
     PRESET_MAKER: "As delivered", "出厂地址";
     PRESET_FIELD: "Seen on some hands", "部分灵巧手使用";
     PRESET_TIP: "Puts this address into the field. Nothing is sent before you press a button.", "将此地址填入输入框。点击按钮之前不会发送任何内容。";
-    NEVER: "Nothing was scanned yet. A scan reads one register, the id, and writes nothing. No address in the network is tried that you do not name.", "尚未扫描。扫描只读取 ID 寄存器，不写入任何内容，也不会尝试未指定的网络地址。";
+    NEVER: "Nothing was scanned yet.", "尚未扫描。";
     PROGRESS: "Scan progress", "扫描进度";
     ASKED: "questions", "次查询";
     TIME_LEFT: "time left about", "约剩";

@@ -34,13 +34,12 @@ pub(crate) struct TouchView {
     detail: TipDetail,
     /// All numbers instead of one fingertip.
     numbers: bool,
-    /// Pass in which they were last drawn large.
-    large_at: Option<u64>,
 }
 
 impl TouchView {
-    /// Draws the card of the overview: the hand, and below it the fingertips, as far as the hand keeps its minimum height.
-    pub(crate) fn small_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+    /// Draws the card of the overview: the hand, and below it the fingertips, as far as the hand keeps its minimum height, unless
+    /// they are drawn large beside it.
+    pub(crate) fn small_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, has_large: bool) {
         let look = pane.look;
         kit::full_card_ui(ui, look, |ui| {
             kit::head_ui(ui, look, look.tr(panels::HAND), |ui| {
@@ -53,9 +52,10 @@ impl TouchView {
             let room = height - HAND_LEAST - theme::GAP;
             let below = [picture + FIGURES, FIGURES, 0.0];
             let fits = below.into_iter().find(|below| *below <= room);
-            let below = fits.filter(|_| !self.is_large(ui)).unwrap_or(0.0);
+            let below = fits.filter(|_| !has_large).unwrap_or(0.0);
             let height = height - below - theme::GAP;
-            ui.allocate_ui(vec2(width, height.max(1.0)), |ui| self.hand_ui(ui, pane));
+            let size = vec2(width, height.max(1.0));
+            ui.allocate_ui(size, |ui| self.hand_ui(ui, pane, has_large));
             if below > 0.0 {
                 ui.spacing_mut().item_spacing.x = 0.0;
                 ui.columns(Finger::ALL.len(), |columns| {
@@ -99,9 +99,8 @@ impl TouchView {
         });
     }
 
-    /// Draws the hand alone.
-    pub(crate) fn hand_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
-        let is_frontal = self.is_large(ui);
+    /// Draws the hand alone, from the front or in the default view.
+    pub(crate) fn hand_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, is_frontal: bool) {
         let clicked = self.hand.ui(ui, pane, &heat::tips(pane), is_frontal);
         if let Some(finger) = clicked {
             self.open(pane, finger);
@@ -111,7 +110,6 @@ impl TouchView {
     /// Draws the view in place of the plots: five large fingertips above the chosen one in detail, or all numbers.
     pub(crate) fn large_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let look = pane.look;
-        self.large_at = Some(ui.ctx().cumulative_pass_nr());
         self.detail.follow(pane);
         let height = (ui.available_height() * 0.48).round();
         let upper = Panel::top("touch, upper");
@@ -132,12 +130,6 @@ impl TouchView {
         });
         ui.add_space(theme::GAP);
         kit::full_card_ui(ui, look, |ui| self.lower_ui(ui, pane));
-    }
-
-    /// True while the large fingertips are drawn beside the hand.
-    fn is_large(&self, ui: &Ui) -> bool {
-        let now = ui.ctx().cumulative_pass_nr();
-        self.large_at.is_some_and(|at| at + 1 >= now)
     }
 
     /// Opens a fingertip in detail.

@@ -232,7 +232,10 @@ impl WindowViews {
             self.plots_ui(ui, rect, pane);
             return;
         }
-        let Self { rooms, own, .. } = self;
+        let Self {
+            view, rooms, own, ..
+        } = self;
+        let has_large = *view == View::Touch;
         let strip = strip_size(rect.height());
         // Below a timeline, a small window has room for measurements only; no pose can be sent there anyway.
         let has_room = pane.state.timeline.is_none() || rect.height() >= REPLAY_WITH_POSES;
@@ -252,7 +255,9 @@ impl WindowViews {
             },
         };
         if width >= stage.least + stage.rest {
-            rooms.room_ui(ui, pane, stage, |ui, pane| own.touch.small_ui(ui, pane));
+            rooms.room_ui(ui, pane, stage, |ui, pane| {
+                own.touch.small_ui(ui, pane, has_large);
+            });
         }
         let rect = ui.available_rect_before_wrap();
         match self.view {

@@ -343,7 +343,9 @@ impl Window {
 
     /// Draws the hand alone over all of `ui`: for pictures and measurements.
     pub fn hand_alone_ui(&mut self, ui: &mut Ui, state: &State) {
-        alone_ui(ui, state, |ui, pane| self.body.own.touch.hand_ui(ui, pane));
+        alone_ui(ui, state, |ui, pane| {
+            self.body.own.touch.hand_ui(ui, pane, false)
+        });
     }
 }
 
