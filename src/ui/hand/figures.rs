@@ -32,6 +32,8 @@ const ABOVE: f32 = theme::CONTROL;
 const THUMB: f32 = 0.7;
 /// Share of the labels of index and thumb that is beside the hand: above and below the thumb there is space for the rest.
 const BESIDE: f32 = 0.55;
+/// Distance of a tip to the side of its knuckle from which on the finger counts as bent, as a share of the hand's width.
+const ASIDE: f32 = 0.15;
 /// Gap between the hand and its labels.
 const CLEAR: f32 = 2.0 * theme::GAP;
 /// Opacity of a line, radius of the ring at its end, and opacity of a label's background.
@@ -91,7 +93,8 @@ impl Figure {
         };
         let (tip, knuckle) = (points.tips[finger], points.knuckles[finger]);
         // Lines to fingertips that are side by side would cross.
-        let is_bent = tip.y > knuckle.y || (tip.x - knuckle.x).abs() > CLEAR;
+        let aside = (tip.x - knuckle.x).abs();
+        let is_bent = tip.y > knuckle.y || aside > ASIDE * points.bounds.width();
         let end = match finger {
             Finger::Ring | Finger::Little => knuckle,
             Finger::Middle | Finger::Index if is_bent => knuckle,
@@ -252,7 +255,12 @@ fn notes(pane: &Pane<'_>) -> [String; 2] {
         Some(run) => {
             let object = run.view.object.as_ref();
             let object = object.map(|object| hold::object(look, object));
-            [hold::state(look, &run.view), object.unwrap_or_default()]
+            // Before it holds, the word says it all.
+            let state = match run.view.phase {
+                HoldPhase::Measuring | HoldPhase::Closing => String::new(),
+                HoldPhase::Holding | HoldPhase::CannotHold => hold::state(look, &run.view),
+            };
+            [state, object.unwrap_or_default()]
         }
         None => {
             let holds = grip(pane).grasp.state == GripState::Holding;

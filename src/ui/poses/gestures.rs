@@ -17,6 +17,8 @@ const NAMES: usize = 4;
 
 /// Width of the menu of the live view.
 const MENU: f32 = 460.0;
+/// Height of what the menu tells of a gesture.
+const CHOSEN: f32 = 112.0;
 
 /// View state of the gestures.
 #[derive(Debug, Default)]
@@ -198,12 +200,16 @@ pub(super) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             }
         });
         ui.separator();
-        match chosen {
-            Some(gesture) => chosen_ui(ui, pane, gesture),
-            None => {
-                Label::note(pane.look, panels::GESTURE_CHOOSE).ui(ui);
+        ui.vertical(|ui| {
+            // Space for the longest text: the buttons above stay where they are.
+            ui.set_min_height(CHOSEN);
+            match chosen {
+                Some(gesture) => chosen_ui(ui, pane, gesture),
+                None => {
+                    Label::note(pane.look, panels::GESTURE_CHOOSE).ui(ui);
+                }
             }
-        }
+        });
     });
 }
 
