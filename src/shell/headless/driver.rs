@@ -266,7 +266,7 @@ impl Driver {
     }
 
     /// Performs an action of the user.
-    pub(crate) fn act(&mut self, action: Action) {
+    pub fn act(&mut self, action: Action) {
         let now = self.now();
         let _inside = self.runtime.enter();
         self.desktop_app.app().act(action, now);

@@ -6,9 +6,12 @@
 
 use crate::setup::recorded;
 use handscope::app::action::Action;
+use handscope::app::hand::hold::HoldAction;
 use handscope::app::recordings::RecordingAction;
 use handscope::app::settings::{Language, Theme};
 use handscope::hand::Moment;
+use handscope::motion::hold::HoldClose;
+use handscope::poses::starter::starter;
 use handscope::shell::headless::canvas::Picture;
 use handscope::shell::headless::cards::SceneCard;
 use handscope::shell::headless::driver::{Driver, Scene};
@@ -16,7 +19,7 @@ use handscope::store::calendar;
 use handscope::transport::Endpoint;
 use handscope::ui::View;
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -48,8 +51,8 @@ struct Stage {
     at_s: u64,
     /// A small series of grasps is run first.
     trials: bool,
-    /// A pose grasps what is before the hand.
-    grasps: bool,
+    /// The hand holds what is before it.
+    holds: bool,
     card: Option<SceneCard>,
     /// Names of the files, and the views.
     shots: &'static [(&'static str, View)],
@@ -64,7 +67,7 @@ const fn watching(
         scenario,
         at_s,
         trials: false,
-        grasps: false,
+        holds: false,
         card: None,
         shots,
     }
@@ -169,8 +172,8 @@ fn draw(
     if stage.trials {
         driver.try_grasps();
     }
-    if stage.grasps {
-        grasp(&mut driver);
+    if stage.holds {
+        hold(&mut driver);
     }
     if let Some(card) = stage.card {
         driver.open_card(card);
@@ -186,18 +189,15 @@ fn draw(
     }
 }
 
-/// A person arms the hand and lets it grasp what is before it.
-fn grasp(driver: &mut Driver) {
-    let hidden = BTreeSet::new();
-    let poses = &driver.desktop_app().state().poses;
-    let pose = poses.poses(&hidden).find(|pose| pose.name == "Power grasp");
-    let pose = pose.unwrap().id;
-    for action in [Action::Arm, Action::Recall(pose)] {
-        let now = driver.now();
-        driver.desktop_app().app().act(action, now);
+/// A person arms the hand and lets it hold what is before it.
+fn hold(driver: &mut Driver) {
+    let pose = starter().pose_named("Power grasp").unwrap();
+    let close = HoldClose::To(pose.targets());
+    for action in [Action::Arm, Action::Hold(HoldAction::Start(close))] {
+        driver.act(action);
         driver.run_for(Duration::from_millis(300));
     }
-    driver.run_for(Duration::from_millis(2200));
+    driver.run_for(Duration::from_secs(20));
 }
 
 /// Draws the view of sessions, and one of them replayed, in each dress.
@@ -476,7 +476,7 @@ fn the_readme_has_few_small_pictures() {
     let folder = root().join("screenshots");
     if std::env::var("RENEW").is_ok_and(|what| what == "screenshots") {
         let held = Stage {
-            grasps: true,
+            holds: true,
             ..watching("idle", 3, &[("live", View::Live)])
         };
         for stage in STAGES.iter().chain([&held]) {
