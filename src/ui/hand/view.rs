@@ -19,10 +19,10 @@ pub(crate) const TURN: Turn = Turn {
     pitch: 0.26,
     roll: 0.0,
 };
-/// Viewpoint while a fingertip is open: the pads of the open hand face the viewer.
+/// Viewpoint while a fingertip is open: the pads face the viewer, and from slightly below also those of bent fingers.
 pub(crate) const FRONT: Turn = Turn {
     yaw: 0.0,
-    pitch: 0.0,
+    pitch: -0.18,
     roll: 0.0,
 };
 /// Time from one of the two viewpoints to the other.
