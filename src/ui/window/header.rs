@@ -237,8 +237,9 @@ fn faults_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 fn hand_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let all = link_words::all().map(|text| look.tr(text));
-    // With several hands the strips below say this of each.
-    if !pane.state.hands.is_several() || pane.state.timeline.is_some() {
+    // With several hands the strips below name each real one.
+    let is_real = pane.state.timeline.is_none() && !pane.hand().connection.is_simulated();
+    if !is_real || !pane.state.hands.is_several() {
         let width = |text: &&str| kit::text_width(ui, text, theme::body());
         let link = all.iter().map(width).fold(0.0, f32::max) + LAMP_BUTTON;
         let spare = ui.available_width() - link - LAMP_BUTTON - 4.0 * theme::GAP;

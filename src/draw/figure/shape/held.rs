@@ -19,8 +19,8 @@ pub enum Held {
 /// Shape of a held object, in the palm's frame of a right hand.
 pub fn held(held: Held) -> &'static Solid {
     static SHAPES: LazyLock<[Solid; 3]> = LazyLock::new(|| {
-        let ball = |step: u8| (f32::from(step) / 32.0 * PI).sin_cos();
-        let ball: [LoftRing; 33] = std::array::from_fn(|step| {
+        let ball = |step: u8| (f32::from(step) / 24.0 * PI).sin_cos();
+        let ball: [LoftRing; 25] = std::array::from_fn(|step| {
             let (sin, cos) = ball(u8::try_from(step).unwrap_or(0));
             disc(-cos * BALL_MM, (sin * BALL_MM).max(0.1))
         });
