@@ -117,12 +117,12 @@ impl DrivesPlace<'_> {
         };
         let runs = pane.hand().measured.history.status(dof, from_s, to_s);
         for run in runs {
-            let [from, to] = xs(&run);
+            let [from, to] = xs(run);
             if to - from < WORD_LEAST {
                 continue;
             }
             let place = bar.with_min_x(from + theme::STEP).with_max_x(to);
-            let text = status_text(look, &run);
+            let text = status_text(look, run);
             if kit::text_width(ui, &text, theme::small()) <= place.width() {
                 let label = Label::new(&text, look.palette.on_accent).small();
                 label.paint(ui, place);

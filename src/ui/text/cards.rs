@@ -10,10 +10,10 @@ texts! {
     BACKUP: "Backup:", "备份：";
     NO_BACKUP: "No backup could be made, and nothing was written.", "无法备份，未写入任何内容。";
 
-    CHANGE_ASKED: "Change where the hand is found?", "更改灵巧手的通信地址？";
-    CHANGING: "Change of where the hand is found", "灵巧手通信地址的更改";
-    NOW_AT: "Now at", "当前通信地址";
-    THEN_AT: "Then at", "更改后通信地址";
+    CHANGE_ASKED: "Change where the hand is found?", "更改灵巧手的通讯地址？";
+    CHANGING: "Change of where the hand is found", "灵巧手通讯地址的更改";
+    NOW_AT: "Now at", "当前通讯地址";
+    THEN_AT: "Then at", "更改后通讯地址";
     FOLLOWED: "A backup is kept first. Nothing is written if another hand answers at the new place. After the write the hand is looked for there, and unless you keep it within 15 s it goes back.", "先备份。若新位置已有其他灵巧手应答，则不写入。写入后到新位置寻找灵巧手；15 秒内不确认保留，就自动恢复。";
     POWERED: "A backup is kept first. The new value acts only after SAVE and power off and on; until then the hand answers where it is. Unless you keep it within 15 s it goes back.", "先备份。新值在保存并重新上电后才生效，在此之前灵巧手仍在原位置应答；15 秒内不确认保留，就自动恢复。";
     SAME_NETWORK: "At the new address this computer reaches it only from an address in the same network.", "更改后，本机须有同一网段的地址才能连接。";
@@ -74,15 +74,15 @@ texts! {
     CALIBRATED_REFUSED: "The hand refused it.", "灵巧手拒绝校准。";
     CALIBRATED_UNKNOWN: "It is not known whether the sensors were calibrated: check the forces of the open hand.", "不确定是否已校准：请查看手张开时的力。";
     CALIBRATED_NOT_SENT: "It was not sent.", "未发送。";
-    JOINT: "Joint", "关节";
+    JOINT: "Joint", "自由度";
     OFFSET_NOW: "Force, g", "力 g";
     OFFSET_BEFORE: "Before, g", "校准前 g";
     OFFSET_AFTER: "After, g", "校准后 g";
 
     /// Precondition of a calibration.
     fn check(CalibrationCondition) {
-        CalibrationCondition::Open => "Fingers and thumb are open", "手指和拇指已张开";
-        CalibrationCondition::Still => "No joint moves", "各关节静止";
+        CalibrationCondition::Open => "Fingers and thumb are open", "手指和大拇指已张开";
+        CalibrationCondition::Still => "No joint moves", "各自由度静止";
         CalibrationCondition::Untouched => "Nothing is touched", "没有接触物体";
         CalibrationCondition::Steady => "The force is steady for 2 s", "力稳定 2 秒";
         CalibrationCondition::NoFault => "No drive has a fault", "驱动器没有故障";

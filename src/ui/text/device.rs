@@ -21,9 +21,9 @@ texts! {
     UNDO: "Undo apply", "撤销应用", "Writes back what the last apply changed, and reads it back.", "写回上次应用所改动的值，并读回核对。";
     UNSTAGE_ALL: "Drop staged", "清除暂存", "Forgets everything that is staged. Writes nothing.", "清除全部暂存值，不写入任何内容。";
     UNSTAGE: "Drop", "清除", "Forgets what is staged here. Writes nothing.", "清除此行暂存值，不写入任何内容。";
-    COPY: "Copy the hand's speed and force", "取手当前的速度与力阈值", "Stages SPEED_SET and FORCE_SET, as they are read from the hand now, as defaults after power-up, for all joints. Writes nothing.", "把当前从灵巧手读到的 SPEED_SET 与 FORCE_SET 暂存为全部关节的上电默认值，不写入任何内容。";
+    COPY: "Copy the hand's speed and force", "取手当前的速度与力阈值", "Stages SPEED_SET and FORCE_SET, as they are read from the hand now, as defaults after power-up, for all joints. Writes nothing.", "把当前从灵巧手读到的 SPEED_SET 与 FORCE_SET 暂存为全部自由度的上电默认值，不写入任何内容。";
     COPY_UNKNOWN: "SPEED_SET and FORCE_SET are not known now.", "SPEED_SET 与 FORCE_SET 目前未知。";
-    CHANGE: "Change...", "更改...", "Changes where the hand is found, step by step and with a way back.", "分步更改灵巧手的通信地址，并保留退路。";
+    CHANGE: "Change...", "更改...", "Changes where the hand is found, step by step and with a way back.", "分步更改灵巧手的通讯地址，并保留退路。";
     CHANGE_NONE: "Type another value first.", "请先输入另一个值。";
 
     CHANGE_SIM: "The simulated hand is always found here.", "仿真手总在此处。";
@@ -39,7 +39,7 @@ texts! {
 
     VERDICT: "verdict", "结果";
 
-    GROUP_PLACE: "Where the hand is found", "通信地址";
+    GROUP_PLACE: "Where the hand is found", "通讯地址";
     GROUP_SPEED: "Speed after power-up", "上电速度";
     GROUP_FORCE: "Force threshold after power-up", "上电力阈值";
     ABOUT_PLACE: "Belongs to one hand. A wrong value hides the hand from this computer.", "每只灵巧手各不相同。值有误时，本机将找不到灵巧手。";
@@ -132,7 +132,7 @@ texts! {
     IN_FILE: "In the file", "文件中";
     TAKE: "Take", "采用";
     TICK_TIP: "Stages this row with the others that are ticked.", "与其他勾选的行一起暂存。";
-    TICK_PLACE_TIP: "Says where another hand may be found: tick it only if it is meant.", "可能是另一只灵巧手的通信地址：确有需要才勾选。";
+    TICK_PLACE_TIP: "Says where another hand may be found: tick it only if it is meant.", "可能是另一只灵巧手的通讯地址：确有需要才勾选。";
     STAGE_TICKED: "Stage ticked rows", "暂存勾选的行", "Puts the ticked rows beside what the hand holds. Writes nothing.", "把勾选的行放入暂存值，不写入任何内容。";
     STAGE_NONE: "No row is ticked.", "没有勾选任何行。";
     CLOSE_FILE: "Close", "关闭", "Goes back to the table.", "返回参数表。";

@@ -4,9 +4,9 @@ use crate::exhibit::stage::HaltReason;
 use crate::ui::style::phrase::texts;
 
 texts! {
-    ENTER: "Exhibition", "展览模式", "Shows the page for visitors over the whole screen. Nothing moves before you arm on it; leaving needs a PIN.", "全屏显示观众页面。在该页面上使能之前不会有任何动作；退出需要 PIN 码。";
-    START: "Start the exhibition", "开始展览";
-    ENTER_FILE: "Exhibition from a file...", "从文件打开展览...", "The same with the tiles, limits and times of a file.", "使用文件中的图块、限制和时间。";
+    ENTER: "Exhibition", "展示模式", "Shows the page for visitors over the whole screen. Nothing moves before you arm on it; leaving needs a PIN.", "全屏显示观众页面。在该页面上使能之前不会有任何动作；退出需要 PIN 码。";
+    START: "Start the exhibition", "开始展示";
+    ENTER_FILE: "Exhibition from a file...", "从文件打开展示...", "The same with the tiles, limits and times of a file.", "使用文件中的图块、限制和时间。";
 
     TITLE: "Touch a tile: the hand does it", "点一下，灵巧手就动";
     STOP_NOTE: "The hand stops at once", "灵巧手立即停下";
@@ -57,7 +57,7 @@ texts! {
     ARM_NO_HAND: "No hand answers.", "没有灵巧手应答。";
     DISARM: "Disarm", "取消使能";
     DISARM_NOTHING: "It is not armed.", "尚未使能。";
-    LEAVE: "Leave the exhibition", "退出展览模式";
+    LEAVE: "Leave the exhibition", "退出展示模式";
     TODAY: "Today", "今日";
     VISITS: "Visitors", "观众";
     PIECES: "Pieces played", "播放次数";

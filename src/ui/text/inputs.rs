@@ -31,7 +31,7 @@ texts! {
     TAKEN_LINES: "Lines taken", "已接收";
     ODD_STOPS: "Stops in an odd spelling", "写法异常的停止";
     NOT_GRANTED: "Not followed", "未跟随";
-    MIRROR: "Another hand", "另一只手", "Another hand of this window leads this one, which follows its joints; left and right may lead each other. That one is only read. Once either is stopped or lost, this window moves neither.", "由本窗口中的另一只手带动此手：此手跟随其关节位置，左右手均可。对那只手只读取。任一只手停下或断开后，本窗口不再移动这两只手。";
+    MIRROR: "Another hand", "另一只手", "Another hand of this window leads this one, which follows its joints; left and right may lead each other. That one is only read. Once either is stopped or lost, this window moves neither.", "由本窗口中的另一只手带动此手：此手跟随其自由度位置，左右手均可。对那只手只读取。任一只手停下或断开后，本窗口不再移动这两只手。";
     LEADER: "Leading hand", "主导手";
     WATCH: "Watch the leading hand", "跟踪主导手", "Reads the hand that leads; nothing moves by that.", "读取主导手；不会移动灵巧手。";
     NO_OTHER_HAND: "No other hand is connected.", "没有连接其他灵巧手。";
@@ -69,9 +69,9 @@ texts! {
     PLUG_IN: "No gamepad: plug one in, or pair it with this computer.", "没有手柄：请插入或与本机配对。";
     PAD_OFF: "Plug a gamepad in or pair it, then switch this on.", "请插入或配对手柄，然后打开。";
     PAD_CHANGE: "Click a control to change what it does.", "点击控件可更改其动作。";
-    FOLLOW_NOW: "{} counts ahead of the joints, {} ms from input to wire (99 %)", "领先关节 {}，输入到线路 {} ms（99 %）";
+    FOLLOW_NOW: "{} counts ahead of the joints, {} ms from input to wire (99 %)", "领先实际角度 {}，输入到线路 {} ms（99 %）";
     LIMITS: "Limits for external control:", "外部控制的限制：";
-    LEAD: "Lead", "领先量", "Counts of 1000 that a target may be ahead of its joint:", "目标最多领先关节的量（满程 1000）：";
+    LEAD: "Lead", "领先量", "Counts of 1000 that a target may be ahead of its joint:", "目标最多领先实际角度的量（满程 1000）：";
     FOLLOW_RATE: "Counts a second", "每秒变化", "How fast a target may go, counts of 1000 a second:", "目标每秒最多变化的量（满程 1000）：";
     OTHER_FOLLOWS: "At {}, {} follows this sender already: one sender must not move two hands.", "{} 上的 {} 已在跟随此来源：一个来源不可同时控制两只手。";
     NONE: "No gamepad", "没有手柄";
@@ -151,9 +151,9 @@ texts! {
         PadAction::Stop => "STOP", "停止", "Stops the hand, with or without the button that is held to run. It is not an emergency stop.", "立即停下灵巧手，无论是否按住运行键。这不是急停。";
         PadAction::Pose(_) => "Pose {}", "姿态：{}", "The hand goes to this pose while the button is held.", "按住时灵巧手摆出该姿态。";
         PadAction::CloseFingers => "Close fingers", "弯曲手指", "By amount: let go is open, pressed is bent.", "按行程控制：松开为张开，按到底为弯曲。";
-        PadAction::BendThumb => "Bend thumb", "弯曲拇指", "By amount: let go is open, pressed is bent.", "按行程控制：松开为张开，按到底为弯曲。";
-        PadAction::CloseGap => "Close to a gap", "按间距捏合", "By amount: let go is 120 mm between the pads of thumb and index, pressed is 3 mm. Other triggers and sticks are ignored then.", "按行程控制：松开为拇指与食指指腹相距 120 mm，按到底为 3 mm。此时其他扳机与摇杆不起作用。";
-        PadAction::RotateThumb => "Rotate thumb", "旋转拇指", "Left and right push the thumb while it is held; let go, the thumb stays.", "左右推动时旋转拇指；松开后拇指保持不动。";
+        PadAction::BendThumb => "Bend thumb", "弯曲大拇指", "By amount: let go is open, pressed is bent.", "按行程控制：松开为张开，按到底为弯曲。";
+        PadAction::CloseGap => "Close to a gap", "按间距捏合", "By amount: let go is 120 mm between the pads of thumb and index, pressed is 3 mm. Other triggers and sticks are ignored then.", "按行程控制：松开为大拇指与食指指腹相距 120 mm，按到底为 3 mm。此时其他扳机与摇杆不起作用。";
+        PadAction::RotateThumb => "Rotate thumb", "旋转大拇指", "Left and right push the thumb while it is held; let go, the thumb stays.", "左右推动时旋转大拇指；松开后大拇指保持不动。";
         PadAction::ChooseFingers => "Choose fingers", "选择手指", "At rest all four. Left, up, right and down choose index, middle, ring and little finger.", "居中时为四指；向左、上、右、下分别选择食指、中指、无名指、小拇指。";
     }
 }

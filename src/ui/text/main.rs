@@ -6,7 +6,7 @@ use crate::ui::style::phrase::texts;
 
 texts! {
     TAB_COMPARE: "Compare", "对比";
-    TAB_TUNE: "Tune", "整定";
+    TAB_TUNE: "Tune", "调参";
     EXHIBIT_NOT_BEGUN: "Cannot start the exhibition: connect a hand and finish the open task first.", "无法进入展示：请先连接灵巧手，并结束正在进行的操作。";
     SERIES_RUNS: "A trial series is running. Stop it first.", "正在运行抓取试验：请先停止。";
     SIMULATED: "SIMULATED", "仿真", "This is the built-in hand. No real hand is connected.", "这是内置的仿真手，没有连接真实的灵巧手。";
@@ -52,7 +52,7 @@ texts! {
     UNREACHABLE_TITLE: "NO CONNECTION", "无法连接";
     ALARM_TITLE: "STOP NOT CONFIRMED", "停止未确认", "Feedback does not show rest: the hand may still move. Hold is being repeated. Cut the 24 V supply.", "反馈未显示静止：灵巧手可能仍在运动。正在重复发送保持指令。请切断 24 V 电源。";
     DOUBT_TITLE: "FEEDBACK IN DOUBT", "反馈可疑", "Look at the hand, and cut the 24 V supply if it moves: feedback is frozen while motion is commanded, and no stop can be confirmed. Each joint is held at its estimated position.", "请查看灵巧手，若仍在运动请切断 24 V 电源：已发出运动指令，但反馈毫无变化，无法确认停止。各自由度按速度与时间推算的位置保持。";
-    OTHER_CONTROLLER_TITLE: "ANOTHER CONTROLLER", "另有控制器", "Another program or master talks to this hand, and the two disturb each other. Close it, or arm again if you want both. If there is none, the hand restarted by itself.", "另有程序或主站正在与此灵巧手通信，两者会互相干扰。请关闭它，或再次使能以确认继续。如果没有，则是灵巧手自行重启过。";
+    OTHER_CONTROLLER_TITLE: "ANOTHER CONTROLLER", "另有控制器", "Another program or master talks to this hand, and the two disturb each other. Close it, or arm again if you want both. If there is none, the hand restarted by itself.", "另有程序或主站正在与此灵巧手通讯，两者会互相干扰。请关闭它，或再次使能以确认继续。如果没有，则是灵巧手自行重启过。";
     OTHER_WROTE: "It wrote {}.", "它写入了 {}。";
     NOT_TAKEN_TITLE: "SETPOINT NOT TAKEN", "设置值未生效", "The hand holds another setpoint than was sent, and no other writer was seen: it ignores or limits it.", "灵巧手保持的设置值与发送的不同，且未发现其他写入：它忽略或限制了该值。";
     SETPOINT_WROTE: "{} {}: {}, we wrote {}", "{} {}：{}，我方写入 {}";
@@ -64,7 +64,7 @@ texts! {
     IDLE_TITLE: "ARMED", "已使能", "No command for", "未收到指令已有";
     STALE_TITLE: "OLD VALUES", "数据过时", "No fresh feedback for", "没有新反馈已有";
 
-    TAB_LIVE: "Live", "总览";
+    TAB_LIVE: "Live", "实时";
     TAB_TOUCH: "Touch", "触觉";
     TAB_FAULTS: "Faults", "故障";
     TAB_POSES: "Poses", "姿态";

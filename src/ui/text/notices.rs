@@ -182,7 +182,7 @@ pub(crate) fn notice(look: Look, what: &NoticeKind) -> String {
                     "Not tared: {finger} is touched ({newtons:.1} N). Let go of everything, then tare."
                 ),
                 Language::Zh => {
-                    format!("未去皮：{finger}正在受力（{newtons:.1} N）。请先松开物体再去皮。")
+                    format!("未清零：{finger}正在受力（{newtons:.1} N）。请先松开物体再清零。")
                 }
             }
         }

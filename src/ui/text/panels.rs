@@ -44,7 +44,7 @@ texts! {
     MARK_DISARMED: "Disarmed", "取消使能";
     MARK_HELD: "At rest", "静止";
 
-    TOUCH: "Fingertips", "指尖触觉", "Pads show capacitance above the zero: the first untouched reading, or the last taring. All fingers have one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对零点的电容增量（零点为首次未受力读数或最近一次去皮），所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
+    TOUCH: "Fingertips", "指尖触觉", "Pads show capacitance above the zero: the first untouched reading, or the last taring. All fingers have one scale. The circle is the normal force, the arrow the tangential force (up = towards the tip), the halo the proximity.\nWhich channel belongs to which pad is not documented.", "各区显示相对零点的电容增量（零点为首次未受力读数或最近一次清零），所有手指同一标尺。圆的大小为法向力，箭头为切向力（向上为指尖方向），光晕为接近值。\n通道与区域的对应关系手册没有说明。";
     TOUCH_SCALE: "0 to {}k counts", "0 至 {}k 计数";
     TOUCH_NO_ZERO: "No zero", "无零点", "No zero yet: let go of the fingertips.", "尚无零点：请松开指尖。";
     TOUCH_NORMAL: "Normal", "法向";
@@ -74,10 +74,10 @@ texts! {
     GRIP_NOTES: "Grip details", "抓握详情";
     FINGER_TROUBLE: "trouble at the drawn finger", "图旁状况";
     TOUCH_SCALE_END: "end of the heat scale", "热度标尺上限";
-    TARE_ALL: "Tare all", "全部去皮", "Zeroes all channels here. Readings and recordings stay as the hand sends them.", "所有通道从当前读数起算。原始读数与记录不变。";
-    TARE_ONE: "Tare", "去皮", "Zeroes the channels of the chosen fingertip.", "所选指尖的通道从当前读数起算。";
-    TARE_UNDO: "Undo", "撤销", "Undoes the last taring.", "撤销最近一次去皮。";
-    TARE_NOTHING: "Nothing was tared.", "还没有去皮。";
+    TARE_ALL: "Tare all", "全部清零", "Zeroes all channels here. Readings and recordings stay as the hand sends them.", "所有通道从当前读数起算。原始读数与记录不变。";
+    TARE_ONE: "Tare", "清零", "Zeroes the channels of the chosen fingertip.", "所选指尖的通道从当前读数起算。";
+    TARE_UNDO: "Undo", "撤销", "Undoes the last taring.", "撤销最近一次清零。";
+    TARE_NOTHING: "Nothing was tared.", "还没有清零。";
     TIP: "Fingertip", "指尖";
     TIP_UP: "tip", "指尖";
     TIP_NORMAL: "Normal", "法向力";
@@ -140,11 +140,11 @@ texts! {
     PORT_PICK_TIP: "Uses this port.", "选用此串口。";
     EXPERT: "For experts", "专家选项";
     SCAN_HERE: "Scan", "扫描", "Looks for hands here and nowhere else, at all speeds and in all protocols. It only reads.", "仅在此处以各种波特率与协议查找灵巧手。只读取，不写入。";
-    CONNECT: "Connect", "连接", "Connects to this hand. Connecting writes nothing.", "开始与该灵巧手通信。连接时不会写入任何内容。";
-    DISCONNECT: "Disconnect", "断开", "Disconnects. The hand keeps its targets.", "停止通信。灵巧手保持上一次的设置。";
+    CONNECT: "Connect", "连接", "Connects to this hand. Connecting writes nothing.", "开始与该灵巧手通讯。连接时不会写入任何内容。";
+    DISCONNECT: "Disconnect", "断开", "Disconnects. The hand keeps its targets.", "停止通讯。灵巧手保持上一次的设置。";
     ADDRESS_WRONG: "Not an IP address: four numbers 0 to 255, as 192.168.11.210", "不是 IP 地址：应为四个 0 至 255 的数字，例如 192.168.11.210";
     LINK_NOW: "Link now", "当前连接";
-    ENDPOINT: "Endpoint", "通信地址";
+    ENDPOINT: "Endpoint", "通讯地址";
     SINCE: ", for", "，已持续";
     ECHOES: "The adapter echoes: what is sent comes back, and is left out.", "适配器有回显：发送的内容会返回，已自动忽略。";
     SLOW: "Replies take up to {} ms: feedback and a stop lag as much.", "应答最长需要 {} ms：反馈与停止也会相应推迟。";
@@ -185,7 +185,7 @@ texts! {
     FORCES: "Force, N", "力 N";
     CHANNELS: "Channels, counts", "通道，计数";
     RAW: "Raw", "原始", "Channels as the hand sends them.", "按原始值显示各通道。";
-    TARED: "Tared", "去皮后", "Channels from their rest: the last taring, or the first reading.", "相对静止值显示：最近一次去皮，或首次读数。";
+    TARED: "Tared", "清零后", "Channels from their rest: the last taring, or the first reading.", "相对静止值显示：最近一次清零，或首次读数。";
     LAST_10_S: "10 s", "10 秒";
     LAST_MINUTE: "1 min", "1 分钟";
     LAST_10_MIN: "10 min", "10 分钟";
@@ -193,9 +193,9 @@ texts! {
     NO_NUMBER: "not a number", "非数值";
     BEYOND: "out of range", "超出范围", "The manual ends at 20 N. The number is shown as the hand sent it.", "手册上限为 20 N。数值按灵巧手发送的原样显示。";
     SLIP: "Slip", "打滑";
-    TARED_NAME: "Taring of the chosen fingertip", "所选指尖的去皮状态";
+    TARED_NAME: "Taring of the chosen fingertip", "所选指尖的清零状态";
     NOT_TARED: "Zero: first reading", "零点：首次读数";
-    KEPT_TARE: "Take the kept taring", "采用已保存的去皮", "Counts from what was tared at this hand in an earlier session. Refused while a fingertip is touched.", "采用此前对同一灵巧手保存的去皮零点。指尖受力时拒绝。";
+    KEPT_TARE: "Take the kept taring", "采用已保存的清零", "Counts from what was tared at this hand in an earlier session. Refused while a fingertip is touched.", "采用此前对同一灵巧手保存的清零零点。指尖受力时拒绝。";
     NO_ZERO: "No zero yet: it is touched", "尚无零点：正在受力";
     AREA_TIP: "Wheel: zoom in time. Drag: move. Shift and drag: zoom to what is marked. Double-click: follow the newest again.", "滚轮：时间缩放。拖动：平移。按住 Shift 拖动：放大所选范围。双击：重新跟随最新数据。";
     NORMAL: "Normal force at the tips, N", "指尖法向力 N";
@@ -222,17 +222,17 @@ texts! {
     MEAN: "mean", "平均";
     APART: "Time between the cursors", "游标间隔";
     FIGURES: "Figures of the next plot", "下一曲线的数值", "The figures below are of this plot. Press for the next one, or click into a plot.", "下方为该曲线的数值。按下切换到下一条，或点击曲线区。";
-    NOTE: "Note", "标记", "Puts a line with your words into the plots, at this moment. Key: N", "在当前时刻添加一条带文字的标记线。快捷键：N";
-    NOTE_NAME: "Make a note", "添加标记", "Puts a line with your words into the plots, at this moment. Key: N", "在当前时刻添加一条带文字的标记线。快捷键：N";
-    NOTE_AT: "Note at", "标记时刻";
-    NOTE_FIELD: "Words of the note", "标记内容";
+    NOTE: "Note", "备注", "Puts a line with your words into the plots, at this moment. Key: N", "在当前时刻添加一条带文字的备注线。快捷键：N";
+    NOTE_NAME: "Make a note", "添加备注", "Puts a line with your words into the plots, at this moment. Key: N", "在当前时刻添加一条带文字的备注线。快捷键：N";
+    NOTE_AT: "Note at", "备注时刻";
+    NOTE_FIELD: "Words of the note", "备注内容";
     NOTE_HINT: "Enter keeps it. Esc drops it.", "按 Enter 保存。Esc 取消。";
     NOTE_HINT_MOVING: "Enter keeps it. Esc stops the hand.", "按 Enter 保存。Esc 停止灵巧手。";
-    NOTE_KEEP: "Keep", "保存", "Puts the note where its key was pressed.", "把标记放在按键时刻。";
-    NOTE_CANCEL: "Cancel", "取消", "Makes no note.", "不添加标记。";
-    NOTES: "Notes", "标记列表";
-    NOTE_SHOW: "Show the note", "显示标记", "Shows this moment in the plots.", "在曲线中显示该时刻。";
-    NOTE_DELETE: "Delete the note", "删除标记", "Removes the note from the plots.", "从曲线中删除该标记。";
+    NOTE_KEEP: "Keep", "保存", "Puts the note where its key was pressed.", "把备注放在按键时刻。";
+    NOTE_CANCEL: "Cancel", "取消", "Makes no note.", "不添加备注。";
+    NOTES: "Notes", "备注列表";
+    NOTE_SHOW: "Show the note", "显示备注", "Shows this moment in the plots.", "在曲线中显示该时刻。";
+    NOTE_DELETE: "Delete the note", "删除备注", "Removes the note from the plots.", "从曲线中删除该备注。";
 
     /// Behaviour of the built-in hand, with its name in endpoints.
     fn scenario(Scenario) {
@@ -316,8 +316,8 @@ pub(crate) fn zero(look: Look, rest: TareZero, now: Moment) -> String {
     match (look.language, kept) {
         (Language::En, false) => format!("Tared {ago} ago"),
         (Language::En, true) => format!("Tared {ago} ago, kept"),
-        (Language::Zh, false) => format!("{ago}前去皮"),
-        (Language::Zh, true) => format!("{ago}前去皮（已保存）"),
+        (Language::Zh, false) => format!("{ago}前清零"),
+        (Language::Zh, true) => format!("{ago}前清零（已保存）"),
     }
 }
 
@@ -326,6 +326,6 @@ pub(crate) fn stored_tare(look: Look, age: Duration) -> String {
     let age = format::age(age);
     match look.language {
         Language::En => format!("Taring of {age} ago"),
-        Language::Zh => format!("{age}前的去皮"),
+        Language::Zh => format!("{age}前的清零"),
     }
 }

@@ -10,8 +10,8 @@ texts! {
     SHIPPED_ABOUT: "These come with the program and cannot be changed or lost. Copy one to change it: your own by the same name takes its place.", "这些随程序提供，不会被更改或丢失。复制后即可修改：同名的自有姿态会取而代之。";
     COPY: "Copy", "复制", "Puts a copy among your own, to be changed.", "复制一份到自己的姿态中，以便修改。";
     COPY_REACTION: "Reactions are written in a file, see the page Files of the manual.", "触摸反应写在文件中，见手册“文件”一页。";
-    HIDE: "Hide", "隐藏", "Hides it in the Live view.", "不在总览中显示。";
-    SHOW: "Show", "显示", "Shows it in the Live view.", "重新在总览中显示。";
+    HIDE: "Hide", "隐藏", "Hides it in the Live view.", "不在实时中显示。";
+    SHOW: "Show", "显示", "Shows it in the Live view.", "重新在实时中显示。";
     OVERRIDDEN: "One of your own by the same name is shown in its place.", "已由同名的自有姿态代替。";
     IN_HAND: "In the hand", "手内手势";
     SECTION_TIP: "Shows this part.", "显示这一部分。";
@@ -22,25 +22,25 @@ texts! {
     EVERY: "All poses", "全部姿态", "Opens all poses, sequences and gestures.", "打开全部姿态、序列与手势。";
 
     STRIP_GESTURES: "Gestures", "手内手势", "Shows the gestures that are stored in the hand.", "显示手内存储的手势。";
-    GRIP_SIZE: "Grip by size", "按尺寸抓握", "Closes thumb and index to a gap in mm, and measures the object held.", "让拇指与食指合到指定的间距（mm），并显示所夹物体的尺寸。";
-    GAP: "Gap, mm", "间距 mm", "Between the pads of thumb and index, by the model of the hand.", "拇指与食指指腹之间的距离，按手的模型计算。";
+    GRIP_SIZE: "Grip by size", "按尺寸抓握", "Closes thumb and index to a gap in mm, and measures the object held.", "让大拇指与食指合到指定的间距（mm），并显示所夹物体的尺寸。";
+    GAP: "Gap, mm", "间距 mm", "Between the pads of thumb and index, by the model of the hand.", "大拇指与食指指腹之间的距离，按手的模型计算。";
     GAP_WISH: "Not armed: the drawn hand shows where it would go.", "未使能：仅在图上显示将到达的位置。";
-    GAP_OPEN: "Open for the grip", "先张开", "Opens thumb and index to 120 mm. From there they go to any gap without meeting.", "把拇指与食指张开到 120 mm，之后可到任意间距而不相碰。";
+    GAP_OPEN: "Open for the grip", "先张开", "Opens thumb and index to 120 mm. From there they go to any gap without meeting.", "把大拇指与食指张开到 120 mm，之后可到任意间距而不相碰。";
     GAP_KEEP: "Keep as pose", "存为姿态", "Adds a pose by size with this gap. Nothing is sent.", "以此间距添加一个按尺寸的姿态，不发送任何内容。";
     GAP_POSE: "Pinch {} mm", "捏 {} mm";
-    GAP_CLOSED: "Open for the grip first: from here thumb and index could meet.", "请先张开：从当前位置出发，拇指与食指可能相碰。";
-    HELD_SIZE: "Held", "夹持尺寸", "The ball that touches both pads where thumb and index are, while they alone hold something; where their edges meet, the distance of the pads. Two blocks of known size calibrate it.", "仅拇指与食指夹住物体时，与两个指腹同时相切的球的直径；指腹边缘相接时为指腹间距。用两个已知尺寸的块校准后，为同类物体的尺寸。";
-    HELD_NONE: "nothing between thumb and index", "拇指与食指之间没有物体";
+    GAP_CLOSED: "Open for the grip first: from here thumb and index could meet.", "请先张开：从当前位置出发，大拇指与食指可能相碰。";
+    HELD_SIZE: "Held", "夹持尺寸", "The ball that touches both pads where thumb and index are, while they alone hold something; where their edges meet, the distance of the pads. Two blocks of known size calibrate it.", "仅大拇指与食指夹住物体时，与两个指腹同时相切的球的直径；指腹边缘相接时为指腹间距。用两个已知尺寸的块校准后，为同类物体的尺寸。";
+    HELD_NONE: "nothing between thumb and index", "大拇指与食指之间没有物体";
     HELD_BALL: "a ball of about {} mm, by the model", "约 {} mm 的球（按模型）";
     HELD_PADS: "pads about {} mm apart, by the model", "指腹相距约 {} mm（按模型）";
     HELD_MEASURED: "about {} mm, measured", "约 {} mm（已校准）";
     BLOCK: "Size of a block that is held, mm", "所夹块的真实尺寸 mm", "Stores its size and the readings. Two blocks that differ by 10 mm or more calibrate the sizes.", "记下其尺寸与手的读数。两个相差 10 mm 以上的块即可校准。";
-    BLOCK_NOT_HELD: "Let thumb and index alone hold the block.", "请仅用拇指与食指夹住该块。";
+    BLOCK_NOT_HELD: "Let thumb and index alone hold the block.", "请仅用大拇指与食指夹住该块。";
     BLOCKS: "Blocks measured: {}", "已测块：{}";
     BLOCKS_NONE: "none, 2 are needed", "无，需要 2 个";
     BLOCKS_FORGET: "Forget", "清除", "Sizes of this hand are by the model again.", "此手的尺寸恢复为按模型计算。";
     BLOCK_SIZE: "A block has 1 to 120 mm.", "块的尺寸应为 1 到 120 mm。";
-    BLOCK_UNLIKELY: "The two blocks do not fit the readings. Measure both again, between thumb and index only.", "两个块与手的读数不符。请仅用拇指与食指夹住，重新测量两个块。";
+    BLOCK_UNLIKELY: "The two blocks do not fit the readings. Measure both again, between thumb and index only.", "两个块与手的读数不符。请仅用大拇指与食指夹住，重新测量两个块。";
     CAPTURE: "Save pose", "记录姿态", "Keeps the pose that the hand has now. Nothing is sent.", "保存灵巧手当前的姿态，不发送任何内容。";
     CAPTURE_UNKNOWN: "The pose is not known: an angle is missing or old.", "姿态未知：有角度缺失或已过时。";
     EMPTY_TITLE: "No poses of your own yet", "还没有自己的姿态";
@@ -62,7 +62,7 @@ texts! {
     RECALL_NAME: "Go to", "执行姿态";
     NAME: "Name", "名称";
     ANGLE: "angle", "角度", "0 bent to 1000 open.", "0 弯曲，1000 张开。";
-    BY_SIZE: "By size", "按尺寸", "A pose by size: thumb and index go to a gap, along the path on which their pads meet.", "按尺寸的姿态：拇指与食指沿指腹相对的路径到达指定间距。";
+    BY_SIZE: "By size", "按尺寸", "A pose by size: thumb and index go to a gap, along the path on which their pads meet.", "按尺寸的姿态：大拇指与食指沿指腹相对的路径到达指定间距。";
     ANGLE_OF_GAP: "This angle follows from the gap.", "此角度由间距决定。";
     LEAVE_PINCHES: "A grip by size needs this joint.", "按尺寸抓握需要此自由度。";
     TOLD_BY: "Grip told by: {}", "抓握判断：{}", "Thresholds that a file sets for this pose. They apply while this pose is the target.", "文件为该姿态设定的判断阈值；仅在执行该姿态时生效。";
@@ -82,7 +82,7 @@ texts! {
     NEEDS_POSES: "Save a pose first.", "请先记录姿态。";
     STEPS_EMPTY: "No steps yet: add a pose below.", "还没有步骤：请在下方添加姿态。";
     ADD: "Add", "添加", "Adds this pose as the last step.", "把该姿态添加为最后一步。";
-    ADD_GRIP: "Add grip by size", "添加按尺寸抓握", "Adds a step that closes thumb and index to a gap, along the path on which their pads meet.", "添加一步：让拇指与食指沿指腹相对的路径合到指定间距。";
+    ADD_GRIP: "Add grip by size", "添加按尺寸抓握", "Adds a step that closes thumb and index to a gap, along the path on which their pads meet.", "添加一步：让大拇指与食指沿指腹相对的路径合到指定间距。";
     DWELL: "dwell, ms", "停留 ms", "Time at the pose before the next step, milliseconds.", "到达后停留的时间，毫秒。";
     LIMIT: "limit, ms", "限时 ms", "A pose that is not reached within this time counts as reached, milliseconds.", "超过此时间仍未到达时，视为到达，毫秒。";
     ADD_HOLD: "Add hold", "添加保持", "Adds a step that holds what the hand has, between two forces, for its time.", "添加一步：在两个力之间保持手中的物体，持续设定时间。";
@@ -113,7 +113,7 @@ texts! {
     END_PERSON: "Ended", "已结束";
     END_LOST: "Ended: the link was lost", "已结束：连接断开";
     END_TAKEN: "Ended: moved in another way", "已结束：改为其他操作";
-    END_LOCKED: "Ended: a grip by size needs index and thumb, and one of them is locked", "已结束：按尺寸抓握需要食指与拇指，其中有自由度已锁定";
+    END_LOCKED: "Ended: a grip by size needs index and thumb, and one of them is locked", "已结束：按尺寸抓握需要食指与大拇指，其中有自由度已锁定";
     END_NOT_HOLDING: "Ended: the hand is not known to hold anything. Grip: {}.", "已结束：未确认握住物体。抓握：{}。";
     PICTURE: "Picture of the pose", "姿态图";
 
@@ -123,7 +123,7 @@ texts! {
 
     /// Name of a kind of grip.
     fn kind(GripKind) {
-        GripKind::Pinch => "Pinch", "捏", "Between the pads of thumb and index.", "在拇指与食指的指腹之间。";
+        GripKind::Pinch => "Pinch", "捏", "Between the pads of thumb and index.", "在大拇指与食指的指腹之间。";
         GripKind::ThreeFingers => "Three fingers", "三指";
         GripKind::AllFingers => "All fingers", "全指";
         GripKind::Around => "Around", "环握";
@@ -131,8 +131,8 @@ texts! {
 
     /// Reason why a kind of grip has no gap.
     fn no_gap(NotOffered) {
-        NotOffered::BesideMiddle => "There is no gap: the thumb faces the index only, and stays 25 mm beside the middle finger's pad.", "没有间距可言：拇指只正对食指，与中指指腹始终错开 25 mm。";
-        NotOffered::BesideOthers => "There is no gap: the thumb faces the index only, and stays 46 mm beside the ring finger's pad and 66 mm beside the little finger's.", "没有间距可言：拇指只正对食指，与无名指指腹始终错开 46 mm，与小指指腹错开 66 mm。";
+        NotOffered::BesideMiddle => "There is no gap: the thumb faces the index only, and stays 25 mm beside the middle finger's pad.", "没有间距可言：大拇指只正对食指，与中指指腹始终错开 25 mm。";
+        NotOffered::BesideOthers => "There is no gap: the thumb faces the index only, and stays 46 mm beside the ring finger's pad and 66 mm beside the little finger's.", "没有间距可言：大拇指只正对食指，与无名指指腹始终错开 46 mm，与小指指腹错开 66 mm。";
         NotOffered::OnPalm => "There is no gap: the fingers close on the palm, and how far they get depends on where the object lies.", "没有间距可言：手指向手掌合拢，能合多少取决于物体所在的位置。";
     }
 }

@@ -63,7 +63,7 @@ texts! {
     KEY_ARM: "Arm or disarm", "使能或取消使能";
     KEY_LINK: "Link the fingers", "四指联动";
     KEY_UNIT: "Unit of angles", "角度单位";
-    KEY_UNDO_TARE: "Take taring back", "撤销去皮";
+    KEY_UNDO_TARE: "Take taring back", "撤销清零";
     KEY_NOTE: "Write a note", "写备注";
     KEY_LANGUAGE: "English or Chinese", "中文或英文";
     KEY_LIST: "This list", "本列表";
@@ -72,7 +72,7 @@ texts! {
     COMMANDS: "Commands", "命令", "Type part of a name: action, view or pose", "输入名称的一部分：操作、页面、姿态";
     COMMANDS_NONE: "No match.", "没有匹配的命令。";
     KEY_MOTION: "Motion", "运动";
-    KEY_JOINTS: "Joint that the arrows move", "方向键控制的关节";
+    KEY_JOINTS: "Joint that the arrows move", "方向键控制的自由度";
     KEY_MEASURING: "Measuring", "测量";
     KEY_WINDOW: "Window", "窗口";
     KEY_ZOOM_IN: "Everything larger", "放大";

@@ -37,7 +37,7 @@ pub(crate) const fn disarmed_zh(why: Disarmed) -> &'static str {
         Disarmed::LinkLost => "已取消使能：连接断开。",
         Disarmed::Stale => "已取消使能：反馈过时。",
         Disarmed::OtherController => {
-            "已取消使能：另有控制器正在与此灵巧手通信。再次使能以确认继续。"
+            "已取消使能：另有控制器正在与此灵巧手通讯。再次使能以确认继续。"
         }
         Disarmed::FrozenFeedback => "已取消使能：已发出运动指令，但灵巧手的反馈毫无变化。",
         Disarmed::Resume => "已取消使能：本机曾休眠。",

@@ -366,7 +366,8 @@ async fn the_hands_that_a_user_opened_are_open_at_the_next_start() {
     // The last one is shown; each is only read.
     assert_eq!(open(&app).first(), before.last());
     let mut after = open(&app);
-    (before.sort_unstable(), after.sort_unstable());
+    before.sort_unstable();
+    after.sort_unstable();
     assert_eq!(after, before);
     for hand in app.state().hands.iter() {
         let connection = &hand.connection;

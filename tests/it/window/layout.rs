@@ -15,7 +15,7 @@ const ENGLISH: Names = Names {
     stop: "STOP",
 };
 const CHINESE: Names = Names {
-    tabs: ["总览", "整定", "录制", "共享", "灵巧手"],
+    tabs: ["实时", "调参", "录制", "共享", "灵巧手"],
     stop: "停止",
 };
 

@@ -27,7 +27,7 @@ texts! {
     ARMED_ANEW: "The hand was rearmed.", "灵巧手已重新使能。";
     TAKEN_OVER: "Another controller has control of the hand.", "控制权已转给其他控制方。";
     DRIVE_FAULT: "A drive reports a fault.", "有驱动器报告故障。";
-    OTHER_CONTROLLER: "Another controller talks to the hand.", "另有控制器正在与此灵巧手通信。";
+    OTHER_CONTROLLER: "Another controller talks to the hand.", "另有控制器正在与此灵巧手通讯。";
     OTHER_WROTE: "Another controller wrote {}.", "另有控制器写入 {}。";
     LINK_LOST: "The link was lost.", "连接断开。";
     FAULT: "{} reports a fault: {}.", "{}报告故障：{}。";
