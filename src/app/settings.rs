@@ -346,9 +346,9 @@ impl RecordingSettings {
 pub struct Settings {
     /// Endpoint of the last hand, as text.
     pub endpoint: Option<String>,
-    /// Endpoints of the hands that were open beside it, as text.
+    /// Endpoints of all open hands in their order, as text; empty for a single one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub beside: Vec<String>,
+    pub open: Vec<String>,
     /// Endpoints that the user connected to, newest first, as text.
     pub recent: Vec<String>,
     pub theme: Theme,

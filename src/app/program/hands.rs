@@ -71,11 +71,22 @@ pub(super) fn remember_open(state: &mut State) {
     if !state.hands.are_chosen() {
         return;
     }
-    let last = state.settings.endpoint.as_ref();
     let open = state.hands.iter().filter(|hand| !hand.is_removed);
     let open = open.filter_map(|hand| hand.connection.endpoint.as_ref());
-    let open = open.map(ToString::to_string);
-    state.settings.beside = open.filter(|text| Some(text) != last).collect();
+    let open: Vec<String> = open.map(ToString::to_string).collect();
+    state.settings.open = if open.len() > 1 { open } else { Vec::new() };
+}
+
+/// Shows the hand of this endpoint, if it is open.
+pub(super) fn show_last(state: &mut State, endpoint: Option<&str>) {
+    let is_last = |hand: &&Hand| {
+        let own = hand.connection.endpoint.as_ref().map(ToString::to_string);
+        own.is_some() && own.as_deref() == endpoint
+    };
+    let last = state.hands.iter().find(is_last);
+    if let Some(slot) = last.map(|hand| hand.label.slot) {
+        state.hands.show(slot);
+    }
 }
 
 /// Ends a dry run, which started at the pose of the hand shown before.

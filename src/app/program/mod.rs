@@ -44,6 +44,7 @@ use crate::hand::{HandCommand, Moment};
 use crate::poses::Play;
 use crate::record::EventKind;
 use crate::transport::Endpoint;
+use std::collections::VecDeque;
 use std::time::Duration;
 
 /// Far longer than a series takes to end and be written, on a working disk.
@@ -83,13 +84,16 @@ impl App {
 
     /// Opens a hand at start: the given one, else those of the last session, else the built-in one. Remembers nothing.
     pub fn open(&mut self, endpoint: Option<Endpoint>, now: Moment) {
-        let beside = match endpoint {
-            Some(_) => Vec::new(),
-            None => self.state.settings.beside.clone(),
-        };
-        open(&mut self.state, endpoint, &self.env, now);
-        let beside = beside.iter().filter_map(|text| text.parse().ok());
-        open_beside(&mut self.state, beside.collect(), &self.env, now);
+        let settings = &self.state.settings;
+        let known = settings.open.iter().filter_map(|text| text.parse().ok());
+        let mut known: VecDeque<Endpoint> = known.collect();
+        let shown = settings.endpoint.clone();
+        let first = endpoint.clone().or_else(|| known.pop_front());
+        open(&mut self.state, first, &self.env, now);
+        if endpoint.is_none() {
+            open_beside(&mut self.state, known.into(), &self.env, now);
+            hands::show_last(&mut self.state, shown.as_deref());
+        }
     }
 
     /// Opens further hands at start, each in its own slot; the first stays shown. Remembers nothing.

@@ -6,7 +6,7 @@ use crate::hand::gap::HeldSize;
 use crate::hand::grip::{Grip, GripState};
 use crate::hand::heat::WARM;
 use crate::hand::kinematics::Side;
-use crate::hand::{Dof, Finger, Quantity};
+use crate::hand::{Dof, Finger, PerFinger, Quantity};
 use crate::motion::hold::HoldPhase;
 use crate::ui::hand::view::{HandPoints, HandView};
 use crate::ui::kit::DriveWords;
@@ -65,8 +65,9 @@ pub(crate) fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, view: &HandView, place: R
     let Some(points) = view.points().filter(|_| place.height() >= LEAST) else {
         return;
     };
+    let figures = Figure::all(place, &points);
     for finger in Finger::ALL {
-        figure_ui(ui, pane, finger, &Figure::new(place, &points, finger));
+        figure_ui(ui, pane, finger, &figures[finger]);
     }
 }
 
@@ -79,7 +80,38 @@ pub(super) struct Figure {
 }
 
 impl Figure {
-    pub(super) fn new(place: Rect, points: &HandPoints, finger: Finger) -> Self {
+    /// The labels of all fingers. Each line ends at its fingertip, unless a finger is bent so far that lines would cross or pass over
+    /// another finger: then those of the outer fingers end at their bases.
+    pub(super) fn all(place: Rect, points: &HandPoints) -> PerFinger<Self> {
+        let is_bent = |finger| {
+            let (tip, knuckle) = (points.tips[finger], points.knuckles[finger]);
+            let aside = (tip.x - knuckle.x).abs();
+            tip.y > knuckle.y || aside > ASIDE * points.bounds.width()
+        };
+        let figure = |finger, end| Self::new(place, points, finger, end);
+        let outer = [Finger::Little, Finger::Ring, Finger::Middle];
+        let paths = outer.map(|finger| figure(finger, points.tips[finger]).path);
+        let [little, ring, middle] = paths;
+        let are_bent = outer.into_iter().any(is_bent)
+            || cross(little, ring)
+            || cross(ring, middle)
+            || cross(little, middle);
+        PerFinger::from_fn(|finger| {
+            let at_knuckle = match finger {
+                Finger::Little | Finger::Ring | Finger::Middle => are_bent,
+                Finger::Index => is_bent(finger),
+                Finger::Thumb => false,
+            };
+            let ends = if at_knuckle {
+                points.knuckles
+            } else {
+                points.tips
+            };
+            figure(finger, ends[finger])
+        })
+    }
+
+    fn new(place: Rect, points: &HandPoints, finger: Finger, end: Pos2) -> Self {
         let (slot, on_left) = slot(place, points, finger);
         let lines = [0.0, 1.0, 2.0].map(|line| {
             let top = slot.top() + line * theme::TEXT_LINE;
@@ -90,15 +122,6 @@ impl Figure {
             (Finger::Thumb, _) => (first.center_top(), vec2(0.0, -theme::STEP)),
             (_, true) => (second.right_center(), vec2(theme::STEP, 0.0)),
             (_, false) => (second.left_center(), vec2(-theme::STEP, 0.0)),
-        };
-        let (tip, knuckle) = (points.tips[finger], points.knuckles[finger]);
-        // Lines to fingertips that are side by side would cross.
-        let aside = (tip.x - knuckle.x).abs();
-        let is_bent = tip.y > knuckle.y || aside > ASIDE * points.bounds.width();
-        let end = match finger {
-            Finger::Ring | Finger::Little => knuckle,
-            Finger::Middle | Finger::Index if is_bent => knuckle,
-            Finger::Middle | Finger::Index | Finger::Thumb => tip,
         };
         let knee = from + 3.0 * way;
         Self {
@@ -123,6 +146,19 @@ impl Figure {
         let named = pane.look.pair(name, pane.look.tr(main::LOCKED));
         lock.named(&named).put(ui, place);
     }
+}
+
+/// True if two lines cross.
+pub(super) fn cross(one: [Pos2; 3], other: [Pos2; 3]) -> bool {
+    let turned = |a: Pos2, b: Pos2, c: Pos2| (b - a).rot90().dot(c - a) > 0.0;
+    let parts = |[from, knee, end]: [Pos2; 3]| [[from, knee], [knee, end]];
+    let pairs = parts(one)
+        .into_iter()
+        .flat_map(|one| parts(other).map(|other| (one, other)));
+    let mut crossed = pairs.map(|([a, b], [c, d])| {
+        turned(a, b, c) != turned(a, b, d) && turned(c, d, a) != turned(c, d, b)
+    });
+    crossed.any(|is_crossed| is_crossed)
 }
 
 /// Rectangle of a finger's label, and true if it is on the left. It does not change while the hand moves.

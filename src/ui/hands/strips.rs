@@ -17,10 +17,8 @@ use egui::{Color32, Rect, Ui, pos2, vec2};
 /// Height of a strip.
 const STRIP: f32 = 44.0;
 /// Maximum and minimum width of a strip; if a row of minimum width does not fit, there are two rows.
-const WIDTH_MAX: f32 = 280.0;
+const WIDTH_MAX: f32 = 252.0;
 const WIDTH_LEAST: f32 = 140.0;
-/// Width of a strip beside other content.
-const WIDTH_BESIDE: f32 = 252.0;
 /// Width of a strip's STOP.
 const STOP: f32 = 60.0;
 /// Width of a hand's number.
@@ -54,7 +52,7 @@ impl StripRows {
 /// Width of the strips of `count` hands beside other content.
 pub(crate) fn width(count: usize) -> f32 {
     let count = f32::from(u8::try_from(count).unwrap_or(u8::MAX));
-    count * (WIDTH_BESIDE + theme::GAP) + SWITCH
+    count * (WIDTH_MAX + theme::GAP) + SWITCH
 }
 
 /// Height of the strips of `count` hands, with the space around them.

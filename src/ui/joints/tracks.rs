@@ -145,6 +145,13 @@ pub(crate) fn force_ui(ui: &mut Ui, pane: &mut Pane<'_>, row: Option<&JointRow>)
         track.rough_from = rough.map(Force::get);
         track.peak = hand.readings.peaks.get(row.dof).map(|(grams, _)| grams);
     }
+    let newtons = row.zip(value).and_then(|(row, value)| {
+        let per_g = hand.newtons.per_g(row.dof)?;
+        let newtons = format!("{:.1}", per_g * f64::from(value));
+        Some(look.fill(main::FORCE_NEWTONS, &[&value, &newtons]))
+    });
+    let tip = newtons.map(|newtons| format!("{newtons}\n{}", track.tip));
+    track.tip = tip.as_deref().unwrap_or(track.tip);
     let setting = TrackRow {
         caption: Some(main::FORCE),
         number_name: &named(pane, row, main::NAME_FORCE_NUMBER),

@@ -8,8 +8,8 @@ use crate::ui::theme::{self, Icon};
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{
     Align, Align2, Color32, CornerRadius, Event, FontId, Frame, Id, Layout, Margin, Panel,
-    PointerButton, Popup, PopupCloseBehavior, Pos2, ProgressBar, Rect, Response, RichText, Role,
-    Sense, Stroke, StrokeKind, TouchPhase, Ui, Vec2, WidgetInfo, vec2,
+    PointerButton, Popup, PopupCloseBehavior, Pos2, ProgressBar, Rect, RectAlign, Response,
+    RichText, Role, Sense, Stroke, StrokeKind, TouchPhase, Ui, Vec2, WidgetInfo, vec2,
 };
 use egui_extras::{TableBuilder, TableRow};
 
@@ -673,6 +673,13 @@ impl Pick {
 /// A popup below a button, closed by a click outside it only.
 pub(crate) fn lasting_popup(button: &Response) -> Popup<'_> {
     Popup::menu(button).close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+}
+
+/// The same above the button: it never lies on the tiles below, which move the hand, and its lower edge stays where it is.
+pub(crate) fn popup_above(button: &Response) -> Popup<'_> {
+    lasting_popup(button)
+        .align(RectAlign::TOP_END)
+        .align_alternatives(&[RectAlign::TOP, RectAlign::TOP_START])
 }
 
 /// A menu entry; true if it was pressed.

@@ -181,7 +181,7 @@ impl GestureButton {
 pub(super) fn menu_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let button = Button::text(pane.look, poses::STRIP_GESTURES).ui(ui, pane.look);
     let id = button.id.with("chosen gesture");
-    kit::lasting_popup(&button).width(MENU).show(|ui| {
+    kit::popup_above(&button).width(MENU).show(|ui| {
         let mut chosen: Option<Gesture> = ui.data(|data| data.get_temp(id));
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = egui::vec2(theme::STEP, theme::STEP);

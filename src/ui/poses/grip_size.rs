@@ -19,7 +19,7 @@ const POPUP: f32 = 420.0;
 pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let button = Button::text(look, poses::GRIP_SIZE).ui(ui, look);
-    kit::lasting_popup(&button).width(POPUP).show(|ui| {
+    kit::popup_above(&button).width(POPUP).show(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
         kinds_ui(ui, pane);
         gap_ui(ui, pane);

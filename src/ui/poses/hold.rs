@@ -30,7 +30,7 @@ pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let is_on = pane.hand().running.holds();
     let button = Button::text(look, hold::HOLD).switch(is_on).ui(ui, look);
-    kit::lasting_popup(&button).width(POPUP).show(|ui| {
+    kit::popup_above(&button).width(POPUP).show(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::STEP, theme::STEP);
         forces_ui(ui, pane);
         if pane.hand().running.holds() {

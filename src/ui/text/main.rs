@@ -84,6 +84,7 @@ texts! {
     THUMB_ROTATE: "Thumb rotate", "大拇指旋转";
     ANGLE: "Angle", "角度", "0 = bent (fist), 1000 = open. The handle is the target, the bar the actual angle.\nArrows: 10 steps, with Shift 100.", "0 = 弯曲（握拳），1000 = 张开。圆点为目标，竖条为实际角度。\n方向键每次 10，按住 Shift 每次 100。";
     FORCE: "Force", "力阈值", "The joint stops closing when its force reaches this threshold (grams). The bar is the force now.\nIt stops the drive; it does not regulate force.", "受力到达此阈值（克）时该自由度停止弯曲。色条为当前受力。\n它只让驱动器停止，并不调节力的大小。";
+    FORCE_NEWTONS: "{} g are {} N at this joint.", "此自由度的 {} g 约为 {} N。";
     SPEED: "Speed", "速度", "1000 runs the whole stroke in 600 ms without load.", "1000 表示空载时 600 ms 走完全程。";
     STATUS: "status", "状态";
     NAME_ANGLE_TARGET: "angle target", "角度目标";
@@ -103,7 +104,7 @@ texts! {
     HELD_SPEED: "speed {}", "速度 {}";
     HELD_FORCE: "force {}", "力 {}";
     ARM_SENDS: "; Arm sends {}", "；使能时发送 {}";
-    TAKE_HELD: "Keep the hand's", "沿用手中的值", "Sets speed and force here to what the hand holds. Nothing is sent.", "将此处的速度与力设为灵巧手当前持有的值，不发送任何内容。";
+    TAKE_HELD: "Use the hand's values", "采用手中的值", "Sets speed and force here to what the hand holds. Nothing is sent.", "将此处的速度与力设为灵巧手当前持有的值，不发送任何内容。";
     STAGED: "Not armed: applies on arming.", "未使能：使能后生效。";
     NUMBER_TIP: "Type a number and press Enter. Nothing is sent before.", "输入数字后按回车。回车之前不会发送。";
     LOCK_TIP: "Locks the joint: Open and its slider do not move it.", "锁定：“张开”与滑块都不再移动该自由度。";

@@ -299,34 +299,33 @@ impl Window {
         let room = ui.available_width() - STRIPS_MARGIN.sum().x;
         let height = strips::height(room, hands.count());
         let wanted = strips::width(hands.count());
-        // Few hands and the status share a row where both fit.
+        // Few hands and the status share a row where both fit. The strips stay where they are either way.
         let is_one_row = hands.is_several() && room - wanted >= STATUS_LEAST;
+        if hands.is_several() {
+            let frame = Frame::new().fill(palette.card).inner_margin(STRIPS_MARGIN);
+            top_bar("hands", height, frame).show(ui, |ui| {
+                let place = ui.available_rect_before_wrap();
+                let width = if is_one_row { wanted } else { place.width() };
+                let (strips, status) = place.split_left_right_at_x(place.left() + width);
+                ui.scope_builder(UiBuilder::new().max_rect(strips), |ui| {
+                    let is_on = self.body.shows_all();
+                    if strips::strips_ui(ui, pane, is_free, is_on) {
+                        self.body.show_all(!is_on);
+                    }
+                });
+                if is_one_row {
+                    let size = vec2(status.width(), status::HEIGHT);
+                    let status = Rect::from_center_size(status.center(), size);
+                    let builder = UiBuilder::new().max_rect(status);
+                    ui.scope_builder(builder, |ui| self.status_ui(ui, pane, is_free));
+                }
+            });
+        }
         if !is_one_row {
             let status = Frame::new().fill(palette.card);
             let bar = top_bar("status", status::HEIGHT, status);
             bar.show(ui, |ui| self.status_ui(ui, pane, is_free));
         }
-        if !pane.state.hands.is_several() {
-            return;
-        }
-        let frame = Frame::new().fill(palette.card).inner_margin(STRIPS_MARGIN);
-        top_bar("hands", height, frame).show(ui, |ui| {
-            let place = ui.available_rect_before_wrap();
-            let width = if is_one_row { wanted } else { place.width() };
-            let (strips, status) = place.split_left_right_at_x(place.left() + width);
-            ui.scope_builder(UiBuilder::new().max_rect(strips), |ui| {
-                let is_on = self.body.shows_all();
-                if strips::strips_ui(ui, pane, is_free, is_on) {
-                    self.body.show_all(!is_on);
-                }
-            });
-            if is_one_row {
-                let size = vec2(status.width(), status::HEIGHT);
-                let status = Rect::from_center_size(status.center(), size);
-                let builder = UiBuilder::new().max_rect(status);
-                ui.scope_builder(builder, |ui| self.status_ui(ui, pane, is_free));
-            }
-        });
     }
 
     fn status_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, is_free: bool) {

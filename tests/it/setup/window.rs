@@ -500,13 +500,6 @@ impl Bench {
         self.harness.step();
     }
 
-    /// Puts the pointer over a text and leaves it there.
-    pub(crate) fn point_at(&mut self, name: &str) {
-        let at = self.rect(Role::Label, name).center();
-        self.harness.hover_at(at);
-        self.harness.step();
-    }
-
     /// Puts the pointer to a place and leaves it there.
     pub(crate) fn point(&mut self, at: egui::Pos2) {
         self.harness.hover_at(at);

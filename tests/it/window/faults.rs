@@ -75,7 +75,8 @@ fn the_list_stands_still_while_the_pointer_is_on_it() {
     let mut bench = missed();
     bench.show(View::Faults);
     bench.run(60);
-    bench.point_at("What the words mean");
+    let clear = bench.rect(Role::Button, "Clear errors");
+    bench.point(clear.center_bottom() + egui::vec2(0.0, 60.0));
     // The messages at the right have the same words.
     let top = |bench: &Bench, name: &str| {
         let all = bench.all(Role::Label).into_iter();
@@ -130,10 +131,13 @@ fn who_meets_a_word_for_the_first_time_finds_it_explained_without_any_fault() {
     let mut bench = Bench::open(SimConfig::default(), LARGE);
     bench.wait(500);
     bench.click_button("Faults");
+    bench.run(60);
+    bench.click("What the words mean");
     for stall in ["Stall: ", "堵转故障："] {
         bench.run(60);
         assert_eq!(bench.texts_with(stall).len(), 1, "{stall}");
         bench.key_with(Modifiers::COMMAND, Key::L);
+        bench.run(60);
     }
     assert_eq!(bench.writes(), []);
 }

@@ -265,7 +265,7 @@ fn one_line_says_what_the_hand_holds_and_a_click_keeps_that() {
     bench.run(60);
     let told = bench.texts_with("Hand: speed 1000, force 1000");
     assert_eq!(told.len(), 1, "{told:?}");
-    bench.click_button("Keep the hand's");
+    bench.click_button("Use the hand's values");
     bench.run(60);
     for setting in ["Index force number", "Little speed number"] {
         assert_eq!(bench.typed(setting), "1000");
@@ -307,4 +307,11 @@ fn newtons_stand_beside_the_grams_of_a_joint_that_was_measured() {
     assert!(text.contains(" g ") && text.ends_with(" N"), "{text}");
     let ring = bench.reading("Ring live force");
     assert!(ring.ends_with(" g"), "{ring}");
+    bench.act(Action::Force(Some(Dof::Index), Force::nearest(500)));
+    bench.run(60);
+    let slider = bench.rect(Role::Slider, "Index force threshold");
+    bench.point(slider.center());
+    bench.run(1500);
+    let told = bench.texts_with("500 g are 3.4 N at this joint.");
+    assert_eq!(told.len(), 1, "{:?}", bench.texts_with("at this joint"));
 }
