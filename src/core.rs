@@ -11,7 +11,6 @@ pub mod history;
 pub mod inputs;
 pub mod link;
 pub mod manual;
-pub mod model;
 pub mod motion;
 pub mod params;
 pub mod poses;

@@ -14,7 +14,6 @@
 //! | 1 | [`transport`] | endpoints, serial ports, sockets, CAN interfaces, DDS, in-memory wires with faults |
 //! | 1 | [`record`] | typed records of everything that happened at a hand; hourly files, written by a dedicated thread and read back; export formats |
 //! | 1 | [`store`] | files, and the calendar that their names use |
-//! | 1 | [`model`] | the hand as a model for other programs: URDF, MJCF, a table of joints |
 //! | 2 | [`history`] | records prepared for drawing; the one decimation of lines |
 //! | 3 | [`link`] | one conversation with one hand: owner of the wire, poll plan, arming, stop, settings; the scan for hands; traffic on the wire |
 //! | 3 | [`sim`] | a hand that answers on the wire |
@@ -74,6 +73,6 @@ pub mod ui;
 pub use handscope_draw as draw;
 
 pub use handscope_core::{
-    checkup, codec, exhibit, hand, history, inputs, link, manual, model, motion, params, poses,
-    printable, record, share, sim, store, system, tasks, transport, trials,
+    checkup, codec, exhibit, hand, history, inputs, link, manual, motion, params, poses, printable,
+    record, share, sim, store, system, tasks, transport, trials,
 };

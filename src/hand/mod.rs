@@ -14,6 +14,7 @@ pub mod heat;
 pub mod hold_forces;
 pub mod impact;
 pub mod kinematics;
+pub mod model;
 pub mod moment;
 pub mod newtons;
 pub mod overshoot;

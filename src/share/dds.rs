@@ -2,9 +2,9 @@
 //! published, and nothing is published twice.
 
 use crate::hand::kinematics::Side;
+use crate::hand::model::urdf::urdf;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment};
 use crate::link::{Clock, LinkEntries, LinkHandle};
-use crate::model::urdf::urdf;
 use crate::record::file::Opening;
 use crate::record::file::format::cdr;
 use crate::record::file::format::encode::EntryEncoder;

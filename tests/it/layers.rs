@@ -8,7 +8,7 @@ use std::path::Path;
 /// The modules of each floor, from the lowest up.
 const FLOORS: [&[&str]; 12] = [
     &["hand", "manual", "printable", "soak", "system"],
-    &["codec", "transport", "record", "store", "model"],
+    &["codec", "transport", "record", "store"],
     &["history"],
     &["link", "sim", "params", "poses", "trials"],
     &["exhibit", "share", "inputs", "checkup", "fake"],

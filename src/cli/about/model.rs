@@ -2,7 +2,7 @@
 
 use crate::cli::out::Out;
 use crate::hand::kinematics::Side;
-use crate::model::{mjcf::mjcf, side_name, table, urdf::urdf};
+use crate::hand::model::{mjcf::mjcf, side_name, table, urdf::urdf};
 use anyhow::Context as _;
 use clap::Args;
 use serde_json::json;

@@ -3,7 +3,7 @@
 //!
 //! <https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md>
 
-use crate::model::urdf::urdf;
+use crate::hand::model::urdf::urdf;
 use crate::record::file::Opening;
 use crate::record::file::format::cdr;
 use crate::record::file::format::encode::EncodedMessage;

@@ -20,28 +20,36 @@ use Segment::{
 pub struct Rod {
     /// Centres of its ends.
     pub ends: [[f32; 3]; 2],
+    /// Radius of the rod and of its ends.
     pub radius: f32,
 }
 
 /// A box, in mm, in the frame of its segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cuboid {
+    /// Its centre.
     pub middle: [f32; 3],
+    /// Lengths along x, y and z.
     pub edges: [f32; 3],
 }
 
+/// Bulk of a link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
+    /// A phalanx.
     Rod(Rod),
+    /// The palm.
     Block(Cuboid),
 }
 
+/// A joint between a link and its parent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelJoint {
     /// Name as in the maker's model: `right_index_1_joint`.
     pub name: String,
     /// The drive that moves it.
     pub dof: Dof,
+    /// The segment that carries it.
     pub parent: Segment,
     /// Position in the parent's frame, mm.
     pub at_mm: [f32; 3],
@@ -58,11 +66,13 @@ pub struct ModelJoint {
 /// A rigid part of the model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelLink {
+    /// The segment of the hand.
     pub segment: Segment,
     /// `right_index_1`.
     pub name: String,
     /// Joint to its parent; `None` for the palm.
     pub joint: Option<ModelJoint>,
+    /// Its bulk, in its own frame.
     pub shape: Shape,
     /// Centre of the fingertip's pad, mm; `None` for segments without a pad.
     pub touch_mm: Option<(Finger, [f32; 3])>,
@@ -92,6 +102,7 @@ fn joint_name(side: Side, segment: Segment) -> String {
     own.next().map(|(_, name)| name).unwrap_or_default()
 }
 
+/// Name of a segment's link: `right_index_1`.
 pub fn link_name(side: Side, segment: Segment) -> String {
     let joint = joint_name(side, segment);
     match joint.strip_suffix("_joint") {

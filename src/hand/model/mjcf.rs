@@ -1,9 +1,9 @@
 //! The model as MJCF, for MuJoCo: six position actuators, the other joints coupled by equalities. Metres and radians.
 
 use crate::hand::kinematics::{Segment, Side};
+use crate::hand::model::urdf::metres;
+use crate::hand::model::{ModelLink, Shape, driven_joint, links, side_name, touch_name};
 use crate::hand::{Dof, Finger};
-use crate::model::urdf::metres;
-use crate::model::{ModelLink, Shape, driven_joint, links, side_name, touch_name};
 use glam::{EulerRot, Quat};
 use std::fmt::Write as _;
 

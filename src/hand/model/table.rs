@@ -2,7 +2,7 @@
 
 use crate::hand::Dof;
 use crate::hand::kinematics::{RANGE, Side};
-use crate::model::{driven_joint, links};
+use crate::hand::model::{driven_joint, links};
 
 /// Comment at the head of each file.
 pub const ABOUT: &str = "FTP series hand, written by handscope model. Frames, couplings and limits after a public model of the hand (unitree_ros, inspire_hand FTP, BSD-3-Clause, Unitree Robotics); shapes are simple; masses are not published";

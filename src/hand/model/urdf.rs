@@ -1,7 +1,7 @@
 //! The model as URDF: for RViz, Foxglove, Isaac, Pinocchio. Metres and radians.
 
 use crate::hand::kinematics::Side;
-use crate::model::{
+use crate::hand::model::{
     ModelJoint, ModelLink, Rod, Shape, driven_joint, link_name, links, side_name, touch_name,
 };
 use glam::{EulerRot, Quat, Vec3};
