@@ -1,6 +1,7 @@
 //! The hand as a model for other programs: links, joints, couplings and limits from the figures that also draw the hand
 //! ([`crate::hand::kinematics`]), with simple shapes. Segment masses are not published, so none are given. Pure.
 
+pub mod frames;
 pub mod mjcf;
 pub mod table;
 pub mod urdf;
