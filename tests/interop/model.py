@@ -40,6 +40,27 @@ def urdf():
             worst = max(worst, float(np.linalg.norm(at - place)))
     assert worst < WITHIN_MM, worst
     print(f"urdf: {worst:.3f} mm at most from the published kinematics")
+    return robot
+
+
+def masses(robot):
+    """Each link weighs and turns as MuJoCo computes it from the shapes."""
+    model = mujoco.MjModel.from_xml_path(f"{FOLDER}/ftp_right_hand.xml")
+    whole = 0.0
+    for name, link in robot.link_map.items():
+        if link.inertial is None:
+            continue
+        body = model.body(name)
+        inertia = np.array(link.inertial.inertia)
+        assert np.allclose(inertia, inertia.T) and (np.linalg.eigvalsh(inertia) > 0).all(), name
+        moments = np.sort(np.linalg.eigvalsh(inertia))
+        assert moments[2] < moments[0] + moments[1], name
+        assert abs(link.inertial.mass - float(body.mass[0])) < 1e-5, name
+        assert np.allclose(moments, np.sort(body.inertia), rtol=1e-3), (name, moments, body.inertia)
+        assert np.allclose(link.inertial.origin[:3, 3], body.ipos, atol=1e-6), name
+        whole += link.inertial.mass
+    assert abs(whole - float(model.body_mass.sum())) < 2e-4, whole
+    print(f"urdf: {whole:.3f} kg, as in mjcf")
 
 
 def coupling(model):
@@ -101,5 +122,5 @@ def under_load(model):
     print(f"mjcf: coupled joints give {gives:.4f} rad under 10 N at each tip, which moves joints by {moved:.3f} rad")
 
 
-urdf()
+masses(urdf())
 mjcf()

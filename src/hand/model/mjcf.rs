@@ -1,6 +1,7 @@
 //! The model as MJCF, for MuJoCo: six position actuators, the other joints coupled by equalities. Metres and radians.
 
 use crate::hand::kinematics::{Segment, Side};
+use crate::hand::model::mass::DENSITY;
 use crate::hand::model::urdf::metres;
 use crate::hand::model::{ModelLink, Shape, driven_joint, links, side_name, touch_name};
 use crate::hand::{Dof, Finger};
@@ -8,21 +9,26 @@ use glam::{EulerRot, Quat};
 use std::fmt::Write as _;
 
 /// Defaults of all joints: a stiff coupling or drive. No such figures are published.
-const DEFAULTS: &str = "  <default>
-    <geom density=\"1500\" rgba=\"0.72 0.74 0.77 1\" condim=\"4\" friction=\"1 0.02 0.0005\"/>
+fn defaults() -> String {
+    format!(
+        "  <default>
+    <geom density=\"{DENSITY}\" rgba=\"0.72 0.74 0.77 1\" condim=\"4\" friction=\"1 0.02 0.0005\"/>
     <joint damping=\"0.02\" armature=\"0.002\"/>
     <position kp=\"6\" kv=\"0.15\" forcerange=\"-2 2\"/>
     <equality solref=\"0.004 1\" solimp=\"0.99 0.999 0.0001\"/>
   </default>
-";
+"
+    )
+}
 
 /// Writes the whole file.
 pub fn mjcf(side: Side) -> String {
     let all = links(side);
     let mut text = format!(
-        "<!-- {} -->\n<mujoco model=\"ftp_{}_hand\">\n  <compiler angle=\"radian\"/>\n  <option timestep=\"0.001\" integrator=\"implicitfast\"/>\n{DEFAULTS}  <worldbody>\n",
+        "<!-- {} -->\n<mujoco model=\"ftp_{}_hand\">\n  <compiler angle=\"radian\"/>\n  <option timestep=\"0.001\" integrator=\"implicitfast\"/>\n{}  <worldbody>\n",
         super::table::ABOUT,
-        side_name(side)
+        side_name(side),
+        defaults()
     );
     body(&mut text, side, &all, (Segment::Palm, 2));
     text += "  </worldbody>\n";

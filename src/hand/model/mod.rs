@@ -1,7 +1,8 @@
 //! The hand as a model for other programs: links, joints, couplings and limits from the figures that also draw the hand
-//! ([`crate::hand::kinematics`]), with simple shapes. Segment masses are not published, so none are given. Pure.
+//! ([`crate::hand::kinematics`]), with simple shapes, whose masses stand for those of the parts. Pure.
 
 pub mod frames;
+pub mod mass;
 pub mod mjcf;
 pub mod table;
 pub mod urdf;

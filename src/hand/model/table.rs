@@ -5,7 +5,7 @@ use crate::hand::kinematics::{RANGE, Side};
 use crate::hand::model::{driven_joint, links};
 
 /// Comment at the head of each file.
-pub const ABOUT: &str = "FTP series hand, written by handscope model. Frames, couplings and limits after a public model of the hand (unitree_ros, inspire_hand FTP, BSD-3-Clause, Unitree Robotics); shapes are simple; masses are not published";
+pub const ABOUT: &str = "FTP series hand, written by handscope model. Frames, couplings and limits after a public model of the hand (unitree_ros, inspire_hand FTP, BSD-3-Clause, Unitree Robotics); shapes are simple; masses are not published: those here are of the shapes";
 
 /// The table as comma-separated values: one line per joint of the model.
 pub fn csv(side: Side) -> String {
