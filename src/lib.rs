@@ -6,7 +6,7 @@
 //!
 //! | floor | module | responsibility |
 //! |---|---|---|
-//! | 0 | [`hand`] | the device: registers, units, samples, commands |
+//! | 0 | [`hand`] | the device: registers, units, samples, commands; the hand as a model for other programs: URDF, MJCF, frames, a table of joints |
 //! | 0 | [`manual`] | the pages of `handscope help TOPIC`, for the user at the hand |
 //! | 0 | [`printable`] | external text, made safe to display |
 //! | 0 | [`system`] | errors of the operating system, as values |

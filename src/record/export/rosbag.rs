@@ -3,7 +3,7 @@
 use crate::record::export::cut::{Copied, copy};
 use crate::record::export::output::{Destination, ExportError, Exported, Sink, Unfinished};
 use crate::record::export::source::ExportSource;
-use crate::record::file::format::topic::Topic;
+use crate::record::file::format::topic::{QUALITY, Topic};
 use crate::record::file::writer::Counted;
 use std::fmt::Write as _;
 use std::fs;
@@ -49,6 +49,8 @@ fn metadata(counted: &Counted, name: &str) -> String {
     let mut topics = String::new();
     let counts = Topic::all().map(|topic| (topic, counted.messages.get(&topic.channel())));
     for (topic, count) in counts.filter_map(|(topic, count)| Some((topic, count?))) {
+        // The same as in the file, or some readers find no messages.
+        let quality = topic.quality().unwrap_or_default().replace('\n', "\\n");
         // Writing to a string cannot fail.
         let _done = write!(
             topics,
@@ -56,7 +58,7 @@ fn metadata(counted: &Counted, name: &str) -> String {
         name: {}
         type: {}
         serialization_format: cdr
-        offered_qos_profiles: ''
+        {QUALITY}: \"{quality}\"
       message_count: {count}
 ",
             topic.name(),

@@ -4,7 +4,7 @@ use crate::record::file::format::topic::Topic;
 use mcap::records::Record;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Maximum number of definitions of each kind read from one file. Ours have thirteen.
+/// Maximum number of definitions of each kind read from one file. Ours have sixteen.
 const DEFINITIONS_MAX: usize = 1024;
 /// Maximum characters of a name, and of a schema's text.
 const NAME_MAX: usize = 200;
@@ -146,14 +146,14 @@ impl Definitions {
         self.counts.values().sum()
     }
 
-    /// True if each topic has Handscope's channel number, and nothing else is defined. The first files have no grip.
+    /// True if each topic has Handscope's channel number, and nothing else is defined. Older files lack the later topics.
     pub(crate) fn are_own(&self) -> bool {
         let is_defined = |topic: Topic| self.channels.contains_key(&topic.channel());
         let is_own = |(number, channel): (&u16, &Channel)| {
             let topic = Topic::by_channel(*number);
             topic.is_some_and(|topic| channel.topic == topic.name())
         };
-        let mut since_the_first = Topic::all().filter(|topic| *topic != Topic::Grip);
+        let mut since_the_first = Topic::all().filter(|topic| !topic.is_later());
         since_the_first.all(is_defined) && self.channels.iter().all(is_own)
     }
 
@@ -169,9 +169,11 @@ impl Definitions {
         for number in numbers {
             let messages = self.counts.get(&number).copied().unwrap_or_default();
             match self.topic(number) {
-                Ok(topic) => {
+                Ok(topic) if topic.is_stamped() => {
                     topics.insert(number, topic);
                 }
+                // Nothing is read of them, and where the log has no time, they have none either.
+                Ok(_) => {}
                 Err(why) if messages > 0 => skipped.push(self.skipped(number, messages, why)),
                 Err(_) => {}
             }
@@ -182,11 +184,11 @@ impl Definitions {
     /// Namespaces that another program has put before our topics: one for each hand.
     pub(crate) fn namespaces(&self) -> BTreeSet<&str> {
         let ours = self.channels.iter().filter_map(|(number, channel)| {
-            // Every robot has joint states; ours are only a copy.
+            // Every robot has joint states and frames; ours are only a copy.
             let topic = self
                 .topic(*number)
                 .ok()
-                .filter(|topic| *topic != Topic::Joints)?;
+                .filter(|topic| !topic.is_common())?;
             namespace(&channel.topic, topic)
         });
         ours.collect()
@@ -204,17 +206,20 @@ impl Definitions {
         let is_ours = schema.name == topic.schema().name
             && schema.encoding == SCHEMAS_IN
             && channel.encoding == MESSAGES_IN;
-        // Every robot has joint states of that name; they add nothing to State.
+        // Every robot has joint states and frames of that name; they add nothing to State.
+        let other = |why| {
+            if topic.is_common() {
+                SkipReason::Unknown
+            } else {
+                why
+            }
+        };
         if !is_ours {
-            return Err(match topic {
-                Topic::Joints => SkipReason::Unknown,
-                _ => SkipReason::OtherSchema,
-            });
-        }
-        if schema.fields == fields(topic.schema().text) {
+            Err(other(SkipReason::OtherSchema))
+        } else if schema.fields == fields(topic.schema().text) {
             Ok(topic)
         } else {
-            Err(SkipReason::OtherFields)
+            Err(other(SkipReason::OtherFields))
         }
     }
 

@@ -41,7 +41,7 @@ impl LogClock {
         let known = known.filter_map(|(channel, samples)| Some((topics.get(channel)?, samples)));
         let all = known.flat_map(|(topic, samples)| {
             let at = place(*topic);
-            samples.iter().filter_map(move |sample| *sample.get(at)?)
+            samples.iter().filter_map(move |sample| *sample.get(at?)?)
         });
         let mut all: Vec<i64> = all.collect();
         all.sort_unstable();
@@ -54,16 +54,19 @@ pub(crate) fn received(topic: Topic, log: u64, data: &[u8], difference: i64) -> 
     if log > 0 {
         return log;
     }
-    let stamp = stamp(data, place(topic)).unwrap_or_default();
+    let stamp = place(topic)
+        .and_then(|at| stamp(data, at))
+        .unwrap_or_default();
     stamp.saturating_add_signed(difference)
 }
 
-/// Index of the stamp that holds the time of receipt.
-const fn place(topic: Topic) -> usize {
+/// Index of the stamp that holds the time of receipt; `None` for messages that do not begin with one.
+const fn place(topic: Topic) -> Option<usize> {
     match topic {
         // The first stamp is the time of the request.
-        Topic::State | Topic::Touch(_) => 1,
-        _ => 0,
+        Topic::State | Topic::Touch(_) => Some(1),
+        _ if topic.is_stamped() => Some(0),
+        _ => None,
     }
 }
 

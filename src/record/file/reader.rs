@@ -244,7 +244,7 @@ impl RecordingFile {
         let (topics, skipped) = survey.definitions.topics();
         let counted = survey.definitions.messages();
         let mut found = survey.found;
-        if topics.is_empty() {
+        if topics.values().all(|topic| topic.is_common()) {
             if survey.left_out > 0 {
                 return Err(OpenError::TooMuch {
                     megabytes: survey.left_out.div_ceil(MEGABYTE),

@@ -4,7 +4,7 @@ use crate::hand::Moment;
 use crate::record::Entry;
 use crate::record::file::format::encode::{EncodedMessage, EntryEncoder};
 use crate::record::file::format::opening::{METADATA, Opening, nanos_of};
-use crate::record::file::format::topic::Topic;
+use crate::record::file::format::topic::{QUALITY, Topic};
 use crate::record::file::overview::Overview;
 use crate::record::grip::GripFollower;
 use mcap::records::{MessageHeader, Metadata};
@@ -67,6 +67,8 @@ pub struct RecordingWriter {
     mcap: mcap::Writer<NoSeek<PendingBytes>>,
     waiting: PendingBytes,
     encoder: EntryEncoder,
+    /// True once the file has the model.
+    has_model: bool,
     overview: Overview,
     /// Number of bytes already collected.
     given: u64,
@@ -115,6 +117,7 @@ impl RecordingWriter {
             mcap,
             waiting,
             encoder: EntryEncoder::following(opening, grip),
+            has_model: false,
             overview: Overview::default(),
             given: 0,
             block_from: 0,
@@ -155,6 +158,12 @@ impl RecordingWriter {
         if at.since(began) >= BLOCK_OF {
             self.block()?;
             self.block_began = Some(at);
+        }
+        if !self.has_model {
+            self.has_model = true;
+            for message in self.encoder.lasting(at) {
+                self.write(&message)?;
+            }
         }
         let derived = self.overview.apply(entry);
         for message in self.encoder.encode(entry) {
@@ -227,8 +236,9 @@ fn define(mcap: &mut mcap::Writer<NoSeek<PendingBytes>>) -> Result<(), McapError
     for topic in Topic::all() {
         let schema = topic.schema();
         mcap.add_schema_with_id(schema.id, schema.name, "ros2msg", schema.text.as_bytes())?;
-        let none = BTreeMap::new();
-        mcap.add_channel_with_id(topic.channel(), schema.id, topic.name(), "cdr", &none)?;
+        let quality = topic.quality().map(|text| (QUALITY.into(), text.into()));
+        let metadata = BTreeMap::from_iter(quality);
+        mcap.add_channel_with_id(topic.channel(), schema.id, topic.name(), "cdr", &metadata)?;
     }
     Ok(())
 }

@@ -8,7 +8,7 @@ use crate::share::foxglove::outlet::Outlet;
 
 /// Publishes until the link's session ends.
 pub(crate) async fn feed(mut entries: LinkEntries, opening: Opening, outlet: Outlet) {
-    let mut encoder = EntryEncoder::new(&opening);
+    let mut encoder = EntryEncoder::live(&opening);
     let mut overview = Overview::default();
     while let Some(entry) = entries.next().await {
         let missed = entries.take_missed();

@@ -1,13 +1,10 @@
 //! Messages of the Foxglove WebSocket protocol needed by a read-only server: server info, topics, and messages of subscribed topics.
-//! In addition to the topics of a recording there is the model of the hand.
+//! The topics are those of a recording.
 //!
 //! <https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md>
 
-use crate::hand::model::urdf::urdf;
 use crate::record::file::Opening;
-use crate::record::file::format::cdr;
-use crate::record::file::format::encode::EncodedMessage;
-use crate::record::file::format::opening::nanos_of;
+use crate::record::file::format::encode::{EncodedMessage, EntryEncoder};
 use crate::record::file::format::topic::Topic;
 use serde::Deserialize;
 use serde_json::json;
@@ -15,8 +12,6 @@ use serde_json::json;
 /// Names of the subprotocol, the newer one first. Foxglove and PlotJuggler use the newer one, Lichtblick and older clients the
 /// other; the messages used here are the same under both.
 pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
-/// Channel of the model, well above those of the topics.
-pub const MODEL_CHANNEL: u64 = 1000;
 /// Opcode of a topic's message.
 const MESSAGE_DATA: u8 = 1;
 /// Levels of a status.
@@ -59,25 +54,21 @@ impl Subscription {
 pub(crate) struct Greeting {
     /// Server info and topics, sent first.
     pub(crate) texts: [String; 2],
-    /// The model, with its time stamp.
-    model: (u64, Vec<u8>),
+    /// Messages that do not change: the model, and its fixed frames.
+    lasting: [EncodedMessage; 2],
 }
 
 impl Greeting {
     pub(crate) fn new(opening: &Opening) -> Self {
         Self {
             texts: texts(opening),
-            model: (
-                nanos_of(opening.base_nanos, opening.began),
-                cdr::encode(&urdf(opening.side)),
-            ),
+            lasting: EntryEncoder::live(opening).lasting(opening.began),
         }
     }
 
-    /// The model, for this subscription. It does not change, so it is sent once.
-    pub(crate) fn model(&self, subscription: u32) -> Vec<u8> {
-        let (nanos, bytes) = &self.model;
-        data(subscription, *nanos, bytes)
+    /// Message with which a subscription to this topic begins; `None` if it comes as the hand is read.
+    pub(crate) fn lasting(&self, topic: Topic) -> Option<&EncodedMessage> {
+        self.lasting.iter().find(|message| message.topic == topic)
     }
 }
 
@@ -107,30 +98,18 @@ fn texts(opening: &Opening) -> [String; 2] {
             "schema": schema.text,
         })
     };
-    let model = json!({
-        "id": MODEL_CHANNEL,
-        "topic": "/robot_description",
-        "encoding": "cdr",
-        "schemaName": "std_msgs/msg/String",
-        "schemaEncoding": "ros2msg",
-        "schema": "string data\n",
-    });
-    let channels: Vec<_> = Topic::all().map(channel).chain([model]).collect();
+    let channels: Vec<_> = Topic::all().map(channel).collect();
     let topics = json!({ "op": "advertise", "channels": channels });
     [info, topics].map(|message| message.to_string())
 }
 
 /// Encodes a message for this subscription.
 pub(crate) fn message_data(subscription: u32, message: &EncodedMessage) -> Vec<u8> {
-    data(subscription, message.log_nanos, &message.bytes)
-}
-
-fn data(subscription: u32, nanos: u64, bytes: &[u8]) -> Vec<u8> {
-    let mut data = Vec::with_capacity(13 + bytes.len());
+    let mut data = Vec::with_capacity(13 + message.bytes.len());
     data.push(MESSAGE_DATA);
     data.extend(subscription.to_le_bytes());
-    data.extend(nanos.to_le_bytes());
-    data.extend(bytes);
+    data.extend(message.log_nanos.to_le_bytes());
+    data.extend(&message.bytes);
     data
 }
 
@@ -187,7 +166,7 @@ mod tests {
             );
         }
         assert_eq!(wanted(0, 12).topic(), Some(Topic::Touch(Finger::Thumb)));
-        for none in [0, 14, 65537, u64::MAX] {
+        for none in [0, 17, 65537, u64::MAX] {
             assert_eq!(wanted(0, none).topic(), None);
         }
     }

@@ -5,9 +5,7 @@ use crate::record::file::format::encode::EncodedMessage;
 use crate::record::file::format::topic::Topic;
 use crate::share::foxglove::allowance::Allowance;
 use crate::share::foxglove::outlet::Seat;
-use crate::share::foxglove::protocol::{
-    self, Greeting, MODEL_CHANNEL, SUBPROTOCOLS, Subscription, ViewerRequest,
-};
+use crate::share::foxglove::protocol::{self, Greeting, SUBPROTOCOLS, Subscription, ViewerRequest};
 use futures::{SinkExt as _, StreamExt as _};
 use std::io;
 use std::sync::Arc;
@@ -164,12 +162,12 @@ impl ViewerConnection {
         answers
     }
 
-    /// Adds a subscription, or returns the reason for refusing it; a subscription to the model returns the model.
+    /// Adds a subscription, or returns the reason for refusing it; a subscription to what does not change returns that.
     fn subscribe(&mut self, wanted: Subscription) -> Option<Frame> {
         let Subscription { id, channel_id } = wanted;
-        if wanted.topic().is_none() && channel_id != MODEL_CHANNEL {
+        let Some(topic) = wanted.topic() else {
             return Some(error(&format!("there is no channel {channel_id}")));
-        }
+        };
         let is_taken = |own: &Subscription| own.channel_id == channel_id || own.id == id;
         if self.subscriptions.iter().any(is_taken) {
             return Some(warning(&format!(
@@ -177,7 +175,8 @@ impl ViewerConnection {
             )));
         }
         self.subscriptions.push(wanted);
-        (channel_id == MODEL_CHANNEL).then(|| Frame::Binary(self.greeting.model(id).into()))
+        let lasting = self.greeting.lasting(topic)?;
+        Some(Frame::Binary(protocol::message_data(id, lasting).into()))
     }
 }
 

@@ -394,6 +394,35 @@ fn tables_and_bags_take_their_place_whole_or_not_at_all() {
 }
 
 #[test]
+fn a_bag_is_played_with_the_model_for_whoever_comes_late() {
+    let recorded = record("1");
+    recorded.export(&["--rosbag"], "bag").ok();
+    let bag = recorded.path("bag");
+    let yaml = std::fs::read_to_string(bag.join("metadata.yaml")).unwrap();
+    let bytes = std::fs::read(bag.join("bag_0.mcap")).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    for channel in summary.channels.values() {
+        let topic = format!("name: {}\n", channel.topic);
+        let Some((_, listed)) = yaml.split_once(&topic) else {
+            continue;
+        };
+        // Readers compare what the folder and the file say of a topic.
+        let quality = listed.split("offered_qos_profiles: ").nth(1).unwrap();
+        let quality = quality.lines().next().unwrap().trim_matches('"');
+        let own = channel.metadata.get("offered_qos_profiles");
+        let own = own.map(String::as_str).unwrap_or_default();
+        assert_eq!(quality.replace("\\n", "\n"), own, "{topic}");
+        let is_kept = own.contains("durability: 1") && own.contains("reliability: 1");
+        let is_lasting = ["/tf_static", "/robot_description"].contains(&channel.topic.as_str());
+        assert_eq!(is_kept, is_lasting, "{topic}");
+        if is_lasting {
+            let count = listed.split("message_count: ").nth(1).unwrap();
+            assert_eq!(count.lines().next(), Some("1"), "{topic}");
+        }
+    }
+}
+
+#[test]
 fn a_data_set_for_learners_says_how_it_was_made() {
     let recorded = record("2.5");
     // The joints move, and nobody told them to.

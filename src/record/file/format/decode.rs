@@ -48,7 +48,11 @@ impl EntryDecoder {
     pub fn decode(&mut self, topic: Topic, times: (u64, u64), bytes: &[u8]) -> Option<Entry> {
         let at = moment_of(self.base_nanos, times.0);
         match topic {
-            Topic::Joints | Topic::Grip => None,
+            Topic::Joints
+            | Topic::Grip
+            | Topic::Frames
+            | Topic::FixedFrames
+            | Topic::Description => None,
             Topic::State => {
                 let state: StateMessage = cdr::decode(bytes)?;
                 let asked = self.request_time(times, (state.asked, state.received));

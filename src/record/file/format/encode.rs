@@ -1,7 +1,8 @@
 //! Converts entries to messages.
 
 use crate::hand::grip::{Grip, GripEstimate, GripState};
-use crate::hand::kinematics::{joint_names, joint_radians};
+use crate::hand::kinematics::{Side, joint_names, joint_radians};
+use crate::hand::model::urdf::urdf;
 use crate::hand::{Finger, Group, Groups, HandSample, Moment, Quantity, register};
 use crate::record::file::format::cdr;
 use crate::record::file::format::message::{
@@ -9,6 +10,7 @@ use crate::record::file::format::message::{
     StateMessage, Time, TouchMessage, WireMessage,
 };
 use crate::record::file::format::opening::{Opening, nanos_of};
+use crate::record::file::format::robot::{FrameFollower, FramePace};
 use crate::record::file::format::topic::Topic;
 use crate::record::grip::{GripFollower, states};
 use crate::record::{Direction, Entry, LinkState, Piece, PieceKind, Record, WriteFate};
@@ -34,17 +36,31 @@ pub struct EncodedMessage {
 #[derive(Debug)]
 pub(crate) struct EntryEncoder {
     base_nanos: u64,
+    side: Side,
     joint_names: Vec<String>,
+    frames: FrameFollower,
     grip: GripFollower,
     /// Time and states of the last grip message.
     last_grip: Option<(Moment, [GripState; 6])>,
 }
 
 impl EntryEncoder {
+    /// For a file.
     pub(crate) fn new(opening: &Opening) -> Self {
+        Self::with_pace(opening, FramePace::File)
+    }
+
+    /// For readers that see the hand move.
+    pub(crate) fn live(opening: &Opening) -> Self {
+        Self::with_pace(opening, FramePace::Live)
+    }
+
+    fn with_pace(opening: &Opening, pace: FramePace) -> Self {
         Self {
             base_nanos: opening.base_nanos,
+            side: opening.side,
             joint_names: joint_names(opening.side),
+            frames: FrameFollower::new(opening.side, pace),
             grip: GripFollower::default(),
             last_grip: None,
         }
@@ -61,6 +77,15 @@ impl EntryEncoder {
             grip,
             ..Self::new(opening)
         }
+    }
+
+    /// Messages that readers need before all others, and that do not change: the model, and its fixed frames.
+    pub(crate) fn lasting(&self, at: Moment) -> [EncodedMessage; 2] {
+        let fixed = self.frames.fixed(self.time(at));
+        [
+            self.message(Topic::Description, at, &urdf(self.side)),
+            self.message(Topic::FixedFrames, at, &fixed),
+        ]
     }
 
     /// Applies an entry without output, because later messages depend on it.
@@ -126,7 +151,7 @@ impl EntryEncoder {
         Some(self.message(Topic::Grip, at, &message))
     }
 
-    fn own(&self, entry: &Entry) -> Vec<EncodedMessage> {
+    fn own(&mut self, entry: &Entry) -> Vec<EncodedMessage> {
         match entry {
             Entry::Heard(Record::Reading { sample, fresh }) => self.reading(sample, *fresh),
             Entry::Heard(record) => self.record(record).into_iter().collect(),
@@ -222,7 +247,7 @@ impl EntryEncoder {
     }
 
     /// Messages of one reply: one for the joints' groups, one for each fingertip.
-    fn reading(&self, sample: &HandSample, fresh: Groups) -> Vec<EncodedMessage> {
+    fn reading(&mut self, sample: &HandSample, fresh: Groups) -> Vec<EncodedMessage> {
         let mut messages = Vec::new();
         let of_joints = Group::ALL
             .into_iter()
@@ -236,9 +261,10 @@ impl EntryEncoder {
         if fresh.contains(Group::Angle)
             && let Some(angle) = Quantity::Angle.documented(sample)
         {
+            let stamp = self.time(angle.received);
             let joints = JointState {
                 header: Header {
-                    stamp: self.time(angle.received),
+                    stamp,
                     frame_id: String::new(),
                 },
                 name: self.joint_names.clone(),
@@ -248,6 +274,11 @@ impl EntryEncoder {
             let mut message = self.message(Topic::Joints, angle.received, &joints);
             message.publish_nanos = self.nanos(angle.asked);
             messages.push(message);
+            if let Some(frames) = self.frames.apply(angle.received, angle.value, stamp) {
+                let mut message = self.message(Topic::Frames, angle.received, &frames);
+                message.publish_nanos = self.nanos(angle.asked);
+                messages.push(message);
+            }
         }
         for finger in Finger::ALL {
             let block = sample.tactile[finger].filter(|_| fresh.contains(Group::Tactile(finger)));

@@ -57,6 +57,31 @@ pub struct JointState {
     pub effort: Vec<f64>,
 }
 
+/// `tf2_msgs/msg/TFMessage`: links of the model in their parents' frames.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct TfMessage {
+    pub transforms: Vec<TransformStamped>,
+}
+
+/// `geometry_msgs/msg/TransformStamped`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct TransformStamped {
+    /// Time of receipt of the angles, and the parent's frame.
+    pub header: Header,
+    /// Frame of the link.
+    pub child_frame_id: String,
+    pub transform: Transform,
+}
+
+/// `geometry_msgs/msg/Transform`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Transform {
+    /// In m.
+    pub translation: [f64; 3],
+    /// Quaternion: x, y, z, w.
+    pub rotation: [f64; 4],
+}
+
 /// One reply about the joints. Each list has six values in the order of the registers (little, ring, middle, index, thumb bend,
 /// thumb rotation), or is empty if the reply did not include the group.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]

@@ -5,4 +5,5 @@ pub mod decode;
 pub mod encode;
 pub mod message;
 pub mod opening;
+mod robot;
 pub mod topic;

@@ -23,6 +23,12 @@ pub enum Topic {
     Touch(Finger),
     /// State of the grip.
     Grip,
+    /// Frames of the links, from the angles.
+    Frames,
+    /// Frames that never move.
+    FixedFrames,
+    /// The model as URDF.
+    Description,
 }
 
 /// A definition that several topics may share.
@@ -202,16 +208,79 @@ const PLAIN: [Topic; 7] = [
     Topic::Event,
     Topic::Wire,
 ];
+const STRING: Schema = Schema {
+    id: 10,
+    name: "std_msgs/msg/String",
+    text: "string data\n",
+};
+const TF_MESSAGE: Schema = Schema {
+    id: 11,
+    name: "tf2_msgs/msg/TFMessage",
+    text: with_time!(
+        "geometry_msgs/TransformStamped[] transforms
+================================================================================
+MSG: geometry_msgs/TransformStamped
+std_msgs/Header header
+string child_frame_id
+geometry_msgs/Transform transform
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: geometry_msgs/Transform
+geometry_msgs/Vector3 translation
+geometry_msgs/Quaternion rotation
+================================================================================
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+================================================================================
+MSG: geometry_msgs/Quaternion
+float64 x
+float64 y
+float64 z
+float64 w
+"
+    ),
+};
+
+/// Quality of service of messages that are written once and kept for late readers, without which RViz does not accept them: reliable,
+/// transient local, the last message. The numbers are those of rosbag2 before its version 9, which later ones read.
+const LASTING: &str = "- history: 1
+  depth: 1
+  reliability: 1
+  durability: 1
+  deadline:
+    sec: 9223372036
+    nsec: 854775807
+  lifespan:
+    sec: 9223372036
+    nsec: 854775807
+  liveliness: 1
+  liveliness_lease_duration:
+    sec: 9223372036
+    nsec: 854775807
+  avoid_ros_namespace_conventions: false";
+/// Key of the quality of service in a channel's metadata.
+pub(crate) const QUALITY: &str = "offered_qos_profiles";
+
 /// Channel number of the first fingertip.
 const FIRST_TIP: u16 = 8;
-/// Channel number of the grip, after the last fingertip's.
-const GRIP_CHANNEL: u16 = 13;
+/// Topics after those of the fingertips, in the order of their channel numbers.
+const LATER: [Topic; 4] = [
+    Topic::Grip,
+    Topic::Frames,
+    Topic::FixedFrames,
+    Topic::Description,
+];
 
 impl Topic {
     /// All topics, in the order of their channel numbers.
     pub fn all() -> impl Iterator<Item = Self> {
         let tips = Finger::ALL.map(Self::Touch);
-        PLAIN.into_iter().chain(tips).chain([Self::Grip])
+        PLAIN.into_iter().chain(tips).chain(LATER)
     }
 
     /// Channel number.
@@ -226,7 +295,10 @@ impl Topic {
             Self::Wire => 7,
             #[expect(clippy::cast_possible_truncation, reason = "there are five fingers")]
             Self::Touch(finger) => FIRST_TIP + finger.index() as u16,
-            Self::Grip => GRIP_CHANNEL,
+            Self::Grip => 13,
+            Self::Frames => 14,
+            Self::FixedFrames => 15,
+            Self::Description => 16,
         }
     }
 
@@ -260,6 +332,9 @@ impl Topic {
             Self::State => STATE,
             Self::Command => COMMAND,
             Self::CommandFate => COMMAND_FATE,
+            Self::Frames => "/tf",
+            Self::FixedFrames => "/tf_static",
+            Self::Description => "/robot_description",
             Self::Link => LINK,
             Self::Event => EVENT,
             Self::Wire => WIRE,
@@ -268,3 +343,31 @@ impl Topic {
         }
     }
 }
+            Self::Frames | Self::FixedFrames => TF_MESSAGE,
+            Self::Description => STRING,
+        }
+    }
+
+    /// True if the topic was added after the first version of the format, so that older files lack it.
+    pub(crate) fn is_later(self) -> bool {
+        LATER.contains(&self)
+    }
+
+    /// True for topics that every robot has. Here they are computed from the others, so that readers need none of them.
+    pub(crate) const fn is_common(self) -> bool {
+        matches!(
+            self,
+            Self::Joints | Self::Frames | Self::FixedFrames | Self::Description
+        )
+    }
+
+    /// True if each message begins with its time.
+    pub(crate) const fn is_stamped(self) -> bool {
+        !matches!(self, Self::Frames | Self::FixedFrames | Self::Description)
+    }
+
+    /// Quality of service for programs that play a file, as ROS 2 spells it; `None` for the usual one.
+    pub(crate) const fn quality(self) -> Option<&'static str> {
+        match self {
+            Self::FixedFrames | Self::Description => Some(LASTING),
+            _ => None,

@@ -1,6 +1,7 @@
 //! Recordings written and read back: whole, cut at any byte, with flipped bits, on disks that fail.
 
 mod failing;
+mod model;
 mod parts;
 mod rewritten;
 mod unended;
