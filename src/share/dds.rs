@@ -2,12 +2,11 @@
 //! published, and nothing is published twice.
 
 use crate::hand::kinematics::Side;
-use crate::hand::model::urdf::urdf;
 use crate::hand::{Dof, Finger, Group, Groups, HandSample, Moment};
 use crate::link::{Clock, LinkEntries, LinkHandle};
 use crate::record::file::Opening;
 use crate::record::file::format::cdr;
-use crate::record::file::format::encode::EntryEncoder;
+use crate::record::file::format::encode::{EncodedMessage, EntryEncoder};
 use crate::record::file::format::topic::Topic;
 use crate::record::{Entry, Record};
 use crate::share::fleet::{FleetAnnouncer, FleetCard};
@@ -116,7 +115,6 @@ pub struct DdsPublisher {
 impl DdsPublisher {
     /// Publishes while the link is open; does not keep it open. Must be called within a tokio runtime.
     pub fn open(node: &DdsNode, link: &LinkHandle, side: Side) -> Self {
-        let writers = HandWriters::open(node, side);
         let others = OtherHands {
             messages: node.reader(&motors::topic(), MOTORS_KEPT),
             node: node.clone(),
@@ -124,10 +122,11 @@ impl DdsPublisher {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
         let now = (link.clock().now(), since_1970.unwrap_or_default());
         let (counts, view) = watch::channel(DdsCounts::default());
+        let encoder = EntryEncoder::live(&Opening::begin(String::new(), now, side));
         let publisher = HandPublisher {
-            writers,
+            writers: HandWriters::open(node, side, encoder.lasting(now.0)),
             motors: MotorPair::new(side),
-            encoder: EntryEncoder::new(&Opening::begin(String::new(), now, side)),
+            encoder,
             clock: link.clock(),
             counts,
         };
@@ -186,26 +185,27 @@ struct HandWriters {
     joints: DdsWriter,
     touch: [DdsWriter; Finger::ALL.len()],
     grip: DdsWriter,
-    /// Keeps the model available for late joiners.
-    _model: DdsWriter,
+    frames: DdsWriter,
+    /// Keep the model and its fixed frames available for late joiners.
+    _lasting: Vec<DdsWriter>,
 }
 
 impl HandWriters {
-    fn open(node: &DdsNode, side: Side) -> Self {
+    fn open(node: &DdsNode, side: Side, lasting: [EncodedMessage; 2]) -> Self {
         let letter = match side {
             Side::Left => 'l',
             Side::Right => 'r',
         };
         let [little, ring, middle, index, thumb] =
             Finger::ALL.map(|finger| node.writer(&ros_topic(Topic::Touch(finger))));
-        let model = node.lasting_writer(&DdsTopic {
-            name: "rt/robot_description".into(),
-            type_name: "std_msgs::msg::dds_::String_".into(),
+        let lasting = lasting.into_iter().map(|message| {
+            let writer = node.lasting_writer(&ros_topic(message.topic));
+            // Stored for late joiners; no reader exists yet that could be too slow.
+            let _kept = writer.send(message.bytes);
+            writer
         });
-        // Stored for late joiners; no reader exists yet that could be too slow.
-        let _kept = model.send(cdr::encode(&urdf(side)));
         Self {
-            _model: model,
+            _lasting: lasting.collect(),
             state: node.writer(&DdsTopic {
                 name: format!("rt/inspire_hand/state/{letter}"),
                 type_name: "inspire::inspire_hand_state".into(),
@@ -214,6 +214,7 @@ impl HandWriters {
             joints: node.writer(&ros_topic(Topic::Joints)),
             touch: [little, ring, middle, index, thumb],
             grip: node.writer(&ros_topic(Topic::Grip)),
+            frames: node.writer(&ros_topic(Topic::Frames)),
         }
     }
 }
@@ -283,6 +284,7 @@ impl HandPublisher {
             let writer = match message.topic {
                 Topic::Joints => &self.writers.joints,
                 Topic::Grip => &self.writers.grip,
+                Topic::Frames => &self.writers.frames,
                 Topic::Touch(finger) => {
                     let [little, ring, middle, index, thumb] = &self.writers.touch;
                     match finger {
@@ -376,6 +378,9 @@ mod tests {
         let joints = ros_topic(Topic::Joints);
         assert_eq!(joints.name, "rt/joint_states");
         assert_eq!(joints.type_name, "sensor_msgs::msg::dds_::JointState_");
+        let frames = ros_topic(Topic::FixedFrames);
+        assert_eq!(frames.name, "rt/tf_static");
+        assert_eq!(frames.type_name, "tf2_msgs::msg::dds_::TFMessage_");
         let touch = ros_topic(Topic::Touch(Finger::Thumb));
         assert_eq!(touch.name, "rt/handscope/touch/thumb");
         assert_eq!(touch.type_name, "handscope_msgs::msg::dds_::Touch_");

@@ -8,10 +8,11 @@ use crate::setup::skipped::skipped;
 use handscope::hand::kinematics::Side;
 use handscope::link::{self, LinkHandle};
 use handscope::record::file::format::cdr;
-use handscope::record::file::format::message::GripMessage;
+use handscope::record::file::format::message::{GripMessage, TfMessage};
 use handscope::share::dds::DdsPublisher;
 use handscope::transport::dds::{DdsError, DdsMessage, DdsNode, DdsPlace, DdsTopic};
 use nix::sys::signal::Signal;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::fs;
 use std::io::{PipeWriter, Write as _};
@@ -114,6 +115,76 @@ async fn the_grip_is_told_as_a_recording_has_it() {
         "{grip:?}"
     );
     assert_eq!(publisher.counts().lost, 0);
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
+async fn the_model_is_there_for_late_readers_and_its_frames_come_with_each_reading() {
+    let (tells, listens) = (DdsNode::open(&place(58)), DdsNode::open(&place(58)));
+    let listens = listens.unwrap();
+    let topic = |name: &str, type_name: &str| DdsTopic {
+        name: name.into(),
+        type_name: type_name.into(),
+    };
+    let frames = "tf2_msgs::msg::dds_::TFMessage_";
+    let (link, _records): (LinkHandle, _) = link::open(
+        config("tcp:127.0.0.1:1", to_hand(hand::plain())),
+        &Handle::current(),
+    );
+    let _publisher = DdsPublisher::open(&tells.unwrap(), &link, Side::Left);
+    let mut moving = listens.reader(&topic("rt/tf", frames), 64);
+    let mut stamps = Vec::new();
+    while stamps.len() < 20 {
+        let message = timeout(PATIENCE, moving.recv()).await.unwrap().unwrap();
+        let message: TfMessage = cdr::decode(&message.bytes).unwrap();
+        assert_eq!(message.transforms.len(), 12);
+        stamps.push(message.transforms[0].header.stamp.nanos());
+    }
+    // A hundred a second, and not the ten of a file.
+    let took = Duration::from_nanos(stamps[19] - stamps[0]);
+    assert!(took < Duration::from_secs(1), "{took:?}");
+    // One of other authors that asks long after they were sent.
+    let theirs = rustdds::DomainParticipantBuilder::new(58)
+        .with_only_networks([std::net::Ipv4Addr::LOCALHOST])
+        .build()
+        .unwrap();
+    let fixed: TfMessage = kept(&theirs, "rt/tf_static", frames).await;
+    assert_eq!(fixed.transforms.len(), 5);
+    let string = "std_msgs::msg::dds_::String_";
+    let model: String = kept(&theirs, "rt/robot_description", string).await;
+    let message = timeout(PATIENCE, moving.recv()).await.unwrap().unwrap();
+    let moving: TfMessage = cdr::decode(&message.bytes).unwrap();
+    for frame in moving.transforms.iter().chain(&fixed.transforms) {
+        for name in [&frame.child_frame_id, &frame.header.frame_id] {
+            assert!(model.contains(&format!("<link name=\"{name}\"")), "{name}");
+        }
+    }
+}
+
+/// The message of a topic that was sent before this asks for it.
+async fn kept<T: DeserializeOwned + 'static>(
+    by: &rustdds::DomainParticipant,
+    topic: &str,
+    type_name: &str,
+) -> T {
+    use futures::StreamExt as _;
+    use rustdds::policy::{Durability, History, Reliability};
+    let quality = rustdds::QosPolicyBuilder::new()
+        .durability(Durability::TransientLocal)
+        .history(History::KeepLast { depth: 1 })
+        .reliability(Reliability::Reliable {
+            max_blocking_time: rustdds::Duration::ZERO,
+        })
+        .build();
+    let kind = rustdds::TopicKind::NoKey;
+    let topic = by
+        .create_topic(topic.into(), type_name.into(), &quality, kind)
+        .unwrap();
+    let reads = by.create_subscriber(&quality).unwrap();
+    let reader: rustdds::no_key::DataReader<T, rustdds::CDRDeserializerAdapter<T>> =
+        reads.create_datareader_no_key(&topic, None).unwrap();
+    let mut samples = reader.async_sample_stream();
+    let first = timeout(PATIENCE, samples.next()).await.unwrap().unwrap();
+    first.unwrap().into_value()
 }
 
 #[test]
