@@ -45,8 +45,8 @@ pub struct CtrlMessage {
 /// Reason for refusing a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
 pub enum CtrlFault {
-    /// Not a message of this type.
-    #[error("not an inspire_hand_ctrl in CDR")]
+    /// Not a message of the topic's type.
+    #[error("not a message of its topic's type in CDR")]
     Malformed,
     /// The mode has a bit that the type does not define.
     #[error("its mode has bits other than angle 1, force 4 and speed 8")]
@@ -57,12 +57,26 @@ pub enum CtrlFault {
     /// Not six values.
     #[error("a hand has six joints")]
     Length,
-    /// A value outside the register's range.
-    #[error("a value is outside the register's range")]
+    /// A value outside the range of the register or the joint.
+    #[error("a value is outside the range of the register or the joint")]
     Range,
     /// Not the motors of two hands.
     #[error("two hands have twelve motors")]
     Motors,
+    /// Not one position for each named joint.
+    #[error("each named joint needs one position")]
+    Unpaired,
+    /// A joint of no or another hand, one named twice, or no driven one.
+    #[error(
+        "it names a joint that this hand does not have, one twice, or none of the six driven ones"
+    )]
+    UnknownJoint,
+    /// A trajectory of several points.
+    #[error("it has several points: send each as a message of its own when it is due")]
+    Points,
+    /// A point that is due later than a stream may be silent.
+    #[error("its point is not due within 200 ms: send it when it is due")]
+    Timing,
     /// A speed or force above the limits set by the user who granted control.
     #[error("a speed or force is above --speed or --force")]
     AboveLimit,
@@ -81,6 +95,10 @@ impl CtrlFault {
             Self::Length => "length",
             Self::Range => "range",
             Self::Motors => "motors",
+            Self::Unpaired => "unpaired",
+            Self::UnknownJoint => "unknown_joint",
+            Self::Points => "points",
+            Self::Timing => "timing",
             Self::AboveLimit => "above_limit",
             Self::OtherSender => "other_sender",
         }

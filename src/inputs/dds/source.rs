@@ -4,6 +4,7 @@ use crate::hand::Moment;
 use crate::hand::kinematics::Side;
 use crate::inputs::dds::ctrl::{self, CtrlFault, CtrlMessage};
 use crate::inputs::dds::motors;
+use crate::inputs::dds::ros::{self, JointNames};
 use crate::inputs::offer::{END_TIMEOUT, Offer, OfferOutlet, SourceSite, is_fresh};
 use crate::link::stats::EventRate;
 use crate::link::{ArmRequest, Owner};
@@ -51,6 +52,10 @@ pub struct DdsCommands {
     pub ctrl: mpsc::Receiver<DdsMessage>,
     /// For both hands of a robot, as motors.
     pub motors: mpsc::Receiver<DdsMessage>,
+    /// For this hand, as ROS 2's trajectories.
+    pub trajectories: mpsc::Receiver<DdsMessage>,
+    /// For this hand, as ROS 2's positions of joints.
+    pub positions: mpsc::Receiver<DdsMessage>,
 }
 
 impl DdsCommands {
@@ -59,6 +64,8 @@ impl DdsCommands {
         Self {
             ctrl: node.reader(&ctrl::topic(side), ctrl::KEPT),
             motors: node.reader(&motors::topic(), ctrl::KEPT),
+            trajectories: node.reader(&ros::trajectory_topic(side), ctrl::KEPT),
+            positions: node.reader(&ros::position_topic(side), ctrl::KEPT),
         }
     }
 }
@@ -78,6 +85,7 @@ impl DdsSource {
         let outlet = OfferOutlet::default();
         let receiver = DdsReceiver {
             allowed,
+            joints: JointNames::of(site.side),
             site,
             view: DdsView::default(),
             rate: EventRate::default(),
@@ -104,6 +112,7 @@ impl DdsSource {
 
 struct DdsReceiver {
     allowed: ArmRequest,
+    joints: JointNames,
     site: SourceSite,
     view: DdsView,
     rate: EventRate,
@@ -124,6 +133,11 @@ impl DdsReceiver {
                     let asked = motors::parse(&message.bytes, self.site.side);
                     self.receive(message.from, asked);
                 }
+                Some(message) = commands.trajectories.recv() => self.receive_trajectory(&message),
+                Some(message) = commands.positions.recv() => {
+                    let asked = self.joints.positions(&message.bytes);
+                    self.receive(message.from, asked);
+                }
                 _ = tick.tick() => self.publish(),
             }
         }
@@ -138,6 +152,16 @@ impl DdsReceiver {
         if is_stop {
             self.stopped(message.from, asked.err());
         } else {
+            self.receive(message.from, asked);
+        }
+    }
+
+    fn receive_trajectory(&mut self, message: &DdsMessage) {
+        if ros::is_stop(&message.bytes) {
+            (self.site.stop)();
+            self.stopped(message.from, None);
+        } else {
+            let asked = self.joints.trajectory(&message.bytes);
             self.receive(message.from, asked);
         }
     }

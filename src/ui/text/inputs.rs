@@ -111,12 +111,16 @@ texts! {
 
     /// Reason why a command over DDS was refused.
     fn ctrl_fault(CtrlFault) {
-        CtrlFault::Malformed => "Refused: not Unitree's message.", "拒绝：不是宇树的消息。";
+        CtrlFault::Malformed => "Refused: not a message of its topic's type.", "拒绝：消息不符合话题的类型。";
         CtrlFault::Mode => "Refused: mode bits that do not exist.", "拒绝：模式位不存在。";
         CtrlFault::Position => "Refused: it sets positions of drives (mode 2).", "拒绝：设置了驱动位置（模式 2）。";
         CtrlFault::Length => "Refused: not six values.", "拒绝：不是六个数值。";
-        CtrlFault::Range => "Refused: a value outside the register's range.", "拒绝：数值超出寄存器范围。";
+        CtrlFault::Range => "Refused: a value outside the range of the register or the joint.", "拒绝：数值超出寄存器或关节的范围。";
         CtrlFault::Motors => "Refused: not the twelve motors of two hands.", "拒绝：不是双手的十二个电机。";
+        CtrlFault::Unpaired => "Refused: not one position for each named joint.", "拒绝：关节名称与位置的数量不一致。";
+        CtrlFault::UnknownJoint => "Refused: it names other joints, one twice, or no driven one.", "拒绝：关节名称未知、重复，或没有主动关节。";
+        CtrlFault::Points => "Refused: several points. Send each when it is due.", "拒绝：轨迹有多个点，请逐点按时发送。";
+        CtrlFault::Timing => "Refused: its point is not due within 200 ms.", "拒绝：轨迹点不在 200 ms 之内。";
         CtrlFault::AboveLimit => "Refused: faster or firmer than is set here.", "拒绝：速度或力高于此处设置。";
         CtrlFault::OtherSender => "Refused: another sender is followed.", "拒绝：正在跟随其他来源。";
     }

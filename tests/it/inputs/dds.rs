@@ -1,10 +1,10 @@
-//! Messages as Unitree's xr_teleoperate sends them, at a simulated hand behind a real link, in virtual time: what goes over the wire
+//! Messages as Unitree's xr_teleoperate and ROS 2's controllers send them, at a simulated hand behind a real link, in virtual time: what goes over the wire
 //! whatever becomes of the sender.
 
-use crate::inputs::follow::{Stage, check};
+use crate::inputs::follow::{Sent, Stage, check};
 use crate::setup::link::gentle;
 use crate::setup::time::in_virtual_time;
-use handscope::hand::kinematics::Side;
+use handscope::hand::kinematics::{RANGE, Side, driven_radians};
 use handscope::hand::{Dof, Force, PerDof, Speed};
 use handscope::inputs::dds::ctrl::CtrlFault;
 use handscope::inputs::dds::source::{DdsCommands, DdsSource};
@@ -12,6 +12,8 @@ use handscope::inputs::offer::SourceSite;
 use handscope::link::{ArmRequest, Owner};
 use handscope::motion::following::FollowPhase;
 use handscope::record::Abort;
+use handscope::record::file::format::cdr;
+use handscope::record::file::format::message::{Header, JointState};
 use handscope::record::{Disarmed, Record, WriteCause};
 use handscope::transport::dds::{DdsMessage, DdsWriterId};
 use std::sync::Arc;
@@ -32,13 +34,37 @@ fn message(from: DdsWriterId, [angle, force, speed]: [i16; 3], mode: u8) -> DdsM
     DdsMessage { from, bytes }
 }
 
-/// A source without a network.
-fn source(stage: &Stage, allowed: ArmRequest) -> (mpsc::Sender<DdsMessage>, DdsSource) {
-    let (messages, ctrl) = mpsc::channel(64);
+/// The topics of a source without a network.
+struct Topics {
+    ctrl: mpsc::Sender<DdsMessage>,
+    trajectories: mpsc::Sender<DdsMessage>,
+    positions: mpsc::Sender<DdsMessage>,
+}
+
+fn topics(stage: &Stage, allowed: ArmRequest) -> (Topics, DdsSource) {
+    let (ctrl, ctrl_commands) = mpsc::channel(64);
+    let (trajectories, trajectory_commands) = mpsc::channel(64);
+    let (positions, position_commands) = mpsc::channel(64);
     let (_none, motors) = mpsc::channel(1);
     let site = SourceSite::of(stage.link(), Side::Right, Arc::new(|| ()));
-    let source = DdsSource::open(allowed, site, DdsCommands { ctrl, motors });
-    (messages, source)
+    let commands = DdsCommands {
+        ctrl: ctrl_commands,
+        motors,
+        trajectories: trajectory_commands,
+        positions: position_commands,
+    };
+    let topics = Topics {
+        ctrl,
+        trajectories,
+        positions,
+    };
+    (topics, DdsSource::open(allowed, site, commands))
+}
+
+/// A source of Unitree's commands.
+fn source(stage: &Stage, allowed: ArmRequest) -> (mpsc::Sender<DdsMessage>, DdsSource) {
+    let (topics, source) = topics(stage, allowed);
+    (topics.ctrl, source)
 }
 
 /// Sends these angles a hundred times a second.
@@ -203,5 +229,146 @@ fn speeds_of_zero_stop_the_hand_whoever_sends_them_and_whatever_else_is_in_the_m
             assert_eq!(last.cause, WriteCause::Hold, "{nth}");
             assert!(last.to > 400, "{nth}: {last:?}");
         }
+    });
+}
+
+/// A trajectory for the index finger, due in these nanoseconds.
+fn trajectory(from: DdsWriterId, points: &[(f64, u32)]) -> DdsMessage {
+    let none: [Vec<f64>; 3] = Default::default();
+    let points = points
+        .iter()
+        .map(|(radians, nanos)| (vec![*radians], &none, (0, *nanos)));
+    let points: Vec<_> = points.collect();
+    let bytes = cdr::encode(&(
+        Header::default(),
+        ["right_index_1_joint"].as_slice(),
+        points,
+    ));
+    DdsMessage { from, bytes }
+}
+
+/// Positions of the index and its coupled joint.
+fn positions(from: DdsWriterId, radians: f64) -> DdsMessage {
+    let names = ["right_index_1_joint", "right_index_2_joint"];
+    let state = JointState {
+        name: names.map(str::to_owned).to_vec(),
+        position: vec![radians, radians * 1.0843],
+        ..JointState::default()
+    };
+    let bytes = cdr::encode(&state);
+    DdsMessage { from, bytes }
+}
+
+/// Radians of the index finger's joint at this angle, which trembles.
+fn radians(angle: i16, n: i16) -> f64 {
+    driven_radians(Dof::Index, angle + n % 5)
+}
+
+#[test]
+fn a_trajectory_of_one_point_moves_a_granted_hand_as_every_source_does_and_no_other() {
+    in_virtual_time(async {
+        let mut stage = Stage::begin().await;
+        let (topics, source) = topics(&stage, gentle());
+        // Without a user who grants control nothing moves.
+        for n in 0..50 {
+            let point = [(radians(400, n), 34_000_000)];
+            topics
+                .trajectories
+                .try_send(trajectory(FIRST, &point))
+                .unwrap();
+            stage.pass(10).await;
+        }
+        assert!(stage.index().is_empty(), "{:?}", stage.index());
+        stage.pass(100).await;
+        assert_eq!((source.view().taken, source.view().not_granted), (50, 50));
+        let task = stage.follow(stage.link().grant(Owner::Dds), source.follow());
+        for n in 0..300 {
+            let point = [(radians(400, n), 34_000_000)];
+            topics
+                .trajectories
+                .try_send(trajectory(FIRST, &point))
+                .unwrap();
+            stage.pass(10).await;
+        }
+        let near = |to: i16| (395..=405).contains(&to);
+        assert!(near(stage.index().last().unwrap().to));
+        // The same joints by positions; another writer waits for its turn.
+        topics.positions.try_send(positions(SECOND, 0.0)).unwrap();
+        stage.pass(100).await;
+        assert_eq!(source.view().refused, [(CtrlFault::OtherSender, 1)].into());
+        for n in 0..200 {
+            topics
+                .positions
+                .try_send(positions(FIRST, radians(600, n)))
+                .unwrap();
+            stage.pass(10).await;
+        }
+        assert!((595..=605).contains(&stage.index().last().unwrap().to));
+        // Silence holds the hand, and then takes control from it.
+        stage.pass(1500).await;
+        assert_eq!(task.await.unwrap().0, Ok(()));
+        assert_eq!(stage.link().status().disarmed, Some(Disarmed::Silent));
+        check(&stage.index());
+    });
+}
+
+#[test]
+fn a_trajectory_of_several_points_or_a_later_one_is_refused_whole() {
+    in_virtual_time(async {
+        let mut stage = Stage::begin().await;
+        let (topics, source) = topics(&stage, gentle());
+        let task = stage.follow(stage.link().grant(Owner::Dds), source.follow());
+        let beyond = 1.01 * f64::from(RANGE[Dof::Index]);
+        for points in [
+            vec![(0.5, 0), (0.6, 10_000_000)],
+            vec![(0.5, 900_000_000)],
+            vec![(beyond, 0)],
+        ] {
+            topics
+                .trajectories
+                .try_send(trajectory(FIRST, &points))
+                .unwrap();
+            stage.pass(10).await;
+        }
+        let refused = [
+            (CtrlFault::Range, 1),
+            (CtrlFault::Points, 1),
+            (CtrlFault::Timing, 1),
+        ];
+        stage.pass(100).await;
+        let view = source.view();
+        assert_eq!((view.taken, view.refused), (0, refused.into()));
+        stage.pass(1000).await;
+        assert_eq!(task.await.unwrap().0, Ok(()));
+        let sent = stage.index();
+        let is_hold = |sent: &Sent| sent.cause == WriteCause::Hold;
+        assert!(sent.iter().all(is_hold), "{sent:?}");
+    });
+}
+
+#[test]
+fn a_trajectory_without_points_stops_the_hand_whoever_sends_it() {
+    in_virtual_time(async {
+        let mut stage = Stage::begin().await;
+        let (topics, source) = topics(&stage, gentle());
+        let task = stage.follow(stage.link().grant(Owner::Dds), source.follow());
+        for n in 0..40 {
+            topics
+                .positions
+                .try_send(positions(FIRST, radians(300, n)))
+                .unwrap();
+            stage.pass(10).await;
+        }
+        topics
+            .trajectories
+            .try_send(trajectory(SECOND, &[]))
+            .unwrap();
+        stage.pass(100).await;
+        let why = Some(Disarmed::Stop);
+        assert_eq!(task.await.unwrap().0, Err(Abort::Disarmed { why }));
+        let last = *stage.index().last().unwrap();
+        assert_eq!(last.cause, WriteCause::Hold);
+        assert!(last.to > 400, "{last:?}");
+        assert_eq!(source.view().odd_stops, 0);
     });
 }

@@ -541,6 +541,12 @@ impl Meeting {
         listen(self.command(&[&[self.python.as_str(), script], &words[..]].concat()))
     }
 
+    /// A program of ROS 2.
+    fn ros(&self) -> Running {
+        let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/interop/ros_dds.py");
+        listen(self.command(&[self.python.as_str(), script, "127.0.0.1", "45", "right"]))
+    }
+
     /// Our end, and where a person presses Enter.
     fn follow(&self) -> (Running, PipeWriter) {
         let program = handscope().get_program().to_str().unwrap().to_owned();
@@ -622,5 +628,38 @@ fn unitrees_own_stack_reads_and_moves_the_hand_also_after_either_side_was_killed
         theirs.end().ok();
         assert!(last >= ARRIVE * all, "{last}");
         println!("followed {once}, {again}, {last} of {all}");
+    });
+}
+
+#[test]
+fn programs_of_ros_2_see_the_frames_and_move_and_stop_the_hand() {
+    unless_busy(|| {
+        let Some(meeting) = Meeting::new() else {
+            return skipped("cyclonedds", "no Python here has CycloneDDS 0.10.2");
+        };
+        let (mut ours, mut person) = meeting.follow();
+        let mut theirs = meeting.ros();
+        let seen = object(&theirs.line());
+        assert_eq!((&seen["frames"], &seen["fixed"]), (&12.into(), &5.into()));
+        let by_trajectory = object(&theirs.line());
+        // They fall silent, and a user lets them go on.
+        ours.until(|line| object(line)["phase"] == "following");
+        let ended = object(&ours.until(|line| object(line)["phase"] == "waiting"));
+        let refused = serde_json::json!({ "points": 1, "timing": 1 });
+        assert_eq!(ended["refused"], refused, "{ended}");
+        // Only what is typed after the question counts.
+        let question = ours.complaint();
+        assert!(
+            question.contains("fell silent: the hand was stopped"),
+            "{question}"
+        );
+        person.write_all(b"\n").unwrap();
+        let by_positions = object(&theirs.line());
+        println!("{seen} {by_trajectory} {by_positions}");
+        ours.until(|line| object(line)["phase"] == "following");
+        assert_eq!(object(&theirs.line())["stopped"], true);
+        let stopped = object(&ours.until(|line| object(line)["phase"] == "waiting"));
+        assert_eq!(stopped["refused"], refused, "{stopped}");
+        theirs.end().ok();
     });
 }
