@@ -23,6 +23,7 @@ use crate::motion::grasp::seen::GraspLabel;
 use crate::motion::held_object::{Bounded, HeldObject};
 use crate::motion::hold::{HoldClose, HoldEnd, HoldPhase, HoldStart, HoldView};
 use crate::motion::program::{Ended, Progress};
+use crate::poses::library::LibraryPose;
 use crate::poses::starter::starter;
 use crate::record::Abort;
 use crate::store::calendar::{day, since_1970};
@@ -422,25 +423,23 @@ fn close(args: &HoldArgs) -> anyhow::Result<HoldClose> {
     let Some(name) = &args.pose else {
         return Ok(HoldClose::TakeOver);
     };
-    let own = settings_file::default_path().map(|settings| pose_file::path_beside(&settings));
-    let own = own
-        .filter(|path| path.exists())
-        .map(|path| pose_file::read(&path));
-    let own = own
-        .transpose()
-        .map_err(|error| anyhow::anyhow!("{error}"))?;
-    let pose = own.as_ref().and_then(|own| own.pose_named(name));
-    let pose = pose.or_else(|| starter().pose_named(name)).ok_or_else(|| {
+    let pose = pose(name)?;
+    Ok(match pose.gap {
+        Some(gap) => HoldClose::Pinch(gap),
+        None => HoldClose::To(pose.targets()),
+    })
+}
+
+/// The pose of this name.
+pub(crate) fn pose(name: &str) -> anyhow::Result<LibraryPose> {
+    let named = pose_file::named(name).map_err(|error| anyhow::anyhow!("{error}"))?;
+    named.ok_or_else(|| {
         let names = starter().poses.iter().map(|pose| pose.name.as_str());
         let names: Vec<&str> = names.collect();
         WrongUsage::error(format!(
             "there is no pose '{name}': write one of the library's, such as {}",
             names.join(", ")
         ))
-    })?;
-    Ok(match pose.gap {
-        Some(gap) => HoldClose::Pinch(gap),
-        None => HoldClose::To(pose.targets()),
     })
 }
 

@@ -328,6 +328,11 @@ class Hand:
         _known(chosen)
         return self._begin({joint: to for joint in chosen}, speed, force_g).result()
 
+    def pose(self, name: str, *, speed: Count = None, force_g: Count = None) -> GripResult:
+        """Moves to a pose of the window's library, as `move` does: `hand.pose("Pinch")`. Upper or lower case is the same."""
+        angles = self._program.ask("pose", name=name)["angle"]
+        return self._begin(dict(zip(JOINTS, angles)), speed, force_g).result()
+
     def follow(
         self, *, little: Share = None, ring: Share = None, middle: Share = None, index: Share = None, thumb_bend: Share = None,
         thumb_rotate: Share = None, **others: NoReturn,
@@ -468,8 +473,7 @@ def _joints(others: Mapping[str, object], *six: Share) -> Dict[Joint, Share]:
 
 
 def _known(joints: Iterable[str]) -> None:
-    unknown = set(joints) - set(JOINTS)
-    if unknown:
+    if unknown := set(joints) - set(JOINTS):
         raise ValueError(f"{unknown.pop()!r} is not a joint: choose {', '.join(JOINTS)}")
 
 
@@ -493,12 +497,9 @@ def _options(options: Mapping[str, Any]) -> List[str]:
     words: List[str] = []
     for name, value in options.items():
         option = "--" + name.replace("_", "-")
-        if value is True:
-            words.append(option)
-        elif isinstance(value, (list, tuple)):
-            words += [option, ",".join(map(str, value))]
-        elif value is not None and value is not False:
-            words += [option, str(value)]
+        listed = ",".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
+        if value is not None and value is not False:
+            words += [option] if value is True else [option, listed]
     return words
 
 
@@ -509,8 +510,7 @@ def _is_whole(told: Sequence[Mapping[str, Any]]) -> bool:
 
 
 def _last(key: str, told: List[Any], why: Optional[str]) -> Mapping[str, Any]:
-    for one in reversed(told):
-        if key in one:
-            found: Mapping[str, Any] = one[key]
-            return found
-    raise HandscopeError(why or f"'handscope {key}' told no result")
+    found: List[Mapping[str, Any]] = [one[key] for one in told if key in one]
+    if not found:
+        raise HandscopeError(why or f"'handscope {key}' told no result")
+    return found[-1]

@@ -277,6 +277,18 @@ class Moves(unittest.TestCase):
                 told = lambda state: (state.target["index"], state.speed["index"], state.threshold_g["index"])
                 until(lambda: told(hand.state) == (900, 700, 900))
 
+    def test_a_pose_of_the_library_is_moved_to_as_its_angles_are(self):
+        with handscope.open("sim:") as hand:
+            with self.assertRaises(handscope.NotArmed):
+                hand.pose("Open")
+            with hand.armed():
+                self.assertEqual(hand.pose("relaxed", speed=1000).end, "reached")
+                wanted = {"little": 700, "ring": 720, "middle": 740, "index": 760, "thumb_bend": 850, "thumb_rotate": 800}
+                for joint, angle in wanted.items():
+                    self.assertAlmostEqual(hand.state.angle[joint], angle, delta=10)
+                with self.assertRaisesRegex(handscope.Refused, "no pose 'Cube'"):
+                    hand.pose("Cube")
+
     def test_settings_that_are_not_whole_are_refused_in_a_sentence(self):
         with handscope.open("sim:") as hand, hand.armed():
             for act in (

@@ -1,9 +1,10 @@
 //! Pose files on disk: read at start and for import, size-limited, off the window's thread. Knows no setpoint.
 
-use crate::app::files::put_aside;
+use crate::app::files::{put_aside, settings_file};
 use crate::app::notices::NoticeKind;
 use crate::poses::file;
-use crate::poses::library::PoseLibrary;
+use crate::poses::library::{LibraryPose, PoseLibrary};
+use crate::poses::starter::starter;
 use crate::store::{FileError, last_of, toml_file};
 use std::path::{Path, PathBuf};
 
@@ -23,6 +24,27 @@ pub fn path_beside(settings: &Path) -> PathBuf {
 /// [`FileError`] if the file cannot be read, with the location.
 pub fn read(path: &Path) -> Result<PoseLibrary, FileError> {
     toml_file::load(path, FILE_LEN_MAX, file::read)
+}
+
+/// The pose of this name, in upper or lower case: the user's own, or a shipped one; `None` if there is none.
+///
+/// # Errors
+/// [`FileError`] if the user's file cannot be read.
+pub fn named(name: &str) -> Result<Option<LibraryPose>, FileError> {
+    let own = settings_file::default_path().map(|settings| path_beside(&settings));
+    let own = own.filter(|path| path.exists()).map(|path| read(&path));
+    let own = own.transpose()?;
+    Ok([own.as_ref(), Some(starter())]
+        .into_iter()
+        .flatten()
+        .find_map(|library| in_any_case(library, name))
+        .cloned())
+}
+
+fn in_any_case<'a>(library: &'a PoseLibrary, name: &str) -> Option<&'a LibraryPose> {
+    let is_same = |pose: &&LibraryPose| pose.name.to_lowercase() == name.to_lowercase();
+    let exact = library.pose_named(name);
+    exact.or_else(|| library.poses.iter().find(is_same))
 }
 
 /// Serializes the library.

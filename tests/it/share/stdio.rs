@@ -163,6 +163,25 @@ impl Client {
 }
 
 #[test]
+fn a_pose_is_told_as_the_angles_of_a_move_and_moves_nothing() {
+    let mut script = Script::start("sim:");
+    let told = script.done(json!({"do": "pose", "name": "pinch"}));
+    assert_eq!(told["angle"], json!([300, 300, 300, 500, 60, 150]));
+    let refused = script.ask(json!({"do": "pose", "name": "Cube"}));
+    assert_eq!(refused["kind"], "wrong");
+    let why = refused["error"].as_str().unwrap();
+    assert!(
+        why.contains("no pose 'Cube'") && why.contains("Pinch"),
+        "{why}"
+    );
+    // It is not armed for that.
+    let state = script.until("state");
+    assert_eq!(state["angle"], json!(vec![1000; 6]), "{state}");
+    let moved = script.ask(json!({"do": "move", "angle": told["angle"]}));
+    assert_eq!(moved["kind"], "not_armed");
+}
+
+#[test]
 fn nothing_moves_before_it_is_armed_and_what_is_wrong_is_told() {
     unless_busy(|| {
         let mut script = Script::start("sim:");

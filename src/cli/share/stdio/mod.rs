@@ -15,7 +15,7 @@ use crate::cli::share::stdio::request::{LimitsRequest, MoveRequest, StdioLine, S
 use crate::cli::watch::telemetry::{grip_json, sample_json};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::kinematics::Side;
-use crate::hand::{ArmEpoch, Group, HandCommand, HandSample, Moment};
+use crate::hand::{Angle, ArmEpoch, Group, HandCommand, HandSample, Moment};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, Records};
@@ -335,6 +335,7 @@ impl StdioSession<'_> {
                 self.hand.link.read_at(rates);
                 Ok(())
             }
+            Ok(StdioRequest::Pose(name)) => return self.pose(&id, &name),
             Ok(StdioRequest::Record(path)) => return self.record(id, path.as_deref()),
             Ok(StdioRequest::Stop) => return self.stop(id),
             Ok(StdioRequest::Release) if self.is_to_stop() => return self.stop(id),
@@ -378,6 +379,23 @@ impl StdioSession<'_> {
             }
         };
         self.reply(&id, done.map(|()| json!({})))
+    }
+
+    /// Reports the angles of a pose, as `move` accepts them.
+    fn pose(&mut self, id: &Value, name: &str) -> Result<(), NobodyReads> {
+        let wrong = |why: String| StdioRefusal::new(RefusalKind::Wrong, why);
+        let found = match hold::pose(name) {
+            Err(error) => Err(wrong(error.to_string())),
+            Ok(pose) if pose.gap.is_some() => Err(wrong(format!(
+                "the pose '{}' is a grip by size: 'handscope grip' closes to a gap",
+                pose.name
+            ))),
+            Ok(pose) => {
+                let angles = pose.targets().map(|to| to.map(Angle::get));
+                Ok(json!({ "angle": angles.as_array() }))
+            }
+        };
+        self.reply(id, found)
     }
 
     /// The control of the hand, or the reason why it is missing.

@@ -42,6 +42,8 @@ pub(crate) enum StdioRequest {
     Clear,
     /// Set the polling rates of the hand.
     Rate(PollRates),
+    /// Report the angles of a pose of the library; this moves nothing.
+    Pose(String),
     /// Start a recording here, or with `None` end it.
     Record(Option<PathBuf>),
 }
@@ -156,6 +158,7 @@ fn request(fields: &mut Fields) -> Result<StdioRequest, String> {
             limits: LimitsRequest::read(fields)?,
             settles: field(fields, "settle", flag)?.unwrap_or(false),
         }),
+        "pose" => StdioRequest::Pose(field(fields, "name", text)?.ok_or("name: no pose is named")?),
         "stop" => StdioRequest::Stop,
         "release" => StdioRequest::Release,
         "disarm" => StdioRequest::Disarm,
@@ -312,6 +315,7 @@ mod tests {
             ),
             (r#"{"id":1,"do":"arm","speed":1001}"#, "1001"),
             (r#"{"id":1,"do":"rate","state_hz":0}"#, "1 to 1000"),
+            (r#"{"id":1,"do":"pose"}"#, "no pose is named"),
             (r#"{"id":1,"do":"fly"}"#, "help share"),
             (
                 r#"{"id":1,"do":"arm","now":true}"#,
