@@ -12,6 +12,8 @@ if ! pip_install "$readers"; then
   exit
 fi
 python tests/interop/sessions.py "$session"
+"$handscope" ros2 --out "$session/hand_ws"
+python tests/interop/ros2_workspace.py "$session/hand_ws" "$session/bag"
 # What pandas and polars made of our values is imported, and says the same.
 for library in pandas polars; do
   "$handscope" import "$session/$library.csv"

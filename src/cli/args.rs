@@ -3,6 +3,7 @@
 use crate::cli::about::help::{self, HelpArgs};
 use crate::cli::about::model::ModelArgs;
 use crate::cli::about::packaging::{CompletionsArgs, ManArgs};
+use crate::cli::about::ros2::Ros2Args;
 use crate::cli::check::CheckArgs;
 use crate::cli::doctor::DoctorArgs;
 use crate::cli::grip::GripArgs;
@@ -113,6 +114,11 @@ pub(crate) enum CliCommand {
         after_help = "Examples:\n  handscope model --urdf --out model\n  handscope model --urdf --mjcf --side left --out model\n\nNo hand is contacted. The table lists for each joint its name, its drive, its place in the registers, and the conversion of counts to radians. 'handscope help dds' describes the files."
     )]
     Model(ModelArgs),
+    /// Write a workspace of ROS 2: the messages as a package, and a launch file that shows the hand in RViz
+    #[command(
+        after_help = "Examples:\n  handscope ros2 --out hand_ws\n  cd hand_ws && colcon build\n\nNo hand is contacted, and no ROS is needed. The messages are those that recordings and DDS use. Nothing is overwritten: the folder must be new or empty. 'handscope help dds' describes the topics."
+    )]
+    Ros2(Ros2Args),
     /// Print the shell completion script for commands and options: bash, zsh, fish, ...
     #[command(
         after_help = "Examples:\n  handscope completions bash > ~/.local/share/bash-completion/completions/handscope\n  handscope completions fish > ~/.config/fish/completions/handscope.fish\n\nThe package includes them; this is for a program that was built from source."

@@ -123,6 +123,7 @@ fn execute(command: CliCommand) -> anyhow::Result<()> {
         CliCommand::Tune(args) => wait_for(tune::run(&mut out, &args)),
         CliCommand::Overshoot(args) => trial::overshoot::run(&mut out, &args),
         CliCommand::Model(args) => about::model::run(&mut out, &args),
+        CliCommand::Ros2(args) => about::ros2::run(&mut out, &args),
         CliCommand::Completions(args) => {
             about::packaging::completions(&mut out, &args, Cli::command())
         }

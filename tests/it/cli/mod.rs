@@ -39,6 +39,7 @@ mod pictures;
 mod quirks;
 #[cfg(unix)]
 mod recordings;
+mod ros2;
 #[cfg(unix)]
 mod scale;
 #[cfg(unix)]

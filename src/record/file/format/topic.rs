@@ -40,6 +40,16 @@ pub struct Schema {
     pub text: &'static str,
 }
 
+impl Schema {
+    /// Definition without those of the types that it uses: the content of its `.msg` file.
+    pub fn fields(self) -> &'static str {
+        let nested = self.text.find("====");
+        nested
+            .and_then(|at| self.text.get(..at))
+            .unwrap_or(self.text)
+    }
+}
+
 /// Appends the definition of `Time` to a definition.
 macro_rules! with_time {
     ($text:literal) => {
@@ -198,16 +208,6 @@ builtin_interfaces/Time[] finger_asked
     ),
 };
 
-/// Topics before those of the fingertips, in the order of their channel numbers.
-const PLAIN: [Topic; 7] = [
-    Topic::Joints,
-    Topic::State,
-    Topic::Command,
-    Topic::CommandFate,
-    Topic::Link,
-    Topic::Event,
-    Topic::Wire,
-];
 const STRING: Schema = Schema {
     id: 10,
     name: "std_msgs/msg/String",
@@ -266,6 +266,16 @@ const LASTING: &str = "- history: 1
 /// Key of the quality of service in a channel's metadata.
 pub(crate) const QUALITY: &str = "offered_qos_profiles";
 
+/// Topics before those of the fingertips, in the order of their channel numbers.
+const PLAIN: [Topic; 7] = [
+    Topic::Joints,
+    Topic::State,
+    Topic::Command,
+    Topic::CommandFate,
+    Topic::Link,
+    Topic::Event,
+    Topic::Wire,
+];
 /// Channel number of the first fingertip.
 const FIRST_TIP: u16 = 8;
 /// Topics after those of the fingertips, in the order of their channel numbers.
@@ -322,6 +332,9 @@ impl Topic {
             Self::Touch(Finger::Index) => "/handscope/touch/index",
             Self::Touch(Finger::Thumb) => "/handscope/touch/thumb",
             Self::Grip => "/handscope/grip",
+            Self::Frames => "/tf",
+            Self::FixedFrames => "/tf_static",
+            Self::Description => "/robot_description",
         }
     }
 
@@ -332,17 +345,11 @@ impl Topic {
             Self::State => STATE,
             Self::Command => COMMAND,
             Self::CommandFate => COMMAND_FATE,
-            Self::Frames => "/tf",
-            Self::FixedFrames => "/tf_static",
-            Self::Description => "/robot_description",
             Self::Link => LINK,
             Self::Event => EVENT,
             Self::Wire => WIRE,
             Self::Touch(_) => TOUCH,
             Self::Grip => GRIP,
-        }
-    }
-}
             Self::Frames | Self::FixedFrames => TF_MESSAGE,
             Self::Description => STRING,
         }
@@ -371,3 +378,6 @@ impl Topic {
         match self {
             Self::FixedFrames | Self::Description => Some(LASTING),
             _ => None,
+        }
+    }
+}
