@@ -18,7 +18,7 @@ pub struct HandList {
     given: SlotId,
     /// Poses and demos apply to all armed hands.
     poses_for_all: bool,
-    /// The user opened or removed a hand in this run.
+    /// The user opened, left or removed a hand in this run.
     chosen: bool,
 }
 
@@ -63,12 +63,12 @@ impl HandList {
         self.count() < HANDS_MAX
     }
 
-    /// True if the user opened or removed a hand in this run.
+    /// True if the user opened, left or removed a hand in this run.
     pub(crate) const fn are_chosen(&self) -> bool {
         self.chosen
     }
 
-    /// Notes that the user opened or removed a hand.
+    /// Notes that the user opened, left or removed a hand.
     pub(crate) const fn set_chosen(&mut self) {
         self.chosen = true;
     }

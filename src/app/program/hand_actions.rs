@@ -22,10 +22,10 @@ pub(super) fn connect(state: &mut State, to: Option<Endpoint>, env: &Env) {
         }
         // A scan may still query further ids on the requested port.
         state.scan.cancel();
-        state.hands.set_chosen();
         state.settings.remember(endpoint);
         state.settings.used_on(endpoint, day(since_1970()));
     }
+    state.hands.set_chosen();
     hands::with_shown(state, env, |hand, settings, ctx| {
         hand.is_removed = false;
         hand.procedures.close();

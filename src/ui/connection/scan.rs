@@ -54,8 +54,8 @@ impl ScanPanel {
                 pane.actions.push(Action::Scan(ScanTarget::Ports(self.ids)));
                 let is_off = pane.state.fleet.interface().is_none();
                 let interface = self.shared.typed().filter(|_| is_off);
-                let look = interface.map(|interface| Action::FindShared(Some(interface)));
-                pane.actions.extend(look);
+                let find = interface.map(|interface| Action::FindShared(Some(interface)));
+                pane.actions.extend(find);
             }
             Label::muted(look, scan::IDS).ui(ui);
             for (range, text) in [(IdRange::Few, scan::IDS_FEW), (IdRange::All, scan::IDS_ALL)] {

@@ -373,6 +373,13 @@ async fn the_hands_that_a_user_opened_are_open_at_the_next_start() {
         assert_eq!(connection.stats.writes, 0);
     }
 
+    // One that the user leaves is not opened again.
+    app.act(Action::Disconnect, clock.now());
+    run(&mut app, clock, 300).await;
+    close(&mut app, clock).await;
+    let kept = load(&path).settings;
+    assert_eq!(kept.open, before[..2]);
+
     // An address on the command line opens that hand alone, and changes nothing of the next start.
     let env = env();
     let clock = env.clock;
