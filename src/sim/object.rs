@@ -357,15 +357,25 @@ impl NamedObject {
         Self::ALL.into_iter().find(|object| object.name() == name)
     }
 
+    /// Width between the fingers, mm.
+    pub const fn size_mm(self) -> f64 {
+        match self {
+            Self::Cup => 45.0,
+            Self::Egg | Self::Block => 40.0,
+            Self::Sponge | Self::Can => 50.0,
+            Self::Tube => 30.0,
+        }
+    }
+
     /// The object itself: it is lifted once two fingers press it.
     pub fn object(self) -> Object {
-        let (size_mm, mass_g, sticking) = match self {
-            Self::Cup => (45.0, 150.0, 0.6),
-            Self::Egg => (40.0, 60.0, 0.45),
-            Self::Sponge => (50.0, 20.0, 0.9),
-            Self::Block => (40.0, 300.0, 0.6),
-            Self::Tube => (30.0, 120.0, 0.3),
-            Self::Can => (50.0, 350.0, 0.5),
+        let (mass_g, sticking) = match self {
+            Self::Cup => (150.0, 0.6),
+            Self::Egg => (60.0, 0.45),
+            Self::Sponge => (20.0, 0.9),
+            Self::Block => (300.0, 0.6),
+            Self::Tube => (120.0, 0.3),
+            Self::Can => (350.0, 0.5),
         };
         let obstacle = match self {
             Self::Cup => Obstacle {
@@ -400,7 +410,7 @@ impl NamedObject {
                 lift_after_s: Some(LIFT_AFTER_S),
                 ..Loads::NONE
             },
-            ..Object::touched_at(Object::contacts_of_size(size_mm, obstacle))
+            ..Object::touched_at(Object::contacts_of_size(self.size_mm(), obstacle))
         }
     }
 }

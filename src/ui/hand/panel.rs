@@ -4,12 +4,12 @@ use crate::app::action::Action;
 use crate::app::activity::Activity;
 use crate::app::hand::Hand;
 use crate::app::readings::Freshness;
-use crate::draw::figure::shape::Held;
+use crate::draw::figure::shape::{Held, HeldPlace};
 use crate::hand::heat::{HOT, WARM};
 use crate::hand::kinematics::Side;
 use crate::hand::{Angle, Dof, Finger, Moment, PerDof, PerFinger, Status};
 use crate::sim::Scenario;
-use crate::sim::object::NamedObject;
+use crate::sim::object::{NamedObject, Object};
 use crate::transport::Endpoint;
 use crate::ui::hand::fingertip::{Sense as Meant, Tip};
 use crate::ui::hand::pointed::{self, PointedPlace};
@@ -20,6 +20,9 @@ use crate::ui::kit::{self, Button, Look, Pane, Weight, format};
 use crate::ui::text::{main, panels, window, words};
 use crate::ui::theme;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
+
+/// Minimum height of a drawn hand that fills the rest of a view.
+const STILL_LEAST: f32 = 160.0;
 
 /// The drawn hand, in the orientation chosen by the user.
 #[derive(Debug, Clone, Default)]
@@ -114,6 +117,26 @@ impl StillHand {
             .widget_info(|| WidgetInfo::labeled(Role::Image, true, look.tr(panels::HAND_PICTURE)));
         self.0.paint(ui, place, look.palette, picture);
     }
+
+    /// Draws the shown hand over the rest of `ui`, with one joint in its colour; nothing where there is no space for a hand.
+    pub(crate) fn rest_ui(
+        &mut self,
+        ui: &mut Ui,
+        pane: &Pane<'_>,
+        tips: &PerFinger<Option<Tip>>,
+        lit: Option<Dof>,
+    ) {
+        let size = ui.available_size();
+        if size.y < STILL_LEAST {
+            return;
+        }
+        let (_, place) = ui.allocate_space(size);
+        let shown = HandPicture {
+            lit,
+            ..picture(pane.hand(), tips, pane.state.now)
+        };
+        self.ui(ui, place, pane.look, &shown);
+    }
 }
 
 /// Picture of a hand from its current state, with the load on its fingertips.
@@ -181,27 +204,52 @@ fn load(tip: &Tip) -> TipLoad {
     }
 }
 
+/// Thickness of the ball, the block and the cup that scenarios are named after, mm.
+const BALL_MM: f64 = 71.0;
+const BLOCK_MM: f64 = 48.0;
+const CUP_MM: f64 = 54.4;
+
 /// Object in front of the built-in simulated hand, known from its object or scenario; `None` for any other hand.
-fn held(endpoint: &Endpoint) -> Option<Held> {
+pub(super) fn held(endpoint: &Endpoint) -> Option<HeldPlace> {
     let Endpoint::Sim {
         scenario, object, ..
     } = endpoint
     else {
         return None;
     };
-    if let Some(object) = object {
-        return Some(match NamedObject::by_name(object) {
-            Some(NamedObject::Cup) => Held::Cup,
-            Some(NamedObject::Block) => Held::Block,
-            _ => Held::Ball,
-        });
+    let named = object.as_ref().and_then(|name| NamedObject::by_name(name));
+    let (shape, thickness_mm, touched) = match named {
+        Some(named) => (shape_of(named), named.size_mm(), named.object()),
+        None => {
+            let scenario = scenario.parse().ok()?;
+            let (shape, thickness_mm) = match scenario {
+                // The shape of an object in a file is not known.
+                _ if object.is_some() => (Held::Ball, BALL_MM),
+                Scenario::Free | Scenario::Touched | Scenario::Frozen => return None,
+                Scenario::Rigid => (Held::Block, BLOCK_MM),
+                Scenario::Fragile => (Held::Cup, CUP_MM),
+                Scenario::Idle | Scenario::Grasp | Scenario::Faults | Scenario::Extremes => {
+                    (Held::Ball, BALL_MM)
+                }
+            };
+            let touched = match shape {
+                Held::Ball => Object::soft_ball(),
+                _ => Object::of(scenario),
+            };
+            (shape, thickness_mm, touched)
+        }
+    };
+    let angles = (touched.contacts).map(|contact| contact.map(|contact| contact.angle));
+    Some(HeldPlace::touched(shape, thickness_mm, &angles))
+}
+
+const fn shape_of(named: NamedObject) -> Held {
+    match named {
+        NamedObject::Cup => Held::Cup,
+        NamedObject::Egg => Held::Ball,
+        NamedObject::Sponge | NamedObject::Block => Held::Block,
+        NamedObject::Tube | NamedObject::Can => Held::Tube,
     }
-    Some(match scenario.parse().ok()? {
-        Scenario::Free | Scenario::Touched | Scenario::Frozen => return None,
-        Scenario::Rigid => Held::Block,
-        Scenario::Fragile => Held::Cup,
-        Scenario::Idle | Scenario::Grasp | Scenario::Faults | Scenario::Extremes => Held::Ball,
-    })
 }
 
 /// Explains grey fingers under the picture.
@@ -264,10 +312,13 @@ mod tests {
             ("sim:?scenario=grasp", Some(Held::Ball)),
             ("sim:?scenario=free&object=block", Some(Held::Block)),
             ("sim:?object=egg", Some(Held::Ball)),
+            ("sim:?object=can", Some(Held::Tube)),
+            ("sim:?object=own.toml", Some(Held::Ball)),
             ("tcp:127.0.0.1:6000", None),
             ("rs485:/dev/ttyUSB0", None),
         ] {
-            assert_eq!(held(&endpoint.parse().unwrap()), wanted, "{endpoint}");
+            let shown = held(&endpoint.parse().unwrap());
+            assert_eq!(shown.map(|shown| shown.shape), wanted, "{endpoint}");
         }
     }
 

@@ -1,7 +1,7 @@
 //! Parts of the hand to draw: joint positions and targets, load on the fingertips, the object held.
 
 use crate::draw::figure::light::{Coat, PlacedSolid};
-use crate::draw::figure::shape::{self, Held};
+use crate::draw::figure::shape::{self, HeldPlace};
 use crate::hand::kinematics::{Segment, SegmentFrames, Side};
 use crate::hand::{Dof, Finger, PerDof, PerFinger};
 use crate::ui::theme::Palette;
@@ -57,7 +57,7 @@ pub(crate) struct HandPicture {
     /// Heat and force of the fingertips.
     pub(crate) tips: PerFinger<TipLoad>,
     /// Object in front of the simulated hand.
-    pub(crate) held: Option<Held>,
+    pub(crate) held: Option<HeldPlace>,
     /// Faults and temperatures of the drives.
     pub(crate) hurts: PerDof<Hurt>,
     /// Fingers that characterise the pose.
@@ -143,9 +143,9 @@ impl HandPicture {
             .filter(|finger| self.is_known(*finger));
         parts.extend(known.filter_map(|finger| self.arrow(&pose, finger, palette)));
         parts.extend(self.held.map(|held| PlacedSolid {
-            solid: shape::held(held),
+            solid: held.shape.solid(),
             segment: None,
-            frame: self.side.frame(),
+            frame: self.side.frame() * held.frame,
             coat: Coat {
                 color: Some(palette.simulated),
                 glass: HELD_PART,

@@ -3,13 +3,15 @@
 use crate::app::settings::Theme;
 use crate::draw::figure::camera::Turn;
 use crate::draw::figure::render::{SeenPlace, Sketch};
-use crate::draw::figure::shape::{self, Held};
+use crate::draw::figure::shape;
 use crate::hand::kinematics::{Segment, SegmentFrames, Side, tip_pad};
 use crate::hand::{Dof, Finger, PerDof};
 use crate::sim::Scenario;
-use crate::sim::object::Object;
+use crate::sim::object::{NamedObject, Object};
+use crate::transport::Endpoint;
 use crate::ui::hand::figures::{Figure, cross, picture_place};
 use crate::ui::hand::finger_drag::FingerDrag;
+use crate::ui::hand::panel::held;
 use crate::ui::hand::scene::{HandPicture, Hurt};
 use crate::ui::hand::view::{DrawSettings, FRONT, HandStage, HandUse, HandView, TURN, draw};
 use crate::ui::theme::Palette;
@@ -63,7 +65,7 @@ fn every_pose_is_finite_in_its_picture_and_within_its_triangles() {
         for step in 0..=8u8 {
             let share = f32::from(step) / 8.0;
             let mut picture = posed(side, [share, 1.0 - share, share]);
-            picture.held = Some(Held::Ball);
+            picture.held = held(&Endpoint::sim());
             let setting = DrawSettings {
                 turn,
                 ..setting(side, 400.0)
@@ -204,41 +206,61 @@ fn only_what_is_off_target_has_a_ghost() {
 }
 
 #[test]
-fn the_simulated_hand_meets_what_is_drawn_before_it() {
-    for (scenario, shown) in [
-        (Scenario::Idle, Held::Ball),
-        (Scenario::Rigid, Held::Block),
-        (Scenario::Fragile, Held::Cup),
-    ] {
-        let object = shape::held(shown);
-        let places = || object.corners.iter().map(|corner| corner.at);
+fn the_fingers_meet_what_is_drawn_before_them() {
+    let mut all = vec![
+        ("sim:".to_owned(), Object::of(Scenario::Idle)),
+        (
+            "sim:?scenario=rigid".to_owned(),
+            Object::of(Scenario::Rigid),
+        ),
+        (
+            "sim:?scenario=fragile".to_owned(),
+            Object::of(Scenario::Fragile),
+        ),
+    ];
+    all.extend(NamedObject::ALL.map(|own| (format!("sim:?object={}", own.name()), own.object())));
+    for (endpoint, object) in all {
+        let held = held(&endpoint.parse().expect("an address")).expect("an object");
+        let solid = held.shape.solid();
+        let places = || solid.corners.iter().map(|corner| corner.at);
         let (low, high) = (
             places().fold(Vec3::MAX, Vec3::min),
             places().fold(Vec3::MIN, Vec3::max),
         );
         let faces = || {
-            object
-                .faces
-                .iter()
-                .filter(|face| face.offset > face.normal.dot(object.middle))
+            let faces = solid.faces.iter();
+            faces.filter(|face| face.offset > face.normal.dot(solid.middle))
         };
         #[expect(clippy::cast_possible_truncation, reason = "an angle of at most 1000")]
-        let shares = Object::of(scenario)
+        let shares = object
             .contacts
             .map(|met| met.map_or(0.32, |met| met.angle as f32 / 1000.0));
         let pose = SegmentFrames::of_shares(Side::Right, &shares);
-        for finger in Finger::ALL {
+        let into = held.frame.inverse();
+        let scale = held.frame.matrix3.x_axis.length();
+        let fingers = [Finger::Little, Finger::Ring, Finger::Middle, Finger::Index];
+        // An egg is narrower than the hand.
+        let beside = |finger: &Finger| {
+            let at = into.transform_point3(pose.tip(*finger)).x;
+            (low.x..high.x).contains(&at)
+        };
+        let met: Vec<Finger> = fingers.into_iter().filter(beside).collect();
+        assert!(met.len() >= 2, "{endpoint} {met:?}");
+        for finger in met {
             let segment = Segment::tip(finger);
-            let solid = shape::solid(segment, false).expect("each segment has a solid");
-            let corners = solid.corners.iter();
-            let gap = corners.map(|corner| {
+            let tip = shape::solid(segment, false).expect("each segment has a solid");
+            let gap = tip.corners.iter().map(|corner| {
                 let at = pose.frame(segment).transform_point3(corner.at);
+                let at = into.transform_point3(at);
                 let out = faces().map(|face| face.normal.dot(at) - face.offset);
                 // The cup is open at an end.
-                out.fold((low - at).max(at - high).max_element(), f32::max)
+                out.fold((low - at).max(at - high).max_element(), f32::max) * scale
             });
             let gap = gap.fold(f32::MAX, f32::min);
-            assert!((-8.0..8.0).contains(&gap), "{shown:?} {finger:?}: {gap} mm");
+            assert!(
+                (-8.0..8.0).contains(&gap),
+                "{endpoint} {finger:?}: {gap} mm"
+            );
         }
     }
 }

@@ -190,8 +190,11 @@ impl HandView {
             draw(&mut self.sketch, picture, &setting, mesh);
             self.drawn = Some((*picture, setting));
         }
+        // A wide object may reach below the labels beside the hand.
+        let sides = ui.max_rect().x_range();
+        let clip = rect.with_min_x(sides.min).with_max_x(sides.max);
         ui.painter()
-            .with_clip_rect(rect)
+            .with_clip_rect(clip)
             .add(Shape::Mesh(Arc::clone(&self.mesh)));
     }
 

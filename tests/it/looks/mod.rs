@@ -143,6 +143,22 @@ const DRESSES: [(Theme, Language, &str); 4] = [
     (Theme::Light, Language::Zh, "-zh-light"),
 ];
 
+/// The built-in hand in a dark, English window.
+fn scene(scenario: &str, scale: f32) -> Scene {
+    Scene {
+        endpoint: Endpoint::Sim {
+            seed: 1,
+            scenario: scenario.into(),
+            body: None,
+            object: None,
+        },
+        size: SIZE,
+        scale,
+        theme: Theme::Dark,
+        language: Language::En,
+    }
+}
+
 /// Draws a stage in each dress, and calls `take` with each name that it wants.
 fn draw(
     stage: &Stage,
@@ -151,18 +167,7 @@ fn draw(
     mut take: impl FnMut(String, &Picture),
 ) {
     let named = |name: &str, of_dress: &str| format!("{name}{of_dress}");
-    let scene = Scene {
-        endpoint: Endpoint::Sim {
-            seed: 1,
-            scenario: stage.scenario.into(),
-            body: None,
-            object: None,
-        },
-        size: SIZE,
-        scale,
-        theme: Theme::Dark,
-        language: Language::En,
-    };
+    let scene = scene(stage.scenario, scale);
     let mut driver = match stage.card.and_then(SceneCard::line) {
         Some(line) => Driver::start_on_line(&scene, line).unwrap(),
         None => Driver::start(&scene).unwrap(),
@@ -557,4 +562,51 @@ fn a_missing_instrument_is_off_and_a_changed_number_is_not() {
     ] {
         assert_eq!(plain.off_per_mille(&other) <= PIXELS_OFF_PER_MILLE, passes);
     }
+}
+
+/// Number of areas in the colour of a main button, each as large as a small button.
+fn main_buttons(picture: &Picture) -> usize {
+    const MAIN: [u8; 3] = [0x4C, 0x9B, 0xFF];
+    const BUTTON_PIXELS: usize = 800;
+    let wide = usize::try_from(picture.size.0).unwrap();
+    let mut is_main: Vec<bool> = (picture.rgb.chunks_exact(3))
+        .map(|pixel| pixel == MAIN)
+        .collect();
+    let mut buttons = 0;
+    while let Some(start) = is_main.iter().position(|is_main| *is_main) {
+        let mut open = vec![start];
+        let mut area = 0;
+        while let Some(at) = open.pop() {
+            if std::mem::take(&mut is_main[at]) {
+                area += 1;
+                let near = [
+                    at.checked_sub(wide),
+                    at.checked_sub(1),
+                    Some(at + 1),
+                    Some(at + wide),
+                ];
+                open.extend(near.into_iter().flatten().filter(|at| *at < is_main.len()));
+            }
+        }
+        buttons += usize::from(area >= BUTTON_PIXELS);
+    }
+    buttons
+}
+
+#[test]
+fn no_view_has_two_main_buttons() {
+    let mut driver = Driver::start(&scene("rigid", 1.0)).unwrap();
+    driver.connect().unwrap();
+    let check = |driver: &mut Driver, when: &str| {
+        let counts = View::ALL.map(|view| (view.name(), main_buttons(&driver.picture(view))));
+        for (name, buttons) in counts {
+            assert!(buttons <= 1, "{name} has {buttons} main buttons {when}");
+        }
+        counts
+    };
+    let counts = check(&mut driver, "at rest");
+    // The measure sees the buttons.
+    assert!(counts.contains(&("live", 1)) && counts.contains(&("tune", 1)));
+    driver.try_grasps();
+    check(&mut driver, "after trials");
 }

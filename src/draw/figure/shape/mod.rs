@@ -12,7 +12,7 @@ mod palm;
 pub(crate) mod rings;
 mod thumb;
 
-pub use held::{Held, arrow, held};
+pub use held::{Held, HeldPlace, arrow};
 
 use Segment::{Index1, Index2, Little2, Middle2, Palm, Thumb1, Thumb2, Thumb3, Thumb4};
 
