@@ -35,7 +35,7 @@ pub(crate) fn header_ui(ui: &mut Ui, pane: &mut Pane<'_>, view: View, is_free: b
         }
         match &pane.state.timeline {
             Some(line) => back_ui(ui, pane, line.live_needs_eyes),
-            None => arm_ui(ui, pane),
+            None => arm_ui(ui, pane, view.tab()),
         }
         rooms::menu_ui(ui, pane);
         faults_ui(ui, pane);
@@ -70,14 +70,21 @@ fn stop_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     }
 }
 
-fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+/// Draws the button that arms. It is the main action of the live tab only: other tabs have their own.
+fn arm_ui(ui: &mut Ui, pane: &mut Pane<'_>, tab: Tab) {
     let look = pane.look;
     let armed = pane.hand().connection.is_armed();
     let refusal = pane.hand().arm_refusal(pane.state.now);
     let (text, name, weight) = if armed {
         (main::DISARM, main::DISARM_NAME, Weight::Armed)
     } else {
-        (main::ARM, main::ARM_NAME, Weight::Strong)
+        let is_main = tab == Tab::Live;
+        let weight = if is_main {
+            Weight::Strong
+        } else {
+            Weight::Normal
+        };
+        (main::ARM, main::ARM_NAME, weight)
     };
     let (text, name, refusal) = match refusal {
         // Only the key arms: a press here would be refused.
