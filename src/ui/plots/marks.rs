@@ -10,7 +10,7 @@ use crate::ui::theme;
 use egui::{Color32, Rect, Ui, pos2, vec2};
 
 /// Characters of a note shown beside its line; the tooltip has the rest.
-const NOTE_SHOWN: usize = 24;
+const NOTE_SHOWN: usize = 28;
 
 /// Times and colours of the lines.
 pub(crate) fn moments(pane: &Pane<'_>, (from_s, to_s): TimeSpan) -> Vec<(f64, Color32)> {
@@ -41,7 +41,7 @@ pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
     let words = marks.map(|mark| {
         let x = shown.transform.position_from_point_x(mark.at.secs());
         let (text, color) = mark_text(pane.look, &mark.kind);
-        let text = text.chars().take(NOTE_SHOWN).collect();
+        let text = shortened(text);
         let rank = rank(&mark.kind);
         MarkWords {
             x,
@@ -57,6 +57,14 @@ pub(crate) fn words_ui(ui: &Ui, pane: &Pane<'_>, shown: &ChartResponse) {
             .rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, ground);
         let label = Label::new(&words.text, words.color).small();
         label.paint(ui, place);
+    }
+}
+
+/// The text, or its start with an ellipsis if it is too long for a label.
+fn shortened(text: String) -> String {
+    match text.char_indices().nth(NOTE_SHOWN) {
+        Some((cut, _)) => format!("{}\u{2026}", text[..cut].trim_end()),
+        None => text,
     }
 }
 
@@ -150,6 +158,14 @@ pub(crate) fn near(pane: &Pane<'_>, shown: &ChartResponse) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_label_that_is_cut_says_so() {
+        let whole = "Thumb bend: Current limit";
+        assert_eq!(shortened(whole.into()), whole);
+        let cut = shortened("A note that is much too long for a label".into());
+        assert_eq!(cut, "A note that is much too long\u{2026}");
+    }
 
     #[test]
     fn of_crowded_marks_the_worst_keep_their_labels_and_none_covers_another() {
