@@ -6,9 +6,8 @@ use crate::app::files::export::Export;
 use crate::app::recordings::RecordingAction;
 use crate::checkup::subject::Grade;
 use crate::checkup::trend::day;
-use crate::hand::Dof;
 use crate::ui::checkup::table;
-use crate::ui::hand::panel::{StillHand, picture};
+use crate::ui::hand::panel::StillHand;
 use crate::ui::kit::{self, Button, Label, Pane};
 use crate::ui::text::{checkup, tune};
 use crate::ui::theme;
@@ -34,7 +33,8 @@ impl ReportView {
                 return;
             }
             if let Some(run) = state.hand().running.checkup_run() {
-                self.hand_ui(ui, pane, run.view.joint);
+                let tips = heat::tips(pane);
+                self.hand.rest_ui(ui, pane, &tips, run.view.joint);
                 return;
             }
             match (&own.last, &own.unread) {
@@ -49,18 +49,10 @@ impl ReportView {
                 (None, None) => {
                     Label::text(look, checkup::NEVER).large().wrap().ui(ui);
                     kit::small_text_ui(ui, look.tip(checkup::NEVER), look.palette.muted);
-                    self.hand_ui(ui, pane, None);
+                    self.hand.rest_ui(ui, pane, &heat::tips(pane), None);
                 }
             }
         });
-    }
-
-    /// Draws the hand, with the joint that moves now in its colour.
-    fn hand_ui(&mut self, ui: &mut Ui, pane: &Pane<'_>, moves: Option<Dof>) {
-        let (_, place) = ui.allocate_space(ui.available_size());
-        let mut picture = picture(pane.hand(), &heat::tips(pane), pane.state.now);
-        picture.lit = moves;
-        self.hand.ui(ui, place, pane.look, &picture);
     }
 
     fn shown_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>, shown: &ShownCheckup) {

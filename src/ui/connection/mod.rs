@@ -16,7 +16,7 @@ use crate::transport::endpoint::typed::{TypedError, other_kind, recognise, short
 use crate::ui::connection::detail::{KINDS, LinkFields, row_ui};
 use crate::ui::connection::hand_tiles::tiles_ui;
 use crate::ui::connection::scan::ScanPanel;
-use crate::ui::hand::panel::{StillHand, picture};
+use crate::ui::hand::panel::StillHand;
 use crate::ui::kit::{self, Button, Label, Look, Pane, TextField, Weight};
 use crate::ui::text::{errors, main, panels, scan as scan_text, window};
 use crate::ui::theme;
@@ -29,8 +29,6 @@ const WAY: Vec2 = vec2(140.0, 40.0);
 
 /// Width from which on the link is beside the address.
 const WIDE: f32 = 976.0;
-/// Minimum height of the drawn hand.
-const HAND_LEAST: f32 = 160.0;
 
 /// Result of parsing the typed text.
 type Meaning = Result<Endpoint, TypedError>;
@@ -117,12 +115,7 @@ impl ConnectionForm {
     fn link_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             figures::link_ui(ui, pane);
-            let size = ui.available_size();
-            if size.y >= HAND_LEAST {
-                let (_, place) = ui.allocate_space(size);
-                let picture = picture(pane.hand(), &heat::tips(pane), pane.state.now);
-                self.hand.ui(ui, place, pane.look, &picture);
-            }
+            self.hand.rest_ui(ui, pane, &heat::tips(pane), None);
         });
     }
 

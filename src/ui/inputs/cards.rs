@@ -7,7 +7,7 @@ use crate::inputs::stream::StreamPlace;
 use crate::link::Owner;
 use crate::motion::source::SourceKind;
 use crate::share::gateway::{ClientLease, GatewayClient};
-use crate::ui::hand::panel::{StillHand, picture};
+use crate::ui::hand::panel::StillHand;
 use crate::ui::inputs::mirror_card::{mirror_row, mirror_ui};
 use crate::ui::inputs::pad_card::{PadCard, pad_row, pad_source_ui};
 use crate::ui::inputs::source::{SourceRow, SourceSwitch, grant_client_ui, grant_ui};
@@ -22,8 +22,6 @@ use std::net::{IpAddr, SocketAddr};
 const LIST: f32 = 300.0;
 /// Maximum width of the settings of a source: longer lines are hard to read.
 const SUBJECT_MAX: f32 = 640.0;
-/// Minimum height of the drawn hand.
-const HAND_LEAST: f32 = 160.0;
 
 /// The chosen source, and text in progress.
 #[derive(Debug)]
@@ -128,13 +126,7 @@ impl SourceCards {
         if self.chosen == SourceCard::Pad && self.pad.ui(ui, pane) {
             return;
         }
-        let size = ui.available_size();
-        if size.y >= HAND_LEAST {
-            let (_, place) = ui.allocate_space(size);
-            let tips = heat::tips(pane);
-            let picture = picture(pane.hand(), &tips, pane.state.now);
-            self.hand.ui(ui, place, pane.look, &picture);
-        }
+        self.hand.rest_ui(ui, pane, &heat::tips(pane), None);
     }
 
     fn stream_row(&self, pane: &Pane<'_>) -> SourceRow {

@@ -11,9 +11,8 @@ pub(crate) mod tiles;
 use crate::app::action::Action;
 use crate::poses::edit::{LibraryEdit, PoseEdit};
 use crate::poses::library::{LibraryPose, PoseId};
-use crate::ui::hand::tile;
 use crate::ui::kit::path_field::path_ui;
-use crate::ui::kit::{self, Button, Label, Pane, Pick, Weight, reorder};
+use crate::ui::kit::{self, Button, Label, Pane, Pick, reorder};
 use crate::ui::poses::gestures::GestureView;
 use crate::ui::poses::sequence_view::{SequenceView, beside};
 use crate::ui::poses::tiles::{capture_ui, for_all_ui, tile_ui};
@@ -54,6 +53,14 @@ pub(crate) struct PoseView {
 }
 
 impl PoseView {
+    /// Width that the open section needs: a step of a sequence has up to seven numbers side by side.
+    pub(crate) const fn least_width(&self) -> f32 {
+        match self.section {
+            PoseSection::Sequences => 800.0,
+            PoseSection::Mine | PoseSection::Shipped | PoseSection::InHand => 600.0,
+        }
+    }
+
     pub(crate) fn ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
         let newest = pane.state.poses.newest;
         if newest != self.shown {
@@ -91,8 +98,7 @@ impl PoseView {
             return empty_ui(ui, pane);
         }
         ui.horizontal(|ui| {
-            let capture = Button::text(look, poses::CAPTURE);
-            capture_ui(ui, pane, capture.weight(Weight::Strong));
+            capture_ui(ui, pane, Button::text(look, poses::CAPTURE));
             ui.scope(|ui| {
                 ui.set_max_width(200.0);
                 kit::translated_edit_ui(ui, look, poses::FIND, &mut self.find);
@@ -177,12 +183,10 @@ fn refused_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
-    ui.vertical_centered(|ui| {
-        tile::empty_page_ui(ui, look, 1.0, poses::EMPTY_TITLE);
-        Label::muted(look, poses::EMPTY_BODY).wrap().ui(ui);
-        ui.add_space(theme::GAP);
-        let tip = look.tip(poses::CAPTURE);
-        let button = Button::new(look.tr(poses::EMPTY_BUTTON), tip).weight(Weight::Strong);
-        capture_ui(ui, pane, button.large());
-    });
+    ui.add_space(theme::STEP);
+    Label::text(look, poses::EMPTY_TITLE).large().wrap().ui(ui);
+    kit::small_text_ui(ui, look.tr(poses::EMPTY_BODY), look.palette.muted);
+    let tip = look.tip(poses::CAPTURE);
+    let button = Button::new(look.tr(poses::EMPTY_BUTTON), tip);
+    capture_ui(ui, pane, button);
 }

@@ -4,6 +4,7 @@
 use crate::app::action::Action;
 use crate::app::state::State;
 use crate::app::trials::{Comparison, SessionId, SessionOrigin, TrialAction, TrialSession};
+use crate::ui::hand::panel::StillHand;
 use crate::ui::kit::path_field::path_ui;
 use crate::ui::kit::{
     self, Button, ButtonRole, Card, CardButton, Label, Look, Pane, Pick, TextField, ViewRequest,
@@ -11,6 +12,7 @@ use crate::ui::kit::{
 };
 use crate::ui::text::{notices, tune};
 use crate::ui::theme;
+use crate::ui::touch::heat;
 use crate::ui::trials::compare_best::{self, BestView};
 use crate::ui::trials::compare_choice::{ResultsPlace, ShownSessions, TrialKey};
 use crate::ui::trials::compare_curves::CurvesView;
@@ -45,6 +47,7 @@ pub(crate) struct ResultsView {
     /// Show the hand's measured overshoot in place of trials.
     is_of_hand: bool,
     map: OvershootView,
+    hand: StillHand,
 }
 
 impl ResultsView {
@@ -84,7 +87,7 @@ impl ResultsView {
                 pane.actions.push(Action::Trial(open));
             }
             let Some(session) = focus else {
-                return empty_ui(ui, pane);
+                return self.empty_ui(ui, pane);
             };
             tune_live::progress_ui(ui, pane);
             if trials.sessions.len() > 1 {
@@ -100,6 +103,15 @@ impl ResultsView {
             }
             self.session_ui(ui, pane, session, place);
         });
+    }
+
+    /// Draws the next step while nothing was tried, above the hand that will try it.
+    fn empty_ui(&mut self, ui: &mut Ui, pane: &mut Pane<'_>) {
+        let look = pane.look;
+        no_trials_ui(ui, look, tune::IDLE_TITLE, tune::IDLE_BODY);
+        let open = Button::text(look, tune::OPEN_EARLIER);
+        open.on_click(ui, pane, Action::Trial(TrialAction::Open(None)));
+        self.hand.rest_ui(ui, pane, &heat::tips(pane), None);
     }
 
     /// Draws the curves above the table, with the best setting beside them if it fits.
@@ -262,17 +274,6 @@ fn words_ui(ui: &mut Ui, pane: &mut Pane<'_>, session: &TrialSession) {
             });
         });
     }
-}
-
-/// Draws the reason for an empty view, and the next step.
-fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let look = pane.look;
-    ui.vertical_centered(|ui| {
-        no_trials_ui(ui, look, tune::IDLE_TITLE, tune::IDLE_BODY);
-        ui.add_space(theme::GAP);
-        let open = Button::text(look, tune::OPEN_EARLIER).large();
-        open.on_click(ui, pane, Action::Trial(TrialAction::Open(None)));
-    });
 }
 
 /// Card that confirms removing a session without a file.

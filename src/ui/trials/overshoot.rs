@@ -6,11 +6,13 @@ use crate::app::trials::TrialAction;
 use crate::hand::Dof;
 use crate::hand::impact::overshoot_g;
 use crate::hand::overshoot::{MeasuredCloses, Stages, Stiffness};
+use crate::ui::hand::panel::StillHand;
 use crate::ui::kit::{self, Button, Label, Look, Pane, Pick, Weight};
 use crate::ui::plots::scales;
 use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
-use egui::{Color32, Role, Sense, Ui, WidgetInfo, vec2};
+use crate::ui::touch::heat;
+use egui::{Color32, Role, Ui, WidgetInfo};
 use egui_extras::{Column, TableRow};
 use egui_plot::{AxisHints, Line, LineStyle, MarkerShape, Plot, PlotBounds, PlotPoints, Points};
 
@@ -38,6 +40,7 @@ pub(crate) struct OvershootView {
     dof: Option<Dof>,
     /// True while a confirmation to delete all measurements is shown.
     asks: bool,
+    hand: StillHand,
 }
 
 impl OvershootView {
@@ -45,7 +48,8 @@ impl OvershootView {
         let map = &pane.hand().overshoot.map;
         if map.is_empty() {
             self.asks = false;
-            return empty_ui(ui, pane);
+            no_trials_ui(ui, pane.look, tune::MAP_EMPTY, tune::MAP_EMPTY_BODY);
+            return self.hand.rest_ui(ui, pane, &heat::tips(pane), None);
         }
         let has = |dof: Dof| map.kinds().iter().any(|own| own.kind.dof == dof);
         self.dof = self.dof.filter(|dof| has(*dof));
@@ -94,23 +98,10 @@ impl OvershootView {
     }
 }
 
-/// Explains that there are no measurements, and how to obtain them.
-fn empty_ui(ui: &mut Ui, pane: &Pane<'_>) {
-    ui.vertical_centered(|ui| {
-        no_trials_ui(ui, pane.look, tune::MAP_EMPTY, tune::MAP_EMPTY_BODY);
-    });
-}
-
-/// Draws an empty view: the icon of tuning above a title and a body. The caller centres it.
+/// Draws the title and the next step of an empty view.
 pub(crate) fn no_trials_ui(ui: &mut Ui, look: Look, title: Text, body: Text) {
-    ui.add_space(ui.available_height() * 0.24);
-    let size = vec2(ui.available_width(), 64.0);
-    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
-    let sign = Label::new(theme::TUNE, look.palette.faint);
-    let sign = sign.font(theme::icon_high(size.y)).center();
-    sign.paint(ui, place);
-    Label::text(look, title).ui(ui);
-    Label::muted(look, body).wrap().ui(ui);
+    Label::text(look, title).large().wrap().ui(ui);
+    kit::small_text_ui(ui, look.tr(body), look.palette.muted);
 }
 
 /// Plots overshoot over speed, with a point per kind of close and a curve for the other hand.

@@ -36,7 +36,6 @@ const STAGE_LEAST: f32 = 288.0;
 const PLOTS_LEAST: f32 = 320.0;
 const FAULTS_LEAST: f32 = 480.0;
 const FINGERTIP_LEAST: f32 = 640.0;
-const POSES_LEAST: f32 = 720.0;
 /// Minimum height of the view at which a replay shows poses, too.
 const REPLAY_WITH_POSES: f32 = 480.0;
 /// Width of the list of a recording's trials.
@@ -250,7 +249,7 @@ impl WindowViews {
             rest: match self.view {
                 View::Touch => FINGERTIP_LEAST,
                 View::Faults => FAULTS_LEAST,
-                View::Poses => POSES_LEAST,
+                View::Poses => self.poses.least_width(),
                 _ => PLOTS_LEAST,
             },
         };
