@@ -165,14 +165,15 @@ pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
             object,
             ..
         } => {
-            let given = body.iter().chain(object);
-            let body: String = given.map(|text| format!(", {text}")).collect();
-            match scenario.parse() {
-                Ok(scenario) => {
-                    format!("{kind}, {}{body}", look.tr(panels::scenario(scenario)))
-                }
-                Err(_) => format!("{kind}{body}"),
-            }
+            // An object takes the place of the one that the scenario is named after.
+            let scenario = scenario.parse().ok().filter(|_| object.is_none());
+            let scenario = scenario.map(|own| look.tr(panels::scenario(own)));
+            let given = scenario.into_iter().chain(object.as_deref());
+            let given = given.chain(body.as_deref());
+            std::iter::once(kind)
+                .chain(given)
+                .collect::<Vec<_>>()
+                .join(", ")
         }
         Endpoint::Tcp { port, unit, .. } => look.fill(WITH_UNIT, &[&kind, port, unit]),
         Endpoint::Slcan { bitrate, id, .. } => look.fill(WITH_BITRATE, &[&kind, bitrate, id]),
@@ -197,4 +198,24 @@ pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String 
     let speed = speed.map(|speed| format!(", {speed}")).unwrap_or_default();
     let id = id.map(|id| format!("ID {id}, ")).unwrap_or_default();
     format!("{id}{kind}{speed}")
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may")]
+    use super::*;
+    use crate::app::state::State;
+
+    #[test]
+    fn an_object_takes_the_place_of_the_one_of_the_scenario() {
+        let look = Look::of(&State::default());
+        for (spelled, words) in [
+            ("sim:", "Simulated, Soft ball"),
+            ("sim:?object=cup", "Simulated, cup"),
+            ("sim:?scenario=free&object=block", "Simulated, block"),
+        ] {
+            let endpoint = spelled.parse().unwrap();
+            assert_eq!(recognised(look, &endpoint), words);
+        }
+    }
 }
