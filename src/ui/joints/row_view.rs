@@ -158,7 +158,8 @@ fn impact_ui(ui: &mut Ui, pane: &Pane<'_>, row: &JointRow) {
     let (speed, force) = (speed.get(), force.get());
     let map = &hand.overshoot.map;
     let expected = map.expected(row.dof, Stages::One, speed.into(), force.into());
-    if expected.over_g < NOTABLE_G || hand.runs_series() {
+    let nobody_sets = hand.runs_series() || pane.recorded().is_some();
+    if expected.over_g < NOTABLE_G || nobody_sets {
         return;
     }
     let response = kit::warning_ui(ui, pane.look.palette.warn);

@@ -275,8 +275,8 @@ fn live_ui(ui: &mut Ui, pane: &Pane<'_>, id: ParamId) {
     let color = pane.look.value(fresh, pane.look.palette.text);
     let age = live.map(|(_, at)| format::age(pane.state.now.since(at)));
     let below = match (age, fresh) {
-        (None, _) => String::new(),
-        (Some(age), Freshness::Live) => age,
+        // How long ago all were read is above the table.
+        (None, _) | (Some(_), Freshness::Live) => String::new(),
         (Some(age), _) => format!("{age} {}", pane.look.tr(device::AGO)),
     };
     let value = value_text(id, live.map(|(value, _)| value));

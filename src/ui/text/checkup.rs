@@ -55,7 +55,7 @@ texts! {
     SCALE_PART: "{} of {} loads", "已测 {} / {}";
     SCALE_KNOWN: "100 g = {} N ±{} %, {}", "100 g = {} N ±{} %，{}";
     SCALE_LIMIT: "At most, g", "最大力 g", "The largest of the five loads.", "五种力中最大的一种。";
-    SCALE_START: "Press the scale", "压秤测量", "The chosen finger presses the scale in the current arming. Loads measured before at the same limit are not pressed again.", "在当前使能下，所选手指压秤。此前以同一最大力测过的不再重复。";
+    SCALE_START: "Start pressing", "开始压秤", "The chosen finger presses the scale in the current arming. Loads measured before at the same limit are not pressed again.", "在当前使能下，所选手指压秤。此前以同一最大力测过的不再重复。";
     SCALE_FORGET: "Forget", "删除", "Removes what was measured of this finger. Its forces are in grams of this hand again.", "删除这根手指的测量结果，力重新以此手的克表示。";
     SCALE_ASK: "Load {} of {}: {} presses with {} g of this hand. Type what the scale shows.", "第 {} 次，共 {} 次：{}以此手的 {} g 施压。请输入秤的读数。";
     SCALE_PRESSING: "{} presses the scale", "{}正在压秤";

@@ -19,7 +19,7 @@ texts! {
     READ: "Read again", "重新读取", "Reads all rows from the hand. Writes nothing.", "从灵巧手读取全部行，不写入任何内容。";
     APPLY: "Apply", "应用", "Writes the staged rows and reads them back. They hold until the hand is switched off, unless they are saved to flash.", "写入暂存的行并读回。若不保存到闪存，断电后即失效。";
     UNDO: "Undo apply", "撤销应用", "Writes back what the last apply changed, and reads it back.", "写回上次应用所改动的值，并读回核对。";
-    UNSTAGE_ALL: "Drop staged", "清除暂存", "Forgets everything that is staged. Writes nothing.", "清除全部暂存值，不写入任何内容。";
+    UNSTAGE_ALL: "Discard staged", "清除暂存", "Forgets everything that is staged. Writes nothing.", "清除全部暂存值，不写入任何内容。";
     UNSTAGE: "Drop", "清除", "Forgets what is staged here. Writes nothing.", "清除此行暂存值，不写入任何内容。";
     COPY: "Copy the hand's speed and force", "取手当前的速度与力阈值", "Stages SPEED_SET and FORCE_SET, as they are read from the hand now, as defaults after power-up, for all joints. Writes nothing.", "把当前从灵巧手读到的 SPEED_SET 与 FORCE_SET 暂存为全部自由度的上电默认值，不写入任何内容。";
     COPY_UNKNOWN: "SPEED_SET and FORCE_SET are not known now.", "SPEED_SET 与 FORCE_SET 目前未知。";
@@ -122,7 +122,7 @@ texts! {
     SAVE_NOT_READ: "its parameters could not be read back as they were.", "参数无法照原样读回。";
     SAVE_LINK: "the link was lost.", "连接断开。";
 
-    DUMP: "Dump to file", "导出到文件", "Writes what was read to a file of parameters.", "把读到的值写入参数文件。";
+    DUMP: "Export to file", "导出到文件", "Writes what was read to a file of parameters.", "把读到的值写入参数文件。";
     OPEN: "Open file", "打开文件", "Shows a file of parameters beside the hand. Writes nothing.", "把参数文件与灵巧手对照显示，不写入任何内容。";
     BACKUPS: "Backups", "备份";
     BACKUP_OF: "Hand of the backup", "备份所属灵巧手";

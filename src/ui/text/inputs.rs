@@ -71,8 +71,8 @@ texts! {
     PAD_CHANGE: "Click a control to change what it does.", "点击控件可更改其动作。";
     FOLLOW_NOW: "{} counts ahead of the joints, {} ms from input to wire (99 %)", "领先实际角度 {}，输入到线路 {} ms（99 %）";
     LIMITS: "Limits for external control:", "外部控制的限制：";
-    LEAD: "Lead", "领先量", "Counts of 1000 that a target may be ahead of its joint:", "目标最多领先实际角度的量（满程 1000）：";
-    FOLLOW_RATE: "Counts a second", "每秒变化", "How fast a target may go, counts of 1000 a second:", "目标每秒最多变化的量（满程 1000）：";
+    LEAD: "Lead at most", "最大领先量", "Counts of 1000 that a target may be ahead of its joint:", "目标最多领先实际角度的量（满程 1000）：";
+    FOLLOW_RATE: "Speed at most", "最大速度", "How fast a target may go, counts of 1000 a second:", "目标每秒最多变化的量（满程 1000）：";
     OTHER_FOLLOWS: "At {}, {} follows this sender already: one sender must not move two hands.", "{} 上的 {} 已在跟随此来源：一个来源不可同时控制两只手。";
     NONE: "No gamepad", "没有手柄";
     POSE: "Pose {}", "姿态：{}";

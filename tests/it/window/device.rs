@@ -105,7 +105,7 @@ fn without_a_hand_every_value_is_a_dash_and_the_reason_is_said() {
         "Apply",
         "Undo apply",
         "Save to flash",
-        "Dump to file",
+        "Export to file",
     ] {
         assert!(bench.is_disabled(Role::Button, button), "{button}");
     }
@@ -526,7 +526,7 @@ fn dangerous_defaults_are_asked_about_before_they_are_saved() {
     ask_for_hard_defaults(&mut bench);
     bench.click("Apply anyway");
     settle(&mut bench);
-    bench.click("Dump to file");
+    bench.click("Export to file");
     bench.run(400);
     bench.click("Open file");
     bench.run(400);
@@ -591,7 +591,7 @@ fn the_speed_that_the_hand_has_now_is_staged_for_all() {
 fn a_file_is_compared_row_by_row_and_only_ticked_rows_are_staged() {
     let mut bench = Bench::live();
     open(&mut bench);
-    bench.click("Dump to file");
+    bench.click("Export to file");
     bench.run(400);
     let path = bench.folder().join("handscope-params.toml");
     let text = std::fs::read_to_string(&path).unwrap();
@@ -628,7 +628,7 @@ fn where_no_file_was_chosen_its_path_can_be_typed_and_the_outcome_stands_there()
     bench.run(400);
     let told = bench.texts_with("elsewhere.toml");
     assert_eq!(told.len(), 2, "in the view and in the line: {told:?}");
-    bench.click("Dump to file");
+    bench.click("Export to file");
     bench.run(400);
     std::fs::rename(bench.folder().join("handscope-params.toml"), path).unwrap();
     bench.click("Open path");
@@ -643,7 +643,7 @@ fn where_no_file_was_chosen_its_path_can_be_typed_and_the_outcome_stands_there()
 fn a_bad_file_is_refused_whole_with_the_name_of_the_field() {
     let mut bench = Bench::live();
     open(&mut bench);
-    bench.click("Dump to file");
+    bench.click("Export to file");
     bench.run(400);
     let path = bench.folder().join("handscope-params.toml");
     let text = std::fs::read_to_string(&path).unwrap();
@@ -804,7 +804,7 @@ fn a_backup_is_no_wider_than_the_list_it_stands_in() {
             .iter()
             .filter(|(name, _)| name.ends_with("before save"));
         let backup = backups.next().unwrap().1;
-        let dump = bench.rect(Role::Button, "Dump to file");
+        let dump = bench.rect(Role::Button, "Export to file");
         assert!(backup.right() <= size.x - 20.0, "{backup}");
         assert!(backup.left() >= dump.left() - 1.0, "{backup} {dump}");
     }

@@ -10,7 +10,7 @@ use handscope::sim::object::{Object, Obstacle};
 use handscope::sim::{Scenario, SimConfig};
 use handscope::ui::View;
 
-const START: &str = "Press the scale";
+const START: &str = "Start pressing";
 const SHOWS: &str = "The scale shows, g";
 
 /// A hand whose index finger is above a scale, with the check-up shown.

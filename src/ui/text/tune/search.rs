@@ -17,7 +17,7 @@ texts! {
     LIMIT: "peak at most, g", "峰值上限 g", "No close may press harder than this.", "任何一次闭合都不应超过此力。";
     HOLD: "hold at least, g", "至少保持 g", "Force of the grip once it has settled.", "抓握稳定后至少保留的力。";
     CLOSES: "confirm with", "确认次数", "59 closes hold however the peaks vary; fewer assume normal variation.", "59 次闭合不依赖峰值的分布；更少则假设峰值服从正态分布。";
-    FREE: "Whatever the distribution", "不假设分布", "The bound is then the largest of all closes; that needs 22 or 59 of them.", "此时上界取所有闭合的最大值，需要 22 或 59 次。";
+    FREE: "Assume no distribution", "不假设分布", "The bound is then the largest of all closes; that needs 22 or 59 of them.", "此时上界取所有闭合的最大值，需要 22 或 59 次。";
     PROBING: "Slow closes look for the contact.", "慢速闭合，寻找接触位置。";
     RISING: "Faster, as long as it stays under the limit.", "在不超过上限的前提下逐步加快。";
     CONFIRMING: "Confirms: {} of {}.", "确认中：第 {} 次，共 {} 次。";
