@@ -113,7 +113,7 @@ impl Action {
             | Self::Target(..)
             | Self::Preset(_)
             | Self::Pinch(_)
-            | Self::Hold(HoldAction::Start(_) | HoldAction::Repeat(_))
+            | Self::Hold(HoldAction::Start(_) | HoldAction::Repeat(_) | HoldAction::PutDown)
             | Self::Scale(
                 ScaleAction::Start(..)
                 | ScaleAction::Reading(_)

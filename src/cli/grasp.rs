@@ -1,21 +1,26 @@
-//! Grasps on the command line: the file that is saved after a hold that worked, and the one that a hold repeats.
+//! Grasps on the command line: the file that is saved after a hold that worked, the one that a hold repeats, and the user's word in a
+//! confirmation.
 
 use crate::app::files::settings_file;
+use crate::cli::consent::{self, ConsentFrom, NoConsent};
 use crate::cli::out::file::nothing_at;
 use crate::cli::out::{WrongUsage, notify};
 use crate::hand::PerDof;
 use crate::motion::grasp::confirm::Agreement;
+use crate::motion::grasp::confirmed_file;
 use crate::motion::grasp::file::{self, EXTENSION, NOTE_CHARS_MAX, is_note};
+use crate::motion::grasp::run::{Confirming, Unconfirmed};
 use crate::motion::grasp::saved::{Grasp, GraspClaim};
-use crate::motion::grasp::{confirmed_file, run::Unconfirmed};
 use crate::poses::library::{NAME_CHARS_MAX, clean};
 use crate::store::calendar::{day, since_1970};
 use crate::transport::Endpoint;
 use crate::trials::session;
 use anyhow::{Context as _, anyhow, bail};
+use futures::{Stream, stream};
 use serde::Serialize;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use tokio::sync::watch;
 
 /// Where a grasp is: in the pose library, by its name, or in a file.
 #[derive(Debug, Clone)]
@@ -154,6 +159,44 @@ impl ChosenGrasp {
                 "warning: the confirmation is not stored in {}: {error}",
                 file.display()
             ));
+        }
+    }
+}
+
+/// A close that waits for the user to say that the object stands; `None` while none does.
+pub(crate) type AskedClose = Option<Confirming>;
+
+/// The user's word that the object stands, once for each close that waits for it. `ask` puts the question. Ends with the hold.
+pub(crate) fn put_down(
+    asked: watch::Receiver<AskedClose>,
+    from: Option<ConsentFrom>,
+    ask: impl Fn(Confirming),
+) -> impl Stream<Item = Result<(), NoConsent>> {
+    stream::unfold((asked, ask), move |(mut asked, ask)| async move {
+        let word = word(&mut asked, from, &ask).await?;
+        Some((word, (asked, ask)))
+    })
+}
+
+async fn word(
+    asked: &mut watch::Receiver<AskedClose>,
+    from: Option<ConsentFrom>,
+    ask: &impl Fn(Confirming),
+) -> Option<Result<(), NoConsent>> {
+    loop {
+        asked.wait_for(Option::is_some).await.ok()?;
+        if let Err(nobody) = consent::forget_earlier(from).await {
+            return Some(Err(nobody));
+        }
+        let Some(close) = *asked.borrow() else {
+            continue;
+        };
+        ask(close);
+        match consent::answer().await {
+            Err(nobody) => return Some(Err(nobody)),
+            Ok(()) if asked.borrow().is_some() => return Some(Ok(())),
+            // The object was lifted again meanwhile.
+            Ok(()) => notify("that line came while the object was lifted, and is not used"),
         }
     }
 }

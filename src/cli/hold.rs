@@ -2,12 +2,15 @@
 
 use crate::app::files::{pose_file, settings_file};
 use crate::checkup::newtons_file;
-use crate::cli::grasp::{self, ChosenGrasp, GraspPlace, Trust, grasp_place, note};
+use crate::cli::consent::{ConsentFrom, can_answer};
+use crate::cli::grasp::{
+    self, AskedClose, ChosenGrasp, GraspPlace, Trust, grasp_place, note, put_down,
+};
 use crate::cli::grip::gap;
 use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::parse::{hand, seconds};
 use crate::cli::session;
-use crate::cli::trial::drive::ArmedHand;
+use crate::cli::trial::drive::{ArmedHand, by_user};
 use crate::hand::gap::Gap;
 use crate::hand::grip::Tightened;
 use crate::hand::hold_forces::HoldForces;
@@ -16,9 +19,11 @@ use crate::hand::overshoot::{OvershootMap, Stiffness};
 use crate::hand::statistics::mean;
 use crate::hand::{Finger, Force, Moment, PerDof, Speed};
 use crate::link::ArmRequest;
-use crate::motion::drive::stop_words;
+use crate::motion::drive::{drive, stop_words};
 use crate::motion::grasp::doubt::GraspDoubt;
-use crate::motion::grasp::run::{ConfirmStep, Confirming, GraspRun, GraspStart, GraspView};
+use crate::motion::grasp::run::{
+    ConfirmStep, Confirming, GraspInput, GraspRun, GraspStart, GraspView,
+};
 use crate::motion::grasp::seen::GraspLabel;
 use crate::motion::held_object::{Bounded, HeldObject};
 use crate::motion::hold::{HoldClose, HoldEnd, HoldPhase, HoldStart, HoldView};
@@ -29,11 +34,14 @@ use crate::record::Abort;
 use crate::store::calendar::{day, since_1970};
 use crate::transport::Endpoint;
 use crate::trials::overshoot_file;
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, anyhow, bail};
 use clap::Args;
+use futures::{StreamExt as _, stream};
 use serde_json::json;
+use std::cell::{Cell, RefCell};
 use std::path::PathBuf;
 use std::time::Duration;
+use tokio::sync::watch;
 
 /// Said when the user ends a hold.
 const KEPT: &str = "ended by the user; the hand keeps its position and what it holds";
@@ -94,9 +102,22 @@ pub(crate) struct HoldArgs {
         conflicts_with_all = ["pose", "gap", "at_least", "at_most", "newtons"]
     )]
     pub(crate) grasp: Option<GraspPlace>,
+    /// Take a line of standard input for the word that the object stands, also where that is no terminal: one that comes after the question
+    #[arg(long, value_name = "FROM", requires = "grasp")]
+    pub(crate) consent: Option<ConsentFrom>,
+    /// The hand that is reached by way of --hand, where that is shared: what is known of it applies
+    #[arg(long, value_name = "URL", value_parser = hand, hide = true)]
+    pub(crate) known_as: Option<Endpoint>,
     /// Print JSON objects, one a line
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+impl HoldArgs {
+    /// The hand whose measurements and confirmations apply.
+    fn own_hand(&self) -> &Endpoint {
+        self.known_as.as_ref().unwrap_or(&self.hand)
+    }
 }
 
 fn force(text: &str) -> Result<f64, String> {
@@ -111,10 +132,13 @@ fn force(text: &str) -> Result<f64, String> {
 
 /// Holds. Fails if nothing was held, the object was lost, or it ended early.
 pub(crate) async fn run(out: &mut Out, args: &HoldArgs) -> anyhow::Result<()> {
-    let newtons = newtons(&args.hand)?;
+    let newtons = newtons(args.own_hand())?;
     let mut asked = AskedHold::of(args, newtons)?;
     if !args.arm {
         bail!("{}", asked.unarmed(args));
+    }
+    if asked.is_unconfirmed() {
+        can_answer(args.consent).map_err(|nobody| anyhow!("nothing was moved: {nobody}"))?;
     }
     let limits = ArmRequest {
         speed: PerDof::splat(Speed::nearest(25)),
@@ -123,25 +147,46 @@ pub(crate) async fn run(out: &mut Out, args: &HoldArgs) -> anyhow::Result<()> {
     let mut hand = ArmedHand::ready(&args.hand, limits).await?;
     let program = GraspRun::new(hand.armed.epoch, asked.start(args), hand.armed.clock.now());
     let clock = hand.armed.clock;
-    let mut lines = HoldLines {
+    let (question, questions) = watch::channel(None);
+    let lines = RefCell::new(HoldLines {
+        out,
         args,
         newtons,
         shown: None,
         due: clock.now(),
         view: None,
-    };
-    let driven = hand
-        .run(program, |progress| {
-            lines.report(out, clock.now(), progress).is_ok()
-        })
-        .await;
-    let view = lines.view;
+        question,
+    });
+    let refused = Cell::new(None);
+    let words = put_down(questions, args.consent, |close| {
+        lines.borrow_mut().ask(close);
+    });
+    let words = words.map(|word| match word {
+        Ok(()) => GraspInput::PutDown,
+        Err(nobody) => {
+            refused.set(Some(nobody.to_string()));
+            GraspInput::Abort(Abort::Person)
+        }
+    });
+    let ends = by_user(&mut hand.interrupt).map(GraspInput::Abort);
+    let report = |progress| lines.borrow_mut().report(clock.now(), progress).is_ok();
+    let inputs = stream::select(ends, words);
+    let driven = drive(&hand.link, hand.armed, program, inputs, report).await;
+    hand.release(driven.stop).await;
+    let HoldLines { out, view, .. } = lines.into_inner();
+    let refused = refused.into_inner();
     let held = driven.program.held_for(clock.now());
     if let (Some(chosen), Some(agreement)) = (&mut asked.chosen, driven.program.agreement()) {
-        chosen.keep(&args.hand, agreement);
+        chosen.keep(args.own_hand(), agreement);
     }
     let saved = asked.save(&driven.program, clock.now());
     let done = match driven.end {
+        Err(Abort::Person) if refused.is_some() => {
+            let nobody = refused.as_deref().unwrap_or_default();
+            Err(format!(
+                "the grasp is not confirmed, as {nobody}; the hand keeps its position"
+            ))
+        }
         Err(Abort::Person) if held.is_some() => {
             // Also with --json: whether the stop was confirmed is said where it is seen.
             notify(&format!("{KEPT}{}", stop_words(driven.stop)));
@@ -161,7 +206,7 @@ pub(crate) async fn run(out: &mut Out, args: &HoldArgs) -> anyhow::Result<()> {
         "grasp": asked.chosen.as_ref().map(|chosen| &chosen.grasp.name),
         "trust": asked.chosen.as_ref().map(|chosen| chosen.trust),
         "agreement": driven.program.agreement(),
-        "doubt": doubt(driven.end).map(|doubt| doubt.to_string()),
+        "doubt": doubt(driven.end).map(|doubt| doubt.to_string()).or(refused),
         "saved": saved.as_ref().ok().and_then(|saved| saved.as_ref()?.to_str()),
         "not_saved": saved.as_ref().err().map(|why| format!("{why:#}")),
     }});
@@ -192,7 +237,7 @@ struct AskedHold {
 impl AskedHold {
     fn of(args: &HoldArgs, newtons: PerDof<Option<f64>>) -> anyhow::Result<Self> {
         let place = args.grasp.as_ref();
-        let chosen = place.map(|place| ChosenGrasp::read(place, &args.hand, newtons));
+        let chosen = place.map(|place| ChosenGrasp::read(place, args.own_hand(), newtons));
         let chosen = chosen.transpose()?;
         let (close, forces, reading_per_g) = match &chosen {
             Some(own) => (own.grasp.close.way, own.grasp.forces, own.reading_per_g),
@@ -201,12 +246,12 @@ impl AskedHold {
         let repeated = chosen.as_ref().and_then(|own| own.grasp.close.pose.clone());
         let about = args.save.as_ref().map(|place| {
             let claim = args.tuned.as_ref();
-            let claim = claim.map(|folder| grasp::claim(folder, &args.hand));
+            let claim = claim.map(|folder| grasp::claim(folder, args.own_hand()));
             let about = GraspLabel {
                 name: place.name(),
                 note: args.note.clone().unwrap_or_default(),
                 day: day(since_1970()),
-                hand: args.hand.clone(),
+                hand: args.own_hand().clone(),
                 pose: repeated.or_else(|| args.pose.clone()),
                 newtons,
                 claim: claim.transpose()?,
@@ -220,6 +265,12 @@ impl AskedHold {
             chosen,
             about: about.transpose()?,
         })
+    }
+
+    /// True if the hand confirms the grasp first.
+    fn is_unconfirmed(&self) -> bool {
+        let chosen = self.chosen.as_ref();
+        chosen.is_some_and(|own| own.trust == Trust::NotConfirmed)
     }
 
     fn unarmed(&self, args: &HoldArgs) -> String {
@@ -245,9 +296,9 @@ impl AskedHold {
                 duration: args.duration,
                 reading_per_g: self.reading_per_g,
                 locked: PerDof::splat(false),
-                overshoot: overshoot(&args.hand),
-                blocks: session::size_blocks(&args.hand),
-                grip: session::grip_estimator(&args.hand),
+                overshoot: overshoot(args.own_hand()),
+                blocks: session::size_blocks(args.own_hand()),
+                grip: session::grip_estimator(args.own_hand()),
             },
             unconfirmed: self.chosen.as_ref().and_then(ChosenGrasp::unconfirmed),
         }
@@ -264,45 +315,69 @@ impl AskedHold {
     }
 }
 
-/// Prints the hold while it lasts.
+/// Prints the hold while it lasts, and what it asks.
 struct HoldLines<'a> {
+    out: &'a mut Out,
     args: &'a HoldArgs,
     newtons: PerDof<Option<f64>>,
     shown: Option<(HoldPhase, Option<Confirming>)>,
     /// Time of the next line.
     due: Moment,
     view: Option<GraspView>,
+    /// The close that waits for the user's word.
+    question: watch::Sender<AskedClose>,
 }
 
 impl HoldLines<'_> {
+    /// Asks whether the object stands.
+    fn ask(&mut self, Confirming { close, of, .. }: Confirming) {
+        let how = match self.args.consent {
+            None => "press Enter once the object stands by itself, Ctrl-C to keep it",
+            Some(ConsentFrom::Stdin) => "enter a line once the object stands by itself",
+        };
+        notify(&format!(
+            "confirming {close} of {of}: the load is gone; {how}: then the hand opens"
+        ));
+        if self.args.json {
+            // A line that is not printed ends the hold with the next report.
+            let _shown = self
+                .out
+                .object(&json!({ "ask": { "close": close, "of": of }}))
+                .and_then(|()| self.out.flush());
+        }
+    }
+
     fn report(
         &mut self,
-        out: &mut Out,
         now: Moment,
         progress: Progress<GraspView, Tightened>,
     ) -> anyhow::Result<()> {
         match progress {
             Progress::Event(tightened) if self.args.json => {
-                out.stream_object(&json!({ "tightened": tightened }))?;
+                self.out.stream_object(&json!({ "tightened": tightened }))?;
             }
             Progress::View(view) => {
                 self.view = Some(view);
+                let asked = view.confirming;
+                let asked = asked.filter(|own| own.step == ConfirmStep::Release);
+                self.question.send_replace(asked);
                 let part = (view.hold.phase, view.confirming);
                 let is_due = now >= self.due || self.shown != Some(part);
                 if is_due {
                     self.due = now.plus(LINE_INTERVAL);
                     self.shown = Some(part);
                     if self.args.json {
-                        out.stream_object(&json!({ "holding": view }))?;
+                        self.out.stream_object(&json!({ "holding": view }))?;
                     } else {
                         let confirming = view.confirming.map_or(String::new(), confirm_words);
-                        out.stream_line(&format!("{confirming}{}", self.line(&view.hold)))?;
+                        self.out
+                            .stream_line(&format!("{confirming}{}", self.line(&view.hold)))?;
                     }
                 }
             }
             Progress::Event(_) | Progress::Sent(_) => {}
         }
-        out.shown()
+        self.out.shown()
     }
 
     fn line(&self, view: &HoldView) -> String {
@@ -362,7 +437,8 @@ fn confirm_words(confirming: Confirming) -> String {
     let step = match step {
         ConfirmStep::Close => "the object lies in its place",
         ConfirmStep::Lift => "LIFT the object and use it, without turning the hand",
-        ConfirmStep::PutDown => "use it, then PUT IT DOWN: the hand opens when the load is gone",
+        ConfirmStep::PutDown => "use it, then PUT IT DOWN",
+        ConfirmStep::Release => "the load is gone; say so once the object stands by itself",
         ConfirmStep::Open => "opening; put the object back in its place",
     };
     format!("confirming {close} of {of}: {step}; ")

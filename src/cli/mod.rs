@@ -3,6 +3,7 @@
 mod about;
 mod args;
 mod check;
+mod consent;
 mod doctor;
 mod grasp;
 mod grip;

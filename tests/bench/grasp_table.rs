@@ -12,7 +12,9 @@ use handscope::hand::{
 };
 use handscope::link::LinkStatus;
 use handscope::motion::grasp::doubt::GraspDoubt;
-use handscope::motion::grasp::run::{GraspRun, GraspStart, Unconfirmed};
+use handscope::motion::grasp::run::{
+    ConfirmStep, Confirming, GraspInput, GraspRun, GraspStart, Unconfirmed,
+};
 use handscope::motion::grasp::saved::Grasp;
 use handscope::motion::grasp::seen::GraspLabel;
 use handscope::motion::hold::{HoldClose, HoldEnd, HoldStart};
@@ -172,7 +174,15 @@ impl Bench {
                 stall: None,
                 now: self.now,
             };
-            if let Some(Order::Set(setpoints)) = self.program.tick(&seen) {
+            let asks =
+                |own: Option<Confirming>| own.is_some_and(|own| own.step == ConfirmStep::Release);
+            // The user sees whether the object stands.
+            let says = asks(self.program.view(self.now).confirming) && load_g <= PUT_DOWN_G;
+            let order = match says {
+                true => self.program.input(GraspInput::PutDown, &seen),
+                false => self.program.tick(&seen),
+            };
+            if let Some(Order::Set(setpoints)) = order {
                 for write in setpoints.commands().iter().flat_map(HandCommand::writes) {
                     let address = write.span().address;
                     let mut bytes = write.bytes().to_vec();

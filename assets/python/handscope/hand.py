@@ -375,16 +375,34 @@ class Hand:
         """Closes thumb and index to a gap, as `handscope grip` does."""
         return _last("grip", *self._command("grip", gap=gap_mm, **options))
 
-    def hold(self, for_s: float, **options: Any) -> Mapping[str, Any]:
+    def hold(
+        self, for_s: float, *, put_down: Optional[Callable[[int], object]] = None, **options: Any
+    ) -> Mapping[str, Any]:  # fmt: skip
         """Holds an object between two forces for this time, as `handscope hold` does, with its options:
-        `hand.hold(10, pose="Power grasp", at_least=150, at_most=400)`. The hand keeps what it holds."""
-        return _last("hold", *self._command("hold", **{"for": for_s, **options}))
+        `hand.hold(10, pose="Power grasp", at_least=150, at_most=400)`. The hand keeps what it holds. A grasp of another hand is
+        confirmed first if `put_down` is given: it is called with the number of a close once the load is gone, and returns once a
+        person said that the object stands. Then the hand opens."""
+        # The command reaches the hand over its shared one, and knows it by its own name.
+        options = {"for": for_s, "known_as": self.url, **options}
+        if put_down is None:
+            return _last("hold", *self._command("hold", **options))
+        says = put_down
 
-    def _command(self, name: str, **options: Any) -> Tuple[List[Any], Optional[str]]:
+        def answer(told: Mapping[str, Any]) -> bool:
+            if asked := told.get("ask"):
+                says(asked["close"])
+            return bool(asked)
+
+        return _last("hold", *self._command("hold", answer, **options, consent="stdin"))
+
+    def _command(
+        self, name: str, answer: Optional[Callable[[Mapping[str, Any]], bool]] = None, /, **options: Any
+    ) -> Tuple[List[Any], Optional[str]]:  # fmt: skip
         """Lets a command move the hand in this script's place, over the shared hand: what it told, and why it failed, if so."""
         self._may_move()
         self._program.ask("disarm")
-        done = program.run([name, "--hand", self.share_url, *_options(options), "--arm", "--json"])
+        command = [name, "--hand", self.share_url, *_options(options), "--arm", "--json"]
+        done = program.run(command) if answer is None else program.converse(command, answer)
         told = [json.loads(line) for line in done.lines]
         if done.why and not done.did_nothing and not _is_whole(told):
             # It may have been stopped by a person, who is not overruled.

@@ -67,11 +67,40 @@ def run(arguments: Sequence[str]) -> Ran:
         child.terminate()  # taken as Ctrl-C: the hand is stopped first
         child.communicate()
         raise
-    said: List[str] = words.splitlines()
-    why = sentence(said, f"'handscope {arguments[0]}' failed") if child.returncode else None
+    return _ran(arguments, child.returncode, told.splitlines(), words.splitlines())
+
+
+def converse(arguments: Sequence[str], answer: Callable[[Mapping[str, Any]], bool]) -> Ran:
+    """Runs a command to its end, and answers it: after each line of JSON for which `answer` returns True, a line is entered."""
+    child = _start([find(), *arguments], subprocess.PIPE)
+    assert child.stdin and child.stdout and child.stderr
+    words: List[str] = []
+    listener = threading.Thread(target=words.extend, args=(child.stderr,), daemon=True)
+    listener.start()
+    told: List[str] = []
+    try:
+        for line in child.stdout:
+            told.append(line.rstrip("\n"))
+            if answer(json.loads(line)):
+                child.stdin.write("\n")
+                child.stdin.flush()
+        child.wait()
+    except BaseException:
+        child.terminate()  # taken as Ctrl-C: the hand is stopped first
+        raise
+    finally:
+        child.stdin.close()
+        child.wait()
+        listener.join(5.0)
+        child.stdout.close()
+    return _ran(arguments, child.returncode, told, words)
+
+
+def _ran(arguments: Sequence[str], status: int, told: List[str], said: List[str]) -> Ran:
+    why = sentence(said, f"'handscope {arguments[0]}' failed") if status else None
     for line in [] if why else said:
-        _log.info("%s", line)
-    return Ran(told.splitlines(), why, child.returncode == 2)
+        _log.info("%s", line.rstrip("\n"))
+    return Ran(told, why, status == 2)
 
 
 def _start(command: Sequence[str], stdin: int) -> "subprocess.Popen[str]":

@@ -10,13 +10,16 @@ use crate::link::LinkHandle;
 use crate::motion::drive::{Armed, drive};
 use crate::motion::grasp::confirm::Agreement;
 use crate::motion::grasp::doubt::GraspDoubt;
-use crate::motion::grasp::run::{Confirming, GraspRun, GraspStart, GraspView};
+use crate::motion::grasp::run::{
+    ConfirmStep, Confirming, GraspInput, GraspRun, GraspStart, GraspView,
+};
 use crate::motion::grasp::saved::Grasp;
 use crate::motion::grasp::seen::{GraspLabel, NoGrasp};
 use crate::motion::hold::{HoldClose, HoldEnd, HoldPhase, HoldView};
 use crate::motion::program::{Ended, Progress};
 use crate::record::Abort;
-use tokio::sync::oneshot;
+use futures::{StreamExt as _, stream};
+use tokio::sync::{mpsc, oneshot};
 
 /// A user action on a hold.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +32,8 @@ pub enum HoldAction {
     Repeat(String),
     /// Save the hold that ended as a grasp of the pose library, by the name of its pose or the next unused one.
     Save,
+    /// Say that the object stands by itself: the hand opens, for the next close of a confirmation.
+    PutDown,
     /// End it. The hand keeps its position, and so what it holds.
     End,
 }
@@ -55,6 +60,8 @@ pub struct HoldMotion {
     /// The grasp that it repeats.
     pub(crate) repeats: Option<Grasp>,
     ender: Option<oneshot::Sender<Abort>>,
+    /// The user's word that the object stands; one at a time.
+    put_down: mpsc::Sender<()>,
     task: Option<Running<Progress<GraspView, Tightened>, (HoldEnded, HoldDone)>>,
     done: Option<HoldDone>,
 }
@@ -92,12 +99,18 @@ impl HoldMotion {
         let program = GraspRun::new(armed.epoch, start, env.clock.now());
         let clock = env.clock;
         let (ender, ended) = oneshot::channel();
+        let (put_down, words) = mpsc::channel(1);
         let task = Running::start(env, |steps| async move {
             let report = |progress| {
                 steps.send(progress);
                 true
             };
-            let driven = drive(&link, armed, program, ends(ended), report).await;
+            let words = stream::unfold(words, |mut words| async {
+                let () = words.recv().await?;
+                Some((GraspInput::PutDown, words))
+            });
+            let inputs = stream::select(ends(ended).map(GraspInput::Abort), words);
+            let driven = drive(&link, armed, program, inputs, report).await;
             let (program, at) = (driven.program, clock.now());
             (driven.end, HoldDone { program, at })
         });
@@ -108,6 +121,7 @@ impl HoldMotion {
             done: None,
             end: None,
             ender: Some(ender),
+            put_down,
             task: Some(task),
         }
     }
@@ -138,6 +152,18 @@ impl HoldMotion {
     pub(crate) fn confirmed(&self) -> Option<(Grasp, Agreement)> {
         let agreement = self.done.as_ref()?.program.agreement()?;
         Some((self.repeats.clone()?, agreement))
+    }
+
+    /// True while it waits for the user to say that the object stands.
+    pub fn asks(&self) -> bool {
+        let step = self.confirming.map(|own| own.step);
+        self.is_running() && step == Some(ConfirmStep::Release)
+    }
+
+    /// Passes on that the object stands. The program ignores it unless it waits for that.
+    pub(crate) fn put_down(&self) {
+        // A closed channel means that it has ended.
+        let _sent = self.put_down.try_send(());
     }
 
     /// Ends it early.

@@ -28,6 +28,11 @@ pub(super) fn hold(hand: &mut Hand, action: HoldAction, settings: &Settings, ctx
         HoldAction::Start(close) => start(hand, (close, None), settings, ctx),
         HoldAction::Repeat(name) => repeat(hand, &name, settings, ctx),
         HoldAction::Save => save(hand, ctx),
+        HoldAction::PutDown => {
+            if let Some(run) = hand.running.hold().filter(|run| run.asks()) {
+                run.put_down();
+            }
+        }
         HoldAction::End => {
             if let Some(run) = hand.running.hold_mut() {
                 run.end(Abort::Person);

@@ -1,7 +1,7 @@
 //! `follow`: a hand follows another program (JSON lines or DDS), a gamepad or another hand, once the user permits it.
 
+use crate::cli::consent::{self, ConsentFrom};
 use crate::cli::hold;
-use crate::cli::inputs::consent::{self, ConsentFrom};
 use crate::cli::inputs::source::{Allowed, FollowSource, SourceArgs};
 use crate::cli::out::{AlreadyReported, Out, ReaderGone, WrongUsage, notify};
 use crate::cli::parse::{self, number};

@@ -1,6 +1,5 @@
 //! Sources other than the window that move a hand, from the command line.
 
-mod consent;
 pub(crate) mod follow;
 pub(crate) mod show;
 mod source;

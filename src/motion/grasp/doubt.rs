@@ -40,6 +40,12 @@ pub enum GraspDoubt {
         /// Number of the close, from 1.
         close: usize,
     },
+    /// The user did not say that the object stands.
+    #[error("nobody said in close {close} that the object stands: confirm it once it is put down")]
+    NotReleased {
+        /// Number of the close, from 1.
+        close: usize,
+    },
     /// The hand held the object before it closed.
     #[error(
         "in close {close} the hand held the object before it closed: hold it so that the open hand does not touch it"

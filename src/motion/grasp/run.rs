@@ -1,5 +1,6 @@
 //! A hold whose conditions are watched, so that it can be saved as a grasp. A grasp of another hand is confirmed first: five closes, in
-//! each of which the user lifts the object and puts it down again. The hand opens only once the load is off its fingertips.
+//! each of which the user lifts the object and puts it down again. The hand opens only once the load is off its fingertips and the user
+//! says that the object stands: a load that is gone may also be carried by the user's other hand.
 
 use crate::hand::grip::{Grip, GripEstimator, TightenCause, Tightened};
 use crate::hand::{AngleReading, ArmEpoch, Groups, HandSample, Moment, PerDof};
@@ -24,7 +25,7 @@ const LIFTED_N: f64 = 0.1;
 /// Share of that rise below which it counts as put down, and for how long.
 const DOWN_SHARE: f64 = 0.35;
 const DOWN_DURATION: Duration = Duration::from_millis(700);
-/// Maximum time for the user to lift it and put it down.
+/// Maximum time for the user to lift it and put it down, and then to say that it stands.
 const LIFT_TIMEOUT: Duration = Duration::from_secs(90);
 /// Time in which the user puts the object back in its place.
 const PLACE_DURATION: Duration = Duration::from_secs(2);
@@ -57,8 +58,19 @@ pub enum ConfirmStep {
     Lift,
     /// The user puts it down.
     PutDown,
+    /// The load is gone, and the hand waits for the user to say that the object stands by itself.
+    Release,
     /// The hand opens.
     Open,
+}
+
+/// User input while a watched hold runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GraspInput {
+    /// The object stands by itself, so the hand may open. Ignored outside [`ConfirmStep::Release`].
+    PutDown,
+    /// End the hold.
+    Abort(Abort),
 }
 
 /// Progress of a confirmation.
@@ -91,6 +103,8 @@ struct ConfirmRun {
     least_n: f64,
     /// Time since which the load is gone.
     down_since: Option<Moment>,
+    /// The load is gone, and the user may say that the object stands.
+    asks: bool,
     opening: Option<Reopening>,
 }
 
@@ -196,15 +210,21 @@ impl GraspRun {
 }
 
 impl Program for GraspRun {
-    type Input = Abort;
+    type Input = GraspInput;
     type Outcome = Result<HoldEnd, GraspDoubt>;
     type View = GraspView;
     type Event = Tightened;
     const RATES: Option<PollRates> = Some(RATES);
 
-    fn input(&mut self, why: Abort, seen: &Seen<'_>) -> Option<Order> {
-        self.abort(why, seen.now);
-        None
+    fn input(&mut self, input: GraspInput, seen: &Seen<'_>) -> Option<Order> {
+        match input {
+            GraspInput::PutDown if self.asks() && self.end.is_none() => self.judge(seen),
+            GraspInput::PutDown => None,
+            GraspInput::Abort(why) => {
+                self.abort(why, seen.now);
+                None
+            }
+        }
     }
 
     fn read(&mut self, sample: &HandSample, fresh: Groups, now: Moment) {
@@ -268,6 +288,7 @@ impl Program for GraspRun {
                 step: match self.hold.held_for(now) {
                     _ if is_opening => ConfirmStep::Open,
                     None => ConfirmStep::Close,
+                    Some(_) if own.asks => ConfirmStep::Release,
                     Some(_) if own.is_lifted(&self.watch) => ConfirmStep::PutDown,
                     Some(_) => ConfirmStep::Lift,
                 },
@@ -291,6 +312,12 @@ impl GraspRun {
         confirmation.is_some_and(|own| own.opening.is_some())
     }
 
+    /// True while the hand opens as soon as the user says that the object stands.
+    fn asks(&self) -> bool {
+        let confirmation = self.confirmation.as_ref();
+        confirmation.is_some_and(|own| own.asks && own.opening.is_none())
+    }
+
     /// The outcome of a hold that ended by itself.
     fn outcome(&self, end: HoldEnd) -> Result<HoldEnd, GraspDoubt> {
         match (&self.confirmation, end) {
@@ -299,14 +326,27 @@ impl GraspRun {
         }
     }
 
-    /// Follows the load of a close that confirms; judges it once the object is put down.
+    /// Follows the load of a close that confirms. The last close is judged once the object is put down, and the hand holds on; after the
+    /// others the hand opens, so the user has to say first that the object stands.
     fn confirm(&mut self, seen: &Seen<'_>) -> Option<Order> {
         let own = self.confirmation.as_mut()?;
         let held = self.hold.held_for(seen.now)?;
-        if !own.is_put_down(&self.watch, seen.now) || held < HELD_LEAST {
-            let close = own.nth();
-            return (held > LIFT_TIMEOUT).then(|| self.doubt(GraspDoubt::NoLoad { close }));
+        let close = own.nth();
+        let is_put_down = own.is_put_down(&self.watch, seen.now) && held >= HELD_LEAST;
+        own.asks = is_put_down && close < CLOSES;
+        let (waited, doubt) = match own.down_since.filter(|_| own.asks) {
+            Some(since) => (seen.now.since(since), GraspDoubt::NotReleased { close }),
+            None => (held, GraspDoubt::NoLoad { close }),
+        };
+        if is_put_down && !own.asks {
+            return self.judge(seen);
         }
+        (waited > LIFT_TIMEOUT).then(|| self.doubt(doubt))
+    }
+
+    /// Judges the close that is over.
+    fn judge(&mut self, seen: &Seen<'_>) -> Option<Order> {
+        let own = self.confirmation.as_mut()?;
         let nth = own.nth();
         let shown = self.watch.seen();
         let hand = ConfirmingHand {
@@ -387,6 +427,7 @@ impl GraspRun {
     fn close_again(&mut self, now: Moment) {
         if let Some(own) = &mut self.confirmation {
             (own.opening, own.down_since, own.least_n) = (None, None, f64::INFINITY);
+            own.asks = false;
         }
         let start = HoldStart {
             grip: self.grip.clone(),
@@ -404,6 +445,7 @@ impl ConfirmRun {
             closes: Vec::new(),
             least_n: f64::INFINITY,
             down_since: None,
+            asks: false,
             opening: None,
         }
     }

@@ -4,7 +4,9 @@ use crate::hand::newtons::N_PER_G;
 use crate::hand::{HandCommand, PerDof};
 use crate::link::LinkStatus;
 use crate::motion::grasp::doubt::GraspDoubt;
-use crate::motion::grasp::run::{ConfirmStep, Confirming, GraspRun, GraspStart, Unconfirmed};
+use crate::motion::grasp::run::{
+    ConfirmStep, Confirming, GraspInput, GraspRun, GraspStart, Unconfirmed,
+};
 use crate::motion::grasp::saved::Grasp;
 use crate::motion::grasp::seen::{GraspLabel, NoGrasp};
 use crate::motion::hold::{HoldEnd, HoldStart};
@@ -23,6 +25,8 @@ struct Bench {
     program: GraspRun,
     /// All parts of the confirmation in order.
     steps: Vec<Confirming>,
+    /// Parts in which the user says that the object stands.
+    says: fn(ConfirmStep) -> bool,
     /// The object fell while the hand carried it.
     is_dropped: bool,
 }
@@ -42,6 +46,7 @@ impl Bench {
             program: GraspRun::new(EPOCH, start, hand.now),
             hand,
             steps: Vec::new(),
+            says: |step| step == ConfirmStep::Release,
             is_dropped: false,
         }
     }
@@ -70,7 +75,11 @@ impl Bench {
                 stall: None,
                 now: self.hand.now,
             };
-            if let Some(Order::Set(setpoints)) = self.program.tick(&seen) {
+            let confirming = self.program.view(self.hand.now).confirming;
+            let says = confirming.is_some_and(|own| (self.says)(own.step));
+            let said = says.then(|| self.program.input(GraspInput::PutDown, &seen));
+            let order = said.flatten().or_else(|| self.program.tick(&seen));
+            if let Some(Order::Set(setpoints)) = order {
                 for write in setpoints.commands().iter().flat_map(HandCommand::writes) {
                     let (address, now) = (write.span().address, self.hand.now);
                     self.hand.sim.write(address, write.bytes(), now).unwrap();
@@ -156,6 +165,7 @@ fn five_closes_confirm_it_and_the_fifth_holds_on() {
         (count(ConfirmStep::Close), count(ConfirmStep::Open)),
         (5, 4)
     );
+    assert_eq!(count(ConfirmStep::Release), 4, "the last does not open");
     assert_eq!(bench.steps.last().unwrap().close, 5);
     assert!(!bench.is_dropped);
     assert!(bench.hand.sim.held().held, "it is not opened at the end");
@@ -168,6 +178,43 @@ fn an_object_that_stays_lifted_is_kept_and_not_trusted() {
     let opens = |own: &Confirming| own.step == ConfirmStep::Open;
     assert!(!bench.steps.iter().any(opens), "{:?}", bench.steps);
     assert!(bench.hand.sim.held().held);
+}
+
+#[test]
+fn a_load_that_is_gone_opens_nothing_until_the_user_says_so() {
+    type Says = fn(ConfirmStep) -> bool;
+    let cases: [Says; 2] = [|_| false, |step| step != ConfirmStep::Release];
+    for says in cases {
+        let mut bench = Bench::of(put_down(10.0), Some(unconfirmed()), 2);
+        bench.says = says;
+        assert_eq!(bench.run(), Ok(Err(GraspDoubt::NotReleased { close: 1 })));
+        let steps: Vec<ConfirmStep> = bench.steps.iter().map(|own| own.step).collect();
+        assert_eq!(steps.last(), Some(&ConfirmStep::Release), "{steps:?}");
+        assert!(!steps.contains(&ConfirmStep::Open), "{steps:?}");
+        assert!(bench.hand.sim.held().held);
+    }
+}
+
+#[test]
+fn an_object_that_is_lifted_again_is_not_asked_for_until_it_is_put_down_again() {
+    let mut object = put_down(10.0);
+    let turn = |at_s, share| HandTurn {
+        at_s,
+        direction_deg: 270.0,
+        share,
+    };
+    let turns = [(3.0, 1.0), (3.5, 0.0), (6.0, 1.0), (7.0, 0.0)];
+    object.loads.turns = listed(&turns.map(|(at_s, share)| turn(at_s, share)));
+    let mut bench = Bench::of(object, Some(unconfirmed()), 2);
+    bench.says = |_| false;
+    assert_eq!(bench.run(), Ok(Err(GraspDoubt::NotReleased { close: 1 })));
+    let steps: Vec<ConfirmStep> = bench.steps.iter().map(|own| own.step).collect();
+    let again = [
+        ConfirmStep::Release,
+        ConfirmStep::PutDown,
+        ConfirmStep::Release,
+    ];
+    assert!(steps.ends_with(&again), "{steps:?}");
 }
 
 #[test]

@@ -35,7 +35,10 @@ pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         forces_ui(ui, pane);
         if pane.hand().running.holds() {
             let end = Button::text(look, hold::END).weight(Weight::Strong);
-            ui.horizontal(|ui| end.on_click(ui, pane, Action::Hold(HoldAction::End)));
+            ui.horizontal(|ui| {
+                end.on_click(ui, pane, Action::Hold(HoldAction::End));
+                put_down_ui(ui, pane);
+            });
         } else {
             starts_ui(ui, pane);
             grasps_ui(ui, pane);
@@ -168,6 +171,21 @@ fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
 fn grasps_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let saves = pane.hand().running.hold().is_some_and(HoldMotion::is_done);
+/// Draws the button by which the user says that the object stands, while a grasp is confirmed.
+fn put_down_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let Some(run) = pane.hand().running.hold() else {
+        return;
+    };
+    let (asks, is_confirmed) = (run.asks(), run.confirming.is_none());
+    if is_confirmed {
+        return;
+    }
+    let why = (!asks).then(|| look.tr(hold::PUT_DOWN_LOADED));
+    let button = Button::text(look, hold::PUT_DOWN).disabled(why);
+    button.on_click(ui, pane, Action::Hold(HoldAction::PutDown));
+}
+
     if saves {
         let run = pane.hand().running.hold();
         let why = run.and_then(HoldMotion::not_saved).map(hold::not_saved);

@@ -57,7 +57,10 @@ texts! {
     CONFIRMING: "Confirming {} of {}: {}", "确认第 {} 次，共 {} 次：{}";
     CONFIRM_CLOSE: "closing", "正在闭合";
     CONFIRM_LIFT: "lift the object and use it, without turning the hand", "请提起物体并使用，不要转动手";
-    CONFIRM_DOWN: "use it, then put it down: the hand opens when the load is gone", "使用后请放下物体：负载消失后手会张开";
+    CONFIRM_DOWN: "use it, then put it down", "使用后请放下物体";
+    CONFIRM_RELEASE: "the load is gone; press Put down once the object stands by itself", "负载已消失；物体放稳后请按“已放下”";
+    PUT_DOWN: "Put down", "已放下", "The object stands by itself. The hand opens for the next close.", "物体已放稳。手将张开，准备下一次闭合。";
+    PUT_DOWN_LOADED: "The object still loads the fingertips: put it down first.", "指尖仍有负载：请先放下物体。";
     CONFIRM_OPEN: "opening; put the object back in its place", "正在张开；请把物体放回原处";
     NOT_SAVED_FAILED: "The hold did not end well.", "保持未正常结束。";
     NOT_SAVED_SHORT: "It held too briefly: hold for 2 s or more.", "保持时间过短：请保持 2 s 以上。";
@@ -71,6 +74,7 @@ texts! {
     DOUBT_NO_LOAD: "no load came and went in close {}: lift the object, and put it down again", "第 {} 次闭合中负载没有出现并消失：请提起并放下物体";
     DOUBT_NOT_CLOSED: "in close {} the open hand touched the object", "第 {} 次闭合前张开的手已碰到物体";
     DOUBT_LOST: "the object left the hand in close {}", "第 {} 次闭合中物体脱离";
+    DOUBT_NOT_RELEASED: "nobody said in close {} that the object stands", "第 {} 次闭合中未确认物体已放稳";
     DOUBT_FORCE: "at most did not suffice in close {}", "第 {} 次闭合中最大力不足";
     DOUBT_NOT_HELD: "the {} does not hold as on the first hand: place the object as it lay there", "{}没有像原手那样保持：请按原样放置物体";
     DOUBT_PEAK: "the {} may press with {} g, above at most ({} g on this hand)", "{}可能达到 {} g，超过最大力（此手为 {} g）";
@@ -166,6 +170,7 @@ pub(crate) fn confirming(look: Look, own: Confirming) -> String {
         ConfirmStep::PutDown => CONFIRM_DOWN,
         ConfirmStep::Open => CONFIRM_OPEN,
     });
+        ConfirmStep::Release => CONFIRM_RELEASE,
     look.fill(CONFIRMING, &[&own.close, &own.of, &step])
 }
 
@@ -195,6 +200,7 @@ pub(crate) fn doubt(look: Look, doubt: GraspDoubt) -> String {
         GraspDoubt::NoLoad { close } => look.fill(DOUBT_NO_LOAD, &[&close]),
         GraspDoubt::NotClosed { close } => look.fill(DOUBT_NOT_CLOSED, &[&close]),
         GraspDoubt::Lost { close } => look.fill(DOUBT_LOST, &[&close]),
+        GraspDoubt::NotReleased { close } => look.fill(DOUBT_NOT_RELEASED, &[&close]),
         GraspDoubt::CouldNotHold { close } => look.fill(DOUBT_FORCE, &[&close]),
         GraspDoubt::NotHeld { finger: own } => look.fill(DOUBT_NOT_HELD, &[&finger(own)]),
         GraspDoubt::Peak {

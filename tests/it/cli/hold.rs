@@ -2,10 +2,13 @@
 
 use crate::cli::refuses_unarmed;
 use crate::setup::busy::unless_busy;
+use crate::setup::grasp;
 use crate::setup::process::{Running, handscope, listen, run, sim_on_tcp, start};
 use nix::sys::signal::Signal;
 use serde_json::Value;
+use std::io::Write as _;
 use std::path::Path;
+use std::process::Stdio;
 
 /// Near the open hand, so that the slow close is short.
 const BALL: &str = "stiffness = 10.0
@@ -200,4 +203,72 @@ fn a_wrong_grasp_moves_nothing() {
         assert_eq!(ended.code, Some(code), "{more:?} {}", ended.err);
         assert!(ended.err.contains(words), "{more:?} {}", ended.err);
     }
+}
+
+/// A ball that is put down 1.5 s after it is held, a hand that holds it, and the grasp `ball` of another hand, which it confirms.
+fn unconfirmed(home: &Path) -> (Running, String) {
+    let path = home.join("put-down.toml");
+    let turn = |at_s: f64, share: f64| {
+        format!("[[turn]]\nat_s = {at_s:.1}\ndirection_deg = 270.0\nshare = {share:.1}\n")
+    };
+    let turns = turn(1.5, 1.0) + &turn(2.0, 0.0);
+    std::fs::write(&path, format!("{BALL}lift_after_s = 1.0\n{turns}")).unwrap();
+    let object = path.to_str().unwrap();
+    let (sim, hand) = sim_on_tcp(&["--scenario", "free", "--object", object]);
+    let settings = home.join(".config/handscope/settings.toml");
+    grasp::store(&settings, &hand, "ball");
+    (sim, hand)
+}
+
+#[test]
+fn a_grasp_of_another_hand_moves_nothing_where_nobody_can_say_that_the_object_stands() {
+    unless_busy(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let (_sim, hand) = unconfirmed(folder.path());
+        let args = ["hold", "--hand", &hand, "--grasp", "ball", "--arm"];
+        let ended = at_home(folder.path(), &args).end();
+        assert_eq!(ended.code, Some(1), "{}", ended.err);
+        assert!(ended.err.contains("nothing was moved"), "{}", ended.err);
+        assert!(ended.err.contains("--consent stdin"), "{}", ended.err);
+        assert_eq!(ended.out, "");
+    });
+}
+
+#[test]
+fn a_confirmation_opens_the_hand_only_on_a_line_after_its_question() {
+    unless_busy(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let (_sim, hand) = unconfirmed(folder.path());
+        let (input, mut person) = std::io::pipe().unwrap();
+        let mut command = handscope();
+        command.env("HOME", folder.path()).stdin(Stdio::from(input));
+        command.args(["hold", "--hand", &hand, "--grasp", "ball", "--arm"]);
+        command.args(["--json", "--consent", "stdin"]);
+        let mut running = listen(command);
+        person.write_all(b"\n\nyes\n").unwrap();
+        let step = |line: &str| -> Value {
+            let line: Value = serde_json::from_str(line).unwrap();
+            line["holding"]["confirming"]["step"].clone()
+        };
+        running.until(|line| step(line) == "lift");
+        person.write_all(b"\n").unwrap();
+        let asked = running.until(|line| line.contains("\"ask\""));
+        assert_eq!(asked, r#"{"ask":{"close":1,"of":5}}"#);
+        // It waits, whatever was typed before.
+        assert_eq!(
+            step(&running.until(|line| step(line) != Value::Null)),
+            "release"
+        );
+        person.write_all(b"\n").unwrap();
+        running.until(|line| step(line) == "open");
+        running.until(|line| step(line) == "close");
+        running.until(|line| line.contains("\"ask\""));
+        drop(person);
+        let ended = running.end();
+        assert_eq!(ended.code, Some(1), "{}", ended.err);
+        let told: Value = ended.lines().last().unwrap()["hold"].clone();
+        let why = "standard input ended without an answer";
+        assert_eq!(told["doubt"], why, "{told}");
+        assert!(ended.err.contains(why), "{}", ended.err);
+    });
 }

@@ -7,6 +7,7 @@ pub(crate) mod busy;
 pub(crate) mod device;
 pub(crate) mod faulty;
 pub(crate) mod gateway;
+pub(crate) mod grasp;
 pub(crate) mod hand;
 pub(crate) mod line;
 pub(crate) mod link;

@@ -1,5 +1,6 @@
 //! A hold between two forces in the Live view: its forces, its start, what it says, and how it ends.
 
+use crate::setup::grasp;
 use crate::setup::window::{Bench, LARGE};
 use egui::{Key, Role};
 use handscope::app::action::Action;
@@ -7,13 +8,14 @@ use handscope::app::hand::hold::HoldAction;
 use handscope::hand::hold_forces::HoldForces;
 use handscope::hand::{Angle, Dof, Force, PerDof};
 use handscope::history::MarkKind;
+use handscope::motion::grasp::run::ConfirmStep;
 use handscope::motion::hold::HoldPhase;
 use handscope::poses::Preset;
 use handscope::poses::edit::LibraryEdit;
 use handscope::poses::library::{LibraryPose, StepGoal};
 use handscope::poses::player::{PlayEnd, PlayPhase};
 use handscope::sim::SimConfig;
-use handscope::sim::object::{Loads, Object, Obstacle, PullLoad, listed};
+use handscope::sim::object::{HandTurn, Loads, Object, Obstacle, PullLoad, listed};
 use handscope::ui::View;
 
 /// An object near all open fingers, lifted once it is held and pulled then.
@@ -164,6 +166,49 @@ fn a_hold_that_worked_is_saved_and_held_with_again() {
     let run = bench.state().hand().running.hold().unwrap();
     assert_eq!(run.confirming, None, "it is the same hand");
     assert_eq!(run.view.forces, grasp.forces);
+}
+
+#[test]
+fn a_confirmation_opens_the_hand_only_on_put_down_and_only_while_the_load_is_gone() {
+    let hand = "tcp:10.0.0.1";
+    let mut bench = Bench::kept(SimConfig::default(), hand, LARGE);
+    bench.wait(1000);
+    grasp::store(&bench.folder().join("kept/settings.toml"), hand, "Ball");
+    bench.act(Action::Disconnect);
+    bench.wait(500);
+    bench.act(Action::Connect(hand.parse().unwrap()));
+    bench.wait(1500);
+    let turn = |at_s, share| HandTurn {
+        at_s,
+        direction_deg: 270.0,
+        share,
+    };
+    let mut object = pulled();
+    object.mass_g = 60.0;
+    object.loads.pulls = Default::default();
+    object.loads.turns = listed(&[turn(3.0, 1.0), turn(4.0, 0.0)]);
+    bench.hand(|hand, _| hand.set_object(&object));
+    bench.click("Arm the hand");
+    bench.run(300);
+    bench.click("Hold");
+    bench.run(100);
+    bench.click("Ball");
+    let step = |bench: &Bench| {
+        let run = bench.state().hand().running.hold()?;
+        run.confirming.map(|own| own.step)
+    };
+    bench.until(20_000, |bench| step(bench) == Some(ConfirmStep::Lift));
+    // It loads the fingertips: the button does nothing.
+    bench.click_button("Put down");
+    bench.until(20_000, |bench| step(bench) == Some(ConfirmStep::Release));
+    bench.wait(5000);
+    assert_eq!(step(&bench), Some(ConfirmStep::Release));
+    assert!(bench.hand(|hand, _| hand.held().held));
+    bench.click_button("Put down");
+    bench.until(2000, |bench| step(bench) == Some(ConfirmStep::Open));
+    bench.until(20_000, |bench| step(bench) == Some(ConfirmStep::Close));
+    let confirming = bench.state().hand().running.hold().unwrap().confirming;
+    assert_eq!(confirming.unwrap().close, 2);
 }
 
 /// The view of poses with one pose that closes, which is open to be edited.

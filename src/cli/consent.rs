@@ -42,15 +42,17 @@ impl From<io::Error> for NoConsent {
     }
 }
 
+/// Checks that a question can be answered, before anything that leads to one.
+pub(crate) fn can_answer(from: Option<ConsentFrom>) -> Result<(), NoConsent> {
+    let is_answered_here = from.is_some() || io::stdin().is_terminal() && input::is_ours();
+    is_answered_here.then_some(()).ok_or(NoConsent::NoTerminal)
+}
+
 /// Discards earlier input. Must be called immediately before the question.
 pub(crate) async fn forget_earlier(from: Option<ConsentFrom>) -> Result<(), NoConsent> {
     let forgotten = spawn_blocking(move || {
-        let is_answered_here = from.is_some() || io::stdin().is_terminal() && input::is_ours();
-        if is_answered_here {
-            input::forget()
-        } else {
-            Err(NoConsent::NoTerminal)
-        }
+        can_answer(from)?;
+        input::forget()
     });
     // The task fails only at program exit.
     forgotten.await.unwrap_or(Err(NoConsent::Ended))
