@@ -6,6 +6,7 @@ use crate::exhibit::stage::{
     DRAWN_TIMEOUT, ExhibitEvent, ExhibitHold, ExhibitStage, ExhibitView, ExhibitWish,
     HOLD_DURATION, HaltReason,
 };
+use crate::hand::gap::SizeBlocks;
 use crate::hand::grip::GripEstimator;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{ArmEpoch, Fault, Groups, HandSample, Moment, PerDof};
@@ -54,6 +55,8 @@ pub struct ExhibitStart {
     pub grip: GripEstimator,
     /// Overshoot measured on this hand.
     pub overshoot: OvershootMap,
+    /// Blocks measured with this hand, for the size of what a hold holds.
+    pub blocks: SizeBlocks,
     /// The program's clock.
     pub clock: Clock,
     /// Time at which the page was drawn last.
@@ -132,6 +135,7 @@ pub(crate) struct ExhibitRun {
     locked: PerDof<bool>,
     grip: GripEstimator,
     overshoot: OvershootMap,
+    blocks: SizeBlocks,
     drawn: Arc<PageDrawn>,
     /// The user armed for the exhibition, and nothing has ended that since.
     permitted: bool,
@@ -183,6 +187,7 @@ impl ExhibitRun {
             locked: start.locked,
             grip: start.grip,
             overshoot: start.overshoot,
+            blocks: start.blocks,
             drawn: start.drawn,
             permitted: false,
             phase: Phase::Halted(HaltReason::NotArmed),
@@ -543,6 +548,7 @@ impl ExhibitRun {
                     locked: self.locked,
                     grip: self.grip.clone(),
                     overshoot: self.overshoot.clone(),
+                    blocks: self.blocks.clone(),
                     force_limit: self.plan.limits.force,
                 };
                 self.motion = Playback::Plays;

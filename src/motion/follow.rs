@@ -53,6 +53,8 @@ pub struct FollowStart {
     pub grip: GripEstimator,
     /// Overshoot measured on this hand.
     pub overshoot: OvershootMap,
+    /// Blocks measured with this hand, for the size of what a hold holds.
+    pub blocks: SizeBlocks,
     /// Newest readings.
     pub seen: HandSample,
     /// The program's clock.
@@ -256,7 +258,7 @@ impl FollowProgram {
                 reading_per_g: PerDof::splat(1.0),
                 locked: terms.locked,
                 overshoot: self.start.overshoot.clone(),
-                blocks: SizeBlocks::default(),
+                blocks: self.start.blocks.clone(),
                 grip: self.start.grip.clone(),
             };
             let hold = HostedHold::new(epoch, start, self.hold_limits(terms), seen.now);

@@ -33,6 +33,8 @@ pub struct PlayStart {
     pub grip: GripEstimator,
     /// Overshoot measured on this hand.
     pub overshoot: OvershootMap,
+    /// Blocks measured with this hand, for the size of what a hold holds.
+    pub blocks: SizeBlocks,
     /// Highest force threshold of a hold.
     pub force_limit: Force,
 }
@@ -96,6 +98,7 @@ pub(crate) struct Playing {
     locked: PerDof<bool>,
     grip: GripEstimator,
     overshoot: OvershootMap,
+    blocks: SizeBlocks,
     force_limit: Force,
     /// The hold of the current step, and when the step began.
     hold: Option<(Moment, HostedHold)>,
@@ -116,6 +119,7 @@ impl Playing {
             locked: start.locked,
             grip: start.grip,
             overshoot: start.overshoot,
+            blocks: start.blocks,
             force_limit: start.force_limit,
             hold: None,
         }
@@ -266,7 +270,7 @@ impl Playing {
             reading_per_g: PerDof::splat(1.0),
             locked: self.locked,
             overshoot: self.overshoot.clone(),
-            blocks: SizeBlocks::default(),
+            blocks: self.blocks.clone(),
             grip: self.grip.clone(),
         };
         let limits = ArmRequest {

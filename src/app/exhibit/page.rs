@@ -6,7 +6,7 @@ use crate::app::exhibit::{
     ExhibitAction, ExhibitState, Exhibition, StaffPanel, StoredReport, wrong_pins_file,
 };
 use crate::app::hand::Hand;
-use crate::app::settings::Language;
+use crate::app::settings::Settings;
 use crate::exhibit::pin::{Pin, PinAnswer, PinGate};
 use crate::exhibit::stage::{ExhibitStage, ExhibitView, ExhibitWish};
 use crate::hand::Moment;
@@ -28,7 +28,7 @@ impl ExhibitState {
     pub(crate) fn begin(
         start: Exhibition,
         hand: &Hand,
-        language: Language,
+        settings: &Settings,
         env: &Env,
     ) -> Option<Self> {
         let link = hand.connection.link()?.clone();
@@ -38,6 +38,7 @@ impl ExhibitState {
             seen: hand.readings.sample,
             grip: hand.readings.grip.clone(),
             overshoot: OvershootMap::clone(&hand.overshoot.map),
+            blocks: settings.size_blocks(hand.connection.endpoint.as_ref()),
             clock: env.clock,
             drawn: Arc::default(),
         };
@@ -72,7 +73,7 @@ impl ExhibitState {
                 wrong_pins_file::text,
             ),
             ends_program: start.ends_program,
-            language,
+            language: settings.language,
             wishes,
             task,
             drawn,

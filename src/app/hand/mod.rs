@@ -37,6 +37,7 @@ use crate::app::recordings::recording::HandRecording;
 use crate::app::settings::Settings;
 use crate::app::slot::{HandLabel, SlotId, place_name};
 use crate::app::trials::{HandOvershoot, StartRefusal};
+use crate::hand::gap::SizeBlocks;
 use crate::hand::kinematics::Side;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{
@@ -512,7 +513,13 @@ impl Hand {
     }
 
     /// Starts an entry of the library, if the hand is armed. True if it was started.
-    pub(crate) fn play(&mut self, plan: PlayPlan, pace: PlayMode, env: &Env, now: Moment) -> bool {
+    pub(crate) fn play(
+        &mut self,
+        plan: PlayPlan,
+        pace: PlayMode,
+        blocks: SizeBlocks,
+        (env, now): (&Env, Moment),
+    ) -> bool {
         let Some((link, armed)) = self.lend_armed(env.clock) else {
             return false;
         };
@@ -529,6 +536,7 @@ impl Hand {
             locked: self.controls.locked(),
             grip: self.readings.grip.clone(),
             overshoot: OvershootMap::clone(&self.overshoot.map),
+            blocks,
             force_limit: Force::MAX,
         };
         let (commands, wanted) = mpsc::channel(COMMANDS_MAX);

@@ -47,8 +47,8 @@ impl ExhibitWork {
             stop_or_disarm(hand, ctx);
             hand.take_over();
         });
-        let language = state.settings.language;
-        state.exhibit = ExhibitState::begin(start, state.hands.shown(), language, env);
+        let hand = state.hands.shown();
+        state.exhibit = ExhibitState::begin(start, hand, &state.settings, env);
         if let Some(exhibit) = &mut state.exhibit
             && let Some(left) = self.left.take()
         {

@@ -97,6 +97,7 @@ fn follow(hand: &mut Hand, kind: SourceKind, settings: &Settings, (env, now): (&
         arm,
         grip: hand.readings.grip.clone(),
         overshoot: OvershootMap::clone(&hand.overshoot.map),
+        blocks: settings.size_blocks(hand.connection.endpoint.as_ref()),
         seen: hand.readings.sample,
         clock: env.clock,
     };

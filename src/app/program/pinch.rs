@@ -42,7 +42,7 @@ pub(super) fn pinch(state: &mut State, gap: Gap, env: &Env) {
         reaction: None,
     };
     let played = RecordedPlay::of(plan.entry, PINCH);
-    if hand.play(plan, PlayMode::Through, env, now) {
+    if hand.play(plan, PlayMode::Through, SizeBlocks::default(), (env, now)) {
         hand.record_play(&played, now);
     }
 }

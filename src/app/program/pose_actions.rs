@@ -6,6 +6,7 @@ use crate::app::hand::Hand;
 use crate::app::hand::running::SequenceRun;
 use crate::app::notices::NoticeKind;
 use crate::app::poses::PoseState;
+use crate::app::settings::Settings;
 use crate::app::state::State;
 use crate::hand::{Angle, Moment, PerDof, Target};
 use crate::motion::play::PlayCommand;
@@ -55,13 +56,8 @@ pub(super) fn hide_shipped(state: &mut State, name: String, hide: bool) {
 pub(super) fn recall(state: &mut State, id: PoseId, env: &Env) {
     let entry = EntryId::Pose(id);
     for hand in state.hands.with_shown(accepts_poses) {
-        if start(
-            hand,
-            &state.poses,
-            (entry, PlayMode::Through),
-            env,
-            state.now,
-        ) {
+        let library = (&state.poses, &state.settings);
+        if start(hand, library, (entry, PlayMode::Through), (env, state.now)) {
             state.poses.recalled = Some(id);
         }
     }
@@ -70,13 +66,13 @@ pub(super) fn recall(state: &mut State, id: PoseId, env: &Env) {
 /// Starts an entry of the library, and records its name. True if it was started.
 fn start(
     hand: &mut Hand,
-    poses: &PoseState,
+    (poses, settings): (&PoseState, &Settings),
     (entry, pace): (EntryId, PlayMode),
-    env: &Env,
-    now: Moment,
+    (env, now): (&Env, Moment),
 ) -> bool {
     let plan = poses.plan(entry);
-    let is_started = plan.is_some_and(|plan| hand.play(plan, pace, env, now));
+    let blocks = settings.size_blocks(hand.connection.endpoint.as_ref());
+    let is_started = plan.is_some_and(|plan| hand.play(plan, pace, blocks, (env, now)));
     if let Some(names) = poses.named(entry).filter(|_| is_started) {
         hand.record_play(&RecordedPlay::of(entry, names.text), now);
     }
@@ -109,7 +105,8 @@ pub(super) fn play(state: &mut State, play: Play, env: &Env) {
                 }
             }
             PlayRequest::Start(entry, pace) => {
-                start(hand, &state.poses, (entry, pace), env, state.now);
+                let library = (&state.poses, &state.settings);
+                start(hand, library, (entry, pace), (env, state.now));
             }
         }
     }

@@ -226,6 +226,7 @@ impl FollowCommand<'_> {
             arm: self.args.arm_request(),
             grip: session::grip_estimator(&self.args.hand),
             overshoot: hold::overshoot(&self.args.hand),
+            blocks: session::size_blocks(&self.args.hand),
             seen: self.seen,
             clock: self.clock,
         };

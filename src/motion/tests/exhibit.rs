@@ -3,6 +3,7 @@
 use crate::exhibit::file;
 use crate::exhibit::plan::ExhibitPlan;
 use crate::exhibit::stage::{ExhibitEvent, ExhibitStage, ExhibitView, ExhibitWish, HaltReason};
+use crate::hand::gap::SizeBlocks;
 use crate::hand::grip::GripEstimator;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{
@@ -69,6 +70,7 @@ impl Booth {
             seen: HandSample::default(),
             grip: GripEstimator::default(),
             overshoot: OvershootMap::default(),
+            blocks: SizeBlocks::default(),
             clock: hand.clock,
             drawn: Arc::default(),
         };
@@ -549,6 +551,7 @@ fn a_touch_in_the_moment_of_a_fault_does_not_hang_the_exhibition() {
         seen: HandSample::default(),
         grip: GripEstimator::default(),
         overshoot: OvershootMap::default(),
+        blocks: SizeBlocks::default(),
         clock: Clock::start(),
         drawn: Arc::clone(&drawn),
     };

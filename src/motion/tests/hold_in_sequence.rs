@@ -1,5 +1,6 @@
 //! Holds as steps of a sequence, on a simulated hand in virtual time.
 
+use crate::hand::gap::{Block, Gap, SizeBlocks};
 use crate::hand::grip::{GripEstimator, GripState, Tightened};
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Angle, ArmEpoch, Dof, Force, PerDof, Setpoints, Speed};
@@ -11,7 +12,7 @@ use crate::motion::tests::hold::{Hand, ball, forces, pulled_ball};
 use crate::poses::library::{EntryId, SequenceId};
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayPlan};
 use crate::record::LinkState;
-use crate::sim::{Object, SimConfig};
+use crate::sim::{Object, Obstacle, SimConfig};
 use std::time::Duration;
 
 const EPOCH: ArmEpoch = ArmEpoch(1);
@@ -51,6 +52,24 @@ fn hand_with(object: Object) -> Hand {
     })
 }
 
+/// These steps, played once on a hand of which nothing was measured.
+fn start(cues: Vec<Cue>) -> PlayStart {
+    PlayStart {
+        plan: PlayPlan {
+            entry: EntryId::Sequence(SequenceId(1)),
+            cues,
+            looped: false,
+            reaction: None,
+        },
+        pace: PlayMode::Through,
+        locked: PerDof::splat(false),
+        grip: GripEstimator::default(),
+        overshoot: OvershootMap::default(),
+        blocks: SizeBlocks::default(),
+        force_limit: Force::MAX,
+    }
+}
+
 /// A sequence that plays on a simulated hand.
 struct Bench {
     hand: Hand,
@@ -68,18 +87,14 @@ impl Bench {
 
     fn limited(hand: Hand, cues: Vec<Cue>, grip: GripEstimator, force_limit: Force) -> Self {
         let start = PlayStart {
-            plan: PlayPlan {
-                entry: EntryId::Sequence(SequenceId(1)),
-                cues,
-                looped: false,
-                reaction: None,
-            },
-            pace: PlayMode::Through,
-            locked: PerDof::splat(false),
             grip,
-            overshoot: OvershootMap::default(),
             force_limit,
+            ..start(cues)
         };
+        Self::starting(hand, start)
+    }
+
+    fn starting(hand: Hand, start: PlayStart) -> Self {
         Self {
             program: Playing::new(EPOCH, start, hand.now),
             hand,
@@ -314,4 +329,36 @@ fn a_joint_that_is_locked_meanwhile_receives_nothing_of_the_hold() {
     let later = &bench.sent[sent..];
     assert!(!later.is_empty());
     assert!(later.iter().all(|own| own.angle[Dof::Ring].is_none()));
+}
+
+#[test]
+fn the_size_of_what_a_step_holds_is_corrected_by_the_blocks_of_the_hand() {
+    let size_mm = |blocks: SizeBlocks| {
+        let contacts = Object::contacts_of_size(40.0, Obstacle::at(0.0, 10.0));
+        let pinches = |dof: Dof| matches!(dof, Dof::Index | Dof::ThumbBend);
+        let mut object = ball(10.0);
+        object.contacts = PerDof::from_fn(|dof| contacts[dof].filter(|_| pinches(dof)));
+        let pinch = Cue {
+            gap: Some(Gap::MIN),
+            ..held(to(100))
+        };
+        let start = PlayStart {
+            blocks,
+            ..start(vec![pinch])
+        };
+        let mut bench = Bench::starting(hand_with(object), start);
+        bench.run_until_held();
+        bench.run_for(Duration::from_secs(2));
+        let object = bench.view().hold.unwrap().object.unwrap();
+        object.size_mm.unwrap().value
+    };
+    let mut blocks = SizeBlocks::default();
+    for (size_mm, gap_mm) in [(22.0, 20.0), (72.0, 70.0)] {
+        blocks.measure(Block { size_mm, gap_mm }).unwrap();
+    }
+    let (by_model, by_blocks) = (size_mm(SizeBlocks::default()), size_mm(blocks));
+    assert!(
+        (by_blocks - by_model - 2.0).abs() < 0.1,
+        "{by_model} {by_blocks}"
+    );
 }

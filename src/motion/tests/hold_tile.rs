@@ -2,6 +2,7 @@
 
 use crate::exhibit::file;
 use crate::exhibit::stage::{ExhibitHold, ExhibitStage, ExhibitView, ExhibitWish};
+use crate::hand::gap::SizeBlocks;
 use crate::hand::grip::GripEstimator;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{ArmEpoch, Dof, HandSample, PerDof, Setpoints};
@@ -46,6 +47,7 @@ impl Booth {
             seen: HandSample::default(),
             grip: GripEstimator::default(),
             overshoot: OvershootMap::default(),
+            blocks: SizeBlocks::default(),
             clock: Clock::start(),
             drawn: Arc::clone(&drawn),
         };

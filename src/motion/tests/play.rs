@@ -1,7 +1,7 @@
 //! What a sequence sends and what ends it, on a hand that only notes what it is told.
 
 use crate::fake::{Asked, FakeHand, Said, WELL};
-use crate::hand::gap::Gap;
+use crate::hand::gap::{Gap, SizeBlocks};
 use crate::hand::grip::GripEstimator;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Angle, ArmEpoch, Dof, Force, HandSample, PerDof, Setpoints, Speed, Target};
@@ -60,6 +60,7 @@ impl Bench {
             locked,
             grip: GripEstimator::default(),
             overshoot: OvershootMap::default(),
+            blocks: SizeBlocks::default(),
             force_limit: Force::MAX,
         };
         let armed = Armed {

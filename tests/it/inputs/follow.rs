@@ -4,7 +4,7 @@
 use crate::setup::hand;
 use crate::setup::link::{gentle, to_hand};
 use crate::setup::time::in_virtual_time;
-use handscope::hand::gap::{Gap, gap_on_path};
+use handscope::hand::gap::{Gap, SizeBlocks, gap_on_path};
 use handscope::hand::grip::GripEstimator;
 use handscope::hand::overshoot::OvershootMap;
 use handscope::hand::{Angle, Dof, HandSample, Moment, PerDof, Setpoints, Target};
@@ -108,6 +108,7 @@ impl Stage {
             arm: gentle(),
             grip: GripEstimator::default(),
             overshoot: OvershootMap::default(),
+            blocks: SizeBlocks::default(),
             seen: self.sample(),
             clock: self.clock,
         }

@@ -3,6 +3,7 @@
 use crate::inputs::follow::Stage;
 use crate::setup::hand;
 use crate::setup::time::in_virtual_time;
+use handscope::hand::gap::{Block, Gap, SizeBlocks};
 use handscope::hand::hold_forces::HoldForces;
 use handscope::hand::{Angle, Dof, Force, PerDof};
 use handscope::inputs::{Offer, OfferLimits};
@@ -63,6 +64,7 @@ struct Source {
     /// Phases of each hold, in order.
     holds: Vec<(HoldPhase, Option<HoldEnd>)>,
     dead_man: Option<bool>,
+    gap: Option<Gap>,
     task: JoinHandle<Ended<()>>,
 }
 
@@ -72,6 +74,10 @@ impl Source {
     }
 
     async fn with(object: Object, is_locked: impl Fn(Dof) -> bool) -> Self {
+        Self::measured(object, is_locked, SizeBlocks::default()).await
+    }
+
+    async fn measured(object: Object, is_locked: impl Fn(Dof) -> bool, blocks: SizeBlocks) -> Self {
         let hand = holding(object);
         let stage = Stage::at(hand.clone()).await;
         let (offers, taken) = mpsc::channel(64);
@@ -83,6 +89,7 @@ impl Source {
         };
         let start = handscope::motion::follow::FollowStart {
             terms: watch::Sender::new(terms).subscribe(),
+            blocks,
             ..stage.beginning(lease)
         };
         let link = stage.link().clone();
@@ -99,6 +106,7 @@ impl Source {
             views,
             holds: Vec::new(),
             dead_man: None,
+            gap: None,
             task,
         }
     }
@@ -128,7 +136,7 @@ impl Source {
             let _sent = self.offers.try_send(Offer {
                 at: self.stage.clock().now(),
                 aims: aims.map(|aim| aim.map(Angle::nearest)),
-                gap: None,
+                gap: self.gap,
                 hold,
                 limits: OfferLimits::NONE,
                 held: self.dead_man,
@@ -343,5 +351,33 @@ fn locked_joints_receive_nothing_of_a_hold() {
             "{:?}",
             source.stage.index()
         );
+    });
+}
+
+#[test]
+fn the_size_of_what_is_held_is_corrected_by_the_blocks_of_the_hand() {
+    in_virtual_time(async {
+        let mut blocks = SizeBlocks::default();
+        for (size_mm, gap_mm) in [(22.0, 20.0), (72.0, 70.0)] {
+            blocks.measure(Block { size_mm, gap_mm }).unwrap();
+        }
+        let (mut by_model, mut by_blocks) = (0.0, 0.0);
+        for (size_mm, blocks) in [
+            (&mut by_model, SizeBlocks::default()),
+            (&mut by_blocks, blocks),
+        ] {
+            let contacts = Object::contacts_of_size(40.0, Obstacle::at(0.0, 10.0));
+            let pinches = |dof: Dof| matches!(dof, Dof::Index | Dof::ThumbBend);
+            let contacts = PerDof::from_fn(|dof| contacts[dof].filter(|_| pinches(dof)));
+            let object = Object { contacts, ..ball() };
+            let mut source = Source::measured(object, |_| false, blocks).await;
+            source.gap = Some(Gap::MIN);
+            source.send_until(NONE, HoldPhase::Holding).await;
+            source.send(NONE, Some(forces()), 2000).await;
+            let object = source.hold().unwrap().view.object.unwrap();
+            *size_mm = object.size_mm.unwrap().value;
+        }
+        let apart = by_blocks - by_model;
+        assert!((apart - 2.0).abs() < 0.1, "{by_model} {by_blocks}");
     });
 }

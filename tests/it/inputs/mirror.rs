@@ -4,6 +4,7 @@
 use crate::setup::link::{dial, gentle, missing, opened};
 use crate::setup::time::in_virtual_time;
 use crate::setup::{hand, link};
+use handscope::hand::gap::SizeBlocks;
 use handscope::hand::grip::GripEstimator;
 use handscope::hand::overshoot::OvershootMap;
 use handscope::hand::register::ANGLE_SET;
@@ -158,6 +159,7 @@ impl Stage {
             arm: gentle(),
             grip: GripEstimator::default(),
             overshoot: OvershootMap::default(),
+            blocks: SizeBlocks::default(),
             seen: self.follower.sample(),
             clock: self.clock,
         };

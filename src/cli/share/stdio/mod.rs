@@ -545,6 +545,7 @@ impl StdioSession<'_> {
                 clock: link.clock(),
             };
             let following = async move {
+                blocks: session::size_blocks(self.hand.endpoint),
                 match armed(&link, right).await {
                     Ok(_epoch) => {
                         TaskResult::Followed(Ok(follow(&link, start, followed, |_| ()).await))
