@@ -64,6 +64,7 @@ impl Try {
                 Start::Window(Window::search),
                 Start::Window(Window::checkup),
                 Start::Window(Window::hold),
+                Start::Window(Window::scale),
             ],
             Row::Exhibition => &[Start::Window(Window::exhibition)],
             Row::Calibration => &[Start::Window(Window::calibration)],
@@ -103,12 +104,14 @@ impl Try {
                 Start::Process(Place::trial),
                 Start::Process(Place::tune),
                 Start::Process(Place::hold),
+                Start::Process(Place::scale),
             ],
             Row::Trial => &[
                 Start::Process(Place::trial),
                 Start::Process(Place::tune),
                 Start::Process(Place::grip),
                 Start::Process(Place::hold),
+                Start::Process(Place::scale),
             ],
             Row::Stdio => &[
                 Start::Process(Place::stdio_move),

@@ -184,6 +184,13 @@ impl Place {
         self.start("hold", &["--pose", "Power grasp", "--json", "--arm"])
     }
 
+    /// The index presses a scale, which it looks for; nobody types what that shows.
+    pub(super) fn scale(self) -> Process {
+        let hand = self.hand.endpoint.clone();
+        let args = ["--hand", &hand, "--joint", "index", "--json", "--arm"];
+        self.start_with_input("scale", &args, Stdio::piped())
+    }
+
     /// A program that moves the hand by lines of JSON.
     fn stdio(self) -> Process {
         let hand = self.hand.endpoint.clone();

@@ -79,8 +79,8 @@ impl Row {
         match self {
             Self::Slider => "slider in the window",
             Self::Pose => "pose and sequence",
-            Self::Series => "series and hold in the window",
-            Self::Trial => "trial, tune, grip, hold",
+            Self::Series => "series, hold and scale in the window",
+            Self::Trial => "trial, tune, grip, hold, scale",
             Self::Follow => "follow UDP and TCP",
             Self::FollowDds => "follow DDS",
             Self::Leading => "another hand leading",

@@ -14,6 +14,7 @@ use handscope::app::env::Env;
 use handscope::app::exhibit::{ExhibitAction, Exhibition};
 use handscope::app::hand::hold::HoldAction;
 use handscope::app::hand::list::HandsAction;
+use handscope::app::hand::scale::ScaleAction;
 use handscope::app::inputs::InputAction;
 use handscope::app::procedures::procedure::ProcedureAction;
 use handscope::app::settings::Settings;
@@ -206,6 +207,14 @@ impl Window {
         let targets = PerDof::splat(Some(Angle::MIN));
         let close = HoldAction::Start(HoldClose::To(targets));
         self.act(Action::Hold(close));
+        self
+    }
+
+    /// The index presses a scale, which it looks for.
+    pub(super) fn scale(mut self) -> Self {
+        self.arm();
+        let press = ScaleAction::Start(Dof::Index, Force::nearest(400));
+        self.act(Action::Scale(press));
         self
     }
 
