@@ -93,7 +93,7 @@ class State(_Value):
     """One reading of the hand."""
 
     __slots__ = (
-        "t_s", "time", "angle", "angle_rad", "force_g", "current_ma", "temp_c", "status", "faults", "touch", "grip",
+        "t_s", "time", "angle", "angle_rad", "force_g", "force_n", "current_ma", "temp_c", "status", "faults", "touch", "grip",
         "target", "speed", "threshold_g", "undocumented", "lost", "raw", "received",
     )  # fmt: skip
 
@@ -106,6 +106,8 @@ class State(_Value):
     angle_rad: Dict[Joint, Optional[float]]
     """The same as the driven joints of the URDF turn: 0 open."""
     force_g: Joints
+    force_n: Dict[Joint, Optional[float]]
+    """The same in newtons, of the joints that were measured on a scale (`handscope help scale`)."""
     current_ma: Joints
     temp_c: Joints
     status: Dict[Joint, Optional[str]]
@@ -142,7 +144,7 @@ class State(_Value):
             return dict(zip(JOINTS, told.get(name) or [None] * len(JOINTS)))
 
         asked = {"target": "target_angle", "speed": "target_speed", "threshold_g": "force_threshold_g"}
-        same = ("angle", "angle_rad", "force_g", "current_ma", "temp_c", "status", "faults")
+        same = ("angle", "angle_rad", "force_g", "force_n", "current_ma", "temp_c", "status", "faults")
         joints: Dict[str, Any] = {name: six(field) for name, field in {**dict(zip(same, same)), **asked}.items()}
         return cls(
             **joints,

@@ -244,6 +244,7 @@ class Moves(unittest.TestCase):
             self.assertTrue(grip.holding and not grip.empty, grip)
             self.assertEqual((grip.end, grip.fingers["index"]), ("stopped", "holding"))
             self.assertGreater(hand.state.force_g["index"], 100)
+            self.assertIsNone(hand.state.force_n["index"], "it was measured on no scale")
             self.assertGreater(hand.touch["index"].normal_n, 0.5)
 
     def test_what_is_wrong_is_told_in_the_programs_words_and_moves_nothing(self):

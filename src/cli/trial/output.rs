@@ -1,7 +1,8 @@
 //! Trials and series as JSON, a contract with scripts, and as lines of text. Pure.
 
 use crate::cli::trial::args::TrialArgs;
-use crate::hand::Dof;
+use crate::hand::newtons::newtons;
+use crate::hand::{Dof, PerDof};
 use crate::motion::drive::EndReport;
 use crate::trials::best::{MetricSpread, Score, best, scores};
 use crate::trials::columns::COLUMNS;
@@ -109,12 +110,24 @@ impl SeriesResult {
     }
 }
 
+/// Newtons of a gram of each joint; `None` where they are not known.
+type NewtonsPerG = PerDof<Option<f64>>;
+
 /// One trial: `{"trial": {…}}`. Unknown values are null.
-pub(crate) fn trial_json(trial: &TrialSummary) -> Value {
+pub(crate) fn trial_json(trial: &TrialSummary, per_g: &NewtonsPerG) -> Value {
     let mut line = json!(trial);
     if let Some(line) = line.as_object_mut() {
         // In a file each joint is a separate table `joint`.
-        let joints = line.remove("joint").unwrap_or_else(|| json!([]));
+        let mut joints = line.remove("joint").unwrap_or_else(|| json!([]));
+        let rows = joints.as_array_mut().into_iter().flatten();
+        for (row, joint) in rows.zip(&trial.joints) {
+            let in_newtons = |force_g: Option<f64>| Some(newtons(force_g?, per_g[joint.dof]?));
+            if let Some(row) = row.as_object_mut() {
+                let (peak, steady) = (joint.peak_force_g, joint.steady_force_g);
+                row.insert("peak_force_n".into(), json!(in_newtons(peak)));
+                row.insert("steady_force_n".into(), json!(in_newtons(steady)));
+            }
+        }
         line.insert("joints".into(), joints);
     }
     json!({"trial": line})
@@ -126,13 +139,13 @@ pub(crate) fn joints(plan: &TrialPlan) -> String {
 }
 
 /// One line per joint.
-pub(crate) fn trial_lines(trial: &TrialSummary, of: usize) -> Vec<String> {
+pub(crate) fn trial_lines(trial: &TrialSummary, of: usize, per_g: &NewtonsPerG) -> Vec<String> {
     let head = format!("trial {} of {of}, {}:", trial.number, trial.setting);
     if let Some(why) = &trial.aborted {
         return vec![format!("{head} ended early: {why}")];
     }
     let joints = trial.joints.iter();
-    let joints = joints.map(|joint| format!("{head} {}", joint_words(joint)));
+    let joints = joints.map(|joint| format!("{head} {}", joint_words(joint, per_g[joint.dof])));
     joints.chain(disturbed(trial)).collect()
 }
 
@@ -154,10 +167,19 @@ fn disturbed(trial: &TrialSummary) -> Option<String> {
     }
 }
 
-fn joint_words(joint: &JointMetrics) -> String {
+/// `per_g` is the newtons of a gram, if they are known.
+fn joint_words(joint: &JointMetrics, per_g: Option<f64>) -> String {
     let values = COLUMNS.iter().filter_map(|column| {
         let word = column.word?;
-        Some(format!("{word} {} {}", column.text(joint), column.unit))
+        let grams = (column.value)(joint).filter(|_| column.unit == "g");
+        let in_newtons = grams.zip(per_g);
+        let in_newtons = in_newtons.map(|(grams, per_g)| format!(" ({:.1} N)", grams * per_g));
+        Some(format!(
+            "{word} {} {}{}",
+            column.text(joint),
+            column.unit,
+            in_newtons.unwrap_or_default()
+        ))
     });
     let values: Vec<String> = values.collect();
     let end = if joint.dead_drive {
@@ -210,6 +232,25 @@ mod tests {
         }
     }
 
+    const NONE: NewtonsPerG = PerDof::splat(None);
+
+    #[test]
+    fn newtons_stand_beside_the_grams_of_joints_that_were_measured_and_replace_none() {
+        let mut trial = trial(&[(Dof::Index, Some(0.5)), (Dof::Ring, Some(0.5))]);
+        for joint in &mut trial.joints {
+            (joint.peak_force_g, joint.steady_force_g) = (Some(566.0), Some(465.0));
+        }
+        let per_g = PerDof::from_fn(|dof| (dof == Dof::Index).then_some(0.007));
+        let lines = trial_lines(&trial, 1, &per_g);
+        assert!(lines[0].contains("peak 566 g (4.0 N), steady 465 g (3.3 N)"));
+        assert!(lines[1].contains("peak 566 g, steady 465 g"), "{lines:?}");
+        let json = trial_json(&trial, &per_g)["trial"]["joints"].clone();
+        assert_eq!(json[0]["peak_force_g"], 566.0);
+        assert_eq!(json[0]["peak_force_n"], 3.962);
+        assert_eq!(json[0]["steady_force_n"], 3.255);
+        assert_eq!(json[1]["peak_force_n"], Value::Null);
+    }
+
     fn words(trials: Vec<TrialSummary>) -> Option<String> {
         let report = EndReport {
             aborted: None,
@@ -234,11 +275,11 @@ mod tests {
     fn a_trial_that_is_repeated_says_why() {
         let mut gap = trial(&[]);
         (gap.repeated, gap.stall_s) = (true, Some(0.31));
-        let said = trial_lines(&gap, 1).join(" ");
+        let said = trial_lines(&gap, 1, &NONE).join(" ");
         assert!(said.contains("does not count and is repeated"), "{said}");
         assert!(said.contains("did not run for 0.31 s"), "{said}");
         gap.stall_s = None;
-        let said = trial_lines(&gap, 1).join(" ");
+        let said = trial_lines(&gap, 1, &NONE).join(" ");
         assert!(said.contains("the hand sent none for a while"), "{said}");
     }
 }

@@ -3,7 +3,9 @@
 
 use crate::app::files::settings_file;
 use crate::cli::out::{AlreadyReported, Out, ReaderGone, notify};
+use crate::cli::session;
 use crate::cli::trial::output::{trial_json, trial_lines};
+use crate::hand::PerDof;
 use crate::hand::overshoot::OvershootMap;
 use crate::link::LinkHandle;
 use crate::link::quirks::book;
@@ -45,6 +47,8 @@ pub(crate) struct TrialResults<'a> {
     map: Option<PathBuf>,
     adding: Vec<JoinHandle<io::Result<OvershootMap>>>,
     total: usize,
+    /// Newtons of a gram of each joint, where they are known.
+    newtons_per_g: PerDof<Option<f64>>,
     /// First error of printing or writing.
     error: Option<anyhow::Error>,
 }
@@ -86,6 +90,7 @@ impl<'a> TrialResults<'a> {
                 .and_then(|settings| overshoot_file::file_of(&settings, hand)),
             adding: Vec::new(),
             total: 0,
+            newtons_per_g: session::newtons_per_g(hand),
             error: None,
         })
     }
@@ -120,8 +125,9 @@ impl<'a> TrialResults<'a> {
                 anyhow!("the trials cannot be written as fast as they come, or at all")
             })
         });
-        let lines = trial_lines(&summary, self.total);
-        let shown = self.out.result(self.json, &trial_json(&summary), lines);
+        let lines = trial_lines(&summary, self.total, &self.newtons_per_g);
+        let json = trial_json(&summary, &self.newtons_per_g);
+        let shown = self.out.result(self.json, &json, lines);
         self.trials.push(summary);
         shown.and_then(|()| self.out.flush()).and(written)
     }

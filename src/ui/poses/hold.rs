@@ -3,14 +3,14 @@
 use crate::app::action::Action;
 use crate::app::hand::grasps::GraspState;
 use crate::app::hand::hold::{HoldAction, HoldMotion};
-use crate::hand::Force;
 use crate::hand::gap::Gap;
 use crate::hand::hold_forces::HoldForces;
+use crate::hand::{Finger, Force};
 use crate::motion::hold::{HoldClose, HoldPhase};
 use crate::poses::starter::starter;
 use crate::ui::hand::figures;
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
-use crate::ui::text::hold;
+use crate::ui::text::{hold, words};
 use crate::ui::theme;
 use egui::{CornerRadius, Id, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
@@ -74,12 +74,38 @@ fn forces_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
             }
         }
     });
+    newtons_ui(ui, pane, [least, most]);
     if let Some([least, most]) = wanted {
         #[expect(clippy::cast_possible_truncation, reason = "a force of at most 2000 g")]
         let [least, most] = [least, most].map(|g| Force::nearest(g.round() as i64));
         let forces = HoldForces::nearest(least, most);
         pane.actions.push(Action::Hold(HoldAction::Forces(forces)));
     }
+}
+
+/// Draws both forces in newtons of the fingers that were measured: each finger has its own.
+fn newtons_ui(ui: &mut Ui, pane: &Pane<'_>, both: [f32; 2]) {
+    let (look, per_g) = (pane.look, pane.hand().newtons.all_per_g());
+    let known = Finger::ALL.map(|finger| Some((finger, per_g[finger.bend()]?)));
+    let known: Vec<(Finger, f64)> = known.into_iter().flatten().collect();
+    let factors = || known.iter().map(|(_, per_g)| *per_g);
+    let Some((low, high)) = factors().reduce(f64::min).zip(factors().reduce(f64::max)) else {
+        return;
+    };
+    let [least, most] = both.map(|grams| {
+        let [low, high] = [low, high].map(|per_g| format!("{:.1}", f64::from(grams) * per_g));
+        match low == high {
+            true => format!("{low} N"),
+            false => look.fill(hold::FROM_TO_N, &[&low, &high]),
+        }
+    });
+    let fingers: Vec<&str> = known
+        .iter()
+        .map(|own| look.tr(words::finger(own.0)))
+        .collect();
+    let fingers = look.list(&fingers);
+    let text = look.fill(hold::IN_NEWTONS, &[&least, &most, &fingers]);
+    Label::new(&text, look.palette.muted).wrap().ui(ui);
 }
 
 /// A slider with two handles; returns both forces if one was dragged.
@@ -145,6 +171,21 @@ fn starts_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     });
 }
 
+/// Draws the button by which the user says that the object stands, while a grasp is confirmed.
+fn put_down_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
+    let look = pane.look;
+    let Some(run) = pane.hand().running.hold() else {
+        return;
+    };
+    let (asks, is_confirmed) = (run.asks(), run.confirming.is_none());
+    if is_confirmed {
+        return;
+    }
+    let why = (!asks).then(|| look.tr(hold::PUT_DOWN_LOADED));
+    let button = Button::text(look, hold::PUT_DOWN).disabled(why);
+    button.on_click(ui, pane, Action::Hold(HoldAction::PutDown));
+}
+
 /// Draws the state of the hold, or how the last one ended.
 fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
     let (look, palette) = (pane.look, pane.look.palette);
@@ -171,21 +212,6 @@ fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
 fn grasps_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     let saves = pane.hand().running.hold().is_some_and(HoldMotion::is_done);
-/// Draws the button by which the user says that the object stands, while a grasp is confirmed.
-fn put_down_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let look = pane.look;
-    let Some(run) = pane.hand().running.hold() else {
-        return;
-    };
-    let (asks, is_confirmed) = (run.asks(), run.confirming.is_none());
-    if is_confirmed {
-        return;
-    }
-    let why = (!asks).then(|| look.tr(hold::PUT_DOWN_LOADED));
-    let button = Button::text(look, hold::PUT_DOWN).disabled(why);
-    button.on_click(ui, pane, Action::Hold(HoldAction::PutDown));
-}
-
     if saves {
         let run = pane.hand().running.hold();
         let why = run.and_then(HoldMotion::not_saved).map(hold::not_saved);

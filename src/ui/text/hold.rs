@@ -17,6 +17,8 @@ texts! {
     HOLD: "Hold", "保持", "Holds an object with the least force that holds it, between two limits.", "在两个限值之间，用能保持住物体的最小力保持物体。";
     AT_LEAST: "At least, g", "最小力 g", "Each finger presses with this force or more.", "每根手指的力不小于此值。";
     AT_MOST: "At most, g", "最大力 g", "No finger presses harder. The hand itself keeps to it by its force threshold.", "每根手指的力不大于此值，由手自身的力阈值保证。";
+    IN_NEWTONS: "At least {}, at most {}, as measured for: {}", "按已标定手指：最小 {}，最大 {}（{}）";
+    FROM_TO_N: "{} to {} N", "{} 至 {} N";
     TAKE: "Hold what is held", "保持已抓物体", "Takes over what the hand holds, without opening it.", "不张开手，直接接管已抓住的物体。";
     POWER: "Close all fingers", "五指抓握", "Closes slowly as Power grasp until the object stops the fingers, then holds.", "按强力抓握姿态缓慢闭合，遇物体停止后保持。";
     PINCH: "Close as pinch", "两指捏取", "Closes thumb and index slowly until the object stops them, then holds.", "大拇指与食指缓慢闭合，遇物体停止后保持。";
@@ -72,9 +74,9 @@ texts! {
     DOUBT_HERE: "the newtons of the {} of this hand are not known; measure them with 'handscope scale'", "此手{}的牛顿值未知；请用 handscope scale 测量";
     DOUBT_ROOM: "its forces are not possible as the {} of this hand reads them ({} to {} g)", "按此手{}的读数，这些力不可行（{} 至 {} g）";
     DOUBT_NO_LOAD: "no load came and went in close {}: lift the object, and put it down again", "第 {} 次闭合中负载没有出现并消失：请提起并放下物体";
+    DOUBT_NOT_RELEASED: "nobody said in close {} that the object stands", "第 {} 次闭合中未确认物体已放稳";
     DOUBT_NOT_CLOSED: "in close {} the open hand touched the object", "第 {} 次闭合前张开的手已碰到物体";
     DOUBT_LOST: "the object left the hand in close {}", "第 {} 次闭合中物体脱离";
-    DOUBT_NOT_RELEASED: "nobody said in close {} that the object stands", "第 {} 次闭合中未确认物体已放稳";
     DOUBT_FORCE: "at most did not suffice in close {}", "第 {} 次闭合中最大力不足";
     DOUBT_NOT_HELD: "the {} does not hold as on the first hand: place the object as it lay there", "{}没有像原手那样保持：请按原样放置物体";
     DOUBT_PEAK: "the {} may press with {} g, above at most ({} g on this hand)", "{}可能达到 {} g，超过最大力（此手为 {} g）";
@@ -168,9 +170,9 @@ pub(crate) fn confirming(look: Look, own: Confirming) -> String {
         ConfirmStep::Close => CONFIRM_CLOSE,
         ConfirmStep::Lift => CONFIRM_LIFT,
         ConfirmStep::PutDown => CONFIRM_DOWN,
+        ConfirmStep::Release => CONFIRM_RELEASE,
         ConfirmStep::Open => CONFIRM_OPEN,
     });
-        ConfirmStep::Release => CONFIRM_RELEASE,
     look.fill(CONFIRMING, &[&own.close, &own.of, &step])
 }
 
@@ -198,9 +200,9 @@ pub(crate) fn doubt(look: Look, doubt: GraspDoubt) -> String {
             look.fill(DOUBT_ROOM, &[&finger(own), &why.at_least, &why.at_most])
         }
         GraspDoubt::NoLoad { close } => look.fill(DOUBT_NO_LOAD, &[&close]),
+        GraspDoubt::NotReleased { close } => look.fill(DOUBT_NOT_RELEASED, &[&close]),
         GraspDoubt::NotClosed { close } => look.fill(DOUBT_NOT_CLOSED, &[&close]),
         GraspDoubt::Lost { close } => look.fill(DOUBT_LOST, &[&close]),
-        GraspDoubt::NotReleased { close } => look.fill(DOUBT_NOT_RELEASED, &[&close]),
         GraspDoubt::CouldNotHold { close } => look.fill(DOUBT_FORCE, &[&close]),
         GraspDoubt::NotHeld { finger: own } => look.fill(DOUBT_NOT_HELD, &[&finger(own)]),
         GraspDoubt::Peak {

@@ -1,6 +1,7 @@
 //! The calibration of a finger's force with a kitchen scale, in the window: what is asked and typed, what is stored, and how it ends.
 
-use crate::setup::window::Bench;
+use crate::setup::grasp;
+use crate::setup::window::{Bench, LARGE};
 use egui::Key;
 use handscope::app::action::Action;
 use handscope::hand::newtons::{LOADS, N_PER_G};
@@ -114,4 +115,25 @@ fn accepted_readings_remain_when_it_ends_early() {
     assert_eq!(points.points.len(), 2);
     assert!(bench.shows("Index: 2 of 5 loads"));
     assert_eq!(bench.state().hand().newtons.per_g(Dof::Index), None);
+}
+
+#[test]
+fn the_forces_of_a_hold_stand_in_newtons_of_the_fingers_that_were_measured() {
+    let hand = "tcp:10.0.0.1";
+    let mut bench = Bench::kept(SimConfig::default(), hand, LARGE);
+    bench.wait(1000);
+    bench.click("Hold");
+    bench.run(100);
+    assert!(bench.texts_with("as measured for").is_empty());
+    bench.click("Hold");
+    grasp::store(&bench.folder().join("kept/settings.toml"), hand, "Ball");
+    bench.act(Action::Disconnect);
+    bench.wait(500);
+    bench.act(Action::Connect(hand.parse().unwrap()));
+    bench.wait(1500);
+    bench.click("Hold");
+    bench.run(100);
+    // 150 and 400 g.
+    let shown = bench.texts_with("At least 1.5 N, at most 3.9 N, as measured for");
+    assert_eq!(shown.len(), 1, "{:?}", bench.texts());
 }

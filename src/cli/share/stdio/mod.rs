@@ -12,10 +12,10 @@ use crate::cli::session;
 use crate::cli::share::stdio::pipe::{NobodyReads, ReplyWriter};
 use crate::cli::share::stdio::refused::{RefusalKind, StdioRefusal};
 use crate::cli::share::stdio::request::{LimitsRequest, MoveRequest, StdioLine, StdioRequest};
-use crate::cli::watch::telemetry::{grip_json, sample_json};
+use crate::cli::watch::telemetry::{grip_json, watch_json};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::kinematics::Side;
-use crate::hand::{Angle, ArmEpoch, Group, HandCommand, HandSample, Moment};
+use crate::hand::{Angle, ArmEpoch, Group, HandCommand, HandSample, Moment, PerDof};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, Records};
@@ -105,6 +105,8 @@ struct StdioSession<'a> {
     replies: ReplyWriter<'a>,
     seen: HandSample,
     grip: GripEstimator,
+    /// Newtons of a gram of each joint, where they are known.
+    newtons_per_g: PerDof<Option<f64>>,
     /// Number of missed records reported so far.
     missed: u64,
     right: Option<Right>,
@@ -134,6 +136,7 @@ pub(crate) async fn serve<'a>(
         replies: ReplyWriter::to(out),
         seen: HandSample::default(),
         grip: session::grip_estimator(hand.endpoint),
+        newtons_per_g: session::newtons_per_g(hand.endpoint),
         missed: 0,
         right: None,
         task: None,
@@ -259,7 +262,8 @@ impl StdioSession<'_> {
         };
         let missed = records.lost() - self.missed;
         self.missed = records.lost();
-        let state = || json!({"state": sample_json(&sample, &grip, angle.received)});
+        let newtons = self.newtons_per_g;
+        let state = || json!({"state": watch_json(&sample, &grip, &newtons, angle.received)});
         self.replies.state(state, missed)
     }
 
@@ -541,11 +545,11 @@ impl StdioSession<'_> {
                 arm: right.limits,
                 grip: self.grip.clone(),
                 overshoot: hold::overshoot(self.hand.endpoint),
+                blocks: session::size_blocks(self.hand.endpoint),
                 seen: self.seen,
                 clock: link.clock(),
             };
             let following = async move {
-                blocks: session::size_blocks(self.hand.endpoint),
                 match armed(&link, right).await {
                     Ok(_epoch) => {
                         TaskResult::Followed(Ok(follow(&link, start, followed, |_| ()).await))
