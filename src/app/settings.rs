@@ -9,7 +9,7 @@ use crate::hand::kinematics::Side;
 use crate::hand::{Gesture, GestureRoute};
 use crate::inputs::pad::{self, PadMap};
 use crate::link::PollPriority;
-use crate::motion::following::FollowLimits;
+use crate::motion::follow::step::FollowLimits;
 use crate::poses::library::clean;
 use crate::transport::Endpoint;
 use serde::{Deserialize, Serialize};

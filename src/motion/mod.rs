@@ -6,9 +6,6 @@ pub mod checkup;
 pub mod drive;
 pub mod exhibit;
 pub mod follow;
-pub mod following;
-#[cfg(test)]
-mod following_tests;
 pub mod grasp;
 pub mod grip;
 pub mod held_object;

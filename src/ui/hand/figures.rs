@@ -3,7 +3,7 @@
 use crate::app::hand::grip;
 use crate::app::readings::Freshness;
 use crate::hand::gap::HeldSize;
-use crate::hand::grip::{Grip, GripState};
+use crate::hand::grip::{Grip, GripEstimate, GripState};
 use crate::hand::heat::WARM;
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, PerFinger, Quantity};
@@ -32,8 +32,6 @@ const ABOVE: f32 = theme::CONTROL;
 const THUMB: f32 = 0.7;
 /// Share of the labels of index and thumb that is beside the hand: above and below the thumb there is space for the rest.
 const BESIDE: f32 = 0.55;
-/// Distance of a tip to the side of its knuckle from which on the finger counts as bent, as a share of the hand's width.
-const ASIDE: f32 = 0.15;
 /// Gap between the hand and its labels.
 const CLEAR: f32 = 2.0 * theme::GAP;
 /// Opacity of a line, radius of the ring at its end, and opacity of a label's background.
@@ -72,46 +70,48 @@ pub(crate) fn figures_ui(ui: &mut Ui, pane: &Pane<'_>, view: &HandView, place: R
 }
 
 /// Position of a finger's label, and its line.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Figure {
     lines: [Rect; 3],
     on_left: bool,
-    /// The line leaves the label horizontally or vertically, and ends at the finger.
-    pub(super) path: [Pos2; 3],
+    /// Where the finger is seen; `None` if others hide it.
+    pub(super) end: Option<Pos2>,
+    /// The line leaves the label horizontally or vertically, and ends at the finger; `None` if it would cross another.
+    pub(super) path: Option<[Pos2; 3]>,
 }
 
 impl Figure {
-    /// The labels of all fingers. Each line ends at its fingertip, unless a finger is bent so far that lines would cross or pass over
-    /// another finger: then those of the outer fingers end at their bases.
+    /// The labels of all fingers. Each line ends at its tip, or as near to it as its own finger is seen and no lines cross. Those
+    /// that would cross in any way are left out: the rings at the fingers have the colours of the labels.
     pub(super) fn all(place: Rect, points: &HandPoints) -> PerFinger<Self> {
-        let is_bent = |finger| {
-            let (tip, knuckle) = (points.tips[finger], points.knuckles[finger]);
-            let aside = (tip.x - knuckle.x).abs();
-            tip.y > knuckle.y || aside > ASIDE * points.bounds.width()
+        let from = |start: usize| {
+            PerFinger::from_fn(|finger| {
+                // Index and thumb have labels of their own side.
+                let is_outer = !matches!(finger, Finger::Index | Finger::Thumb);
+                let along = points.along[finger]
+                    .iter()
+                    .skip(if is_outer { start } else { 0 });
+                Self::new(place, points, finger, along.flatten().next().copied())
+            })
         };
-        let figure = |finger, end| Self::new(place, points, finger, end);
-        let outer = [Finger::Little, Finger::Ring, Finger::Middle];
-        let paths = outer.map(|finger| figure(finger, points.tips[finger]).path);
-        let [little, ring, middle] = paths;
-        let are_bent = outer.into_iter().any(is_bent)
-            || cross(little, ring)
-            || cross(ring, middle)
-            || cross(little, middle);
-        PerFinger::from_fn(|finger| {
-            let at_knuckle = match finger {
-                Finger::Little | Finger::Ring | Finger::Middle => are_bent,
-                Finger::Index => is_bent(finger),
-                Finger::Thumb => false,
-            };
-            let ends = if at_knuckle {
-                points.knuckles
-            } else {
-                points.tips
-            };
-            figure(finger, ends[finger])
+        let ends = |figures: &PerFinger<Self>| {
+            let ends = Finger::ALL.into_iter().map(|own| figures[own].end);
+            ends.flatten().count()
+        };
+        let at_tips = from(0);
+        let starts = 0..points.along[Finger::Middle].len();
+        let mut clear = starts.map(from).filter(|figures| {
+            let free = Finger::ALL.into_iter().all(|own| is_free(figures, own));
+            free && ends(figures) == ends(&at_tips)
+        });
+        let figures = clear.next().unwrap_or(at_tips);
+        PerFinger::from_fn(|finger| Self {
+            path: figures[finger].path.filter(|_| is_free(&figures, finger)),
+            ..figures[finger]
         })
     }
 
-    fn new(place: Rect, points: &HandPoints, finger: Finger, end: Pos2) -> Self {
+    fn new(place: Rect, points: &HandPoints, finger: Finger, end: Option<Pos2>) -> Self {
         let (slot, on_left) = slot(place, points, finger);
         let lines = [0.0, 1.0, 2.0].map(|line| {
             let top = slot.top() + line * theme::TEXT_LINE;
@@ -127,7 +127,8 @@ impl Figure {
         Self {
             lines,
             on_left,
-            path: [from + way, knee, end],
+            end,
+            path: end.map(|end| [from + way, knee, end]),
         }
     }
 
@@ -146,6 +147,16 @@ impl Figure {
         let named = pane.look.pair(name, pane.look.tr(main::LOCKED));
         lock.named(&named).put(ui, place);
     }
+}
+
+/// True if the line to a finger crosses no other.
+fn is_free(figures: &PerFinger<Figure>, finger: Finger) -> bool {
+    let mut others = Finger::ALL.into_iter().filter(|other| *other != finger);
+    let crosses = |other: Finger| {
+        let both = figures[finger].path.zip(figures[other].path);
+        both.is_some_and(|(own, other)| cross(own, other))
+    };
+    !others.any(crosses)
 }
 
 /// True if two lines cross.
@@ -200,7 +211,7 @@ fn figure_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, figure: &Figure) {
     let ground = look.palette.card.gamma_multiply(GROUND_PART);
     ui.painter()
         .rect_filled(first.union(second), theme::ROUND_SMALL, ground);
-    line_ui(ui, figure.path, color.gamma_multiply(LINE_PART));
+    line_ui(ui, figure, color.gamma_multiply(LINE_PART));
     let aligned = |label: Label<'_>, ui: &mut Ui, rect: Rect| {
         let label = if on_left { label.right() } else { label };
         label.put(ui, rect)
@@ -318,6 +329,9 @@ fn grip_word(pane: &Pane<'_>) -> (String, Color32) {
         };
         return (look.tr(hold::phase(run.view.phase)).to_owned(), color);
     }
+    if state == GripState::Holding && holding(pane) < 2 {
+        return (look.tr(panels::TOUCHING).to_owned(), look.palette.muted);
+    }
     let word = look.tr(panels::grip(state));
     let words = match state {
         GripState::Unknown => look.pair(look.tr(panels::GRIP), word),
@@ -328,6 +342,13 @@ fn grip_word(pane: &Pane<'_>) -> (String, Color32) {
         _ => word.to_owned(),
     };
     (words, color)
+}
+
+/// Number of fingers that hold something: one alone only touches it.
+fn holding(pane: &Pane<'_>) -> usize {
+    let fingers = grip(pane).fingers;
+    let holds = |(_, finger): &(Finger, &GripEstimate)| finger.state == GripState::Holding;
+    fingers.iter().filter(holds).count()
 }
 
 /// Height below the picture: the word, and as many of the two small lines as there is space for.
@@ -377,9 +398,13 @@ fn trouble(pane: &Pane<'_>, dof: Dof) -> Option<(String, Color32)> {
 }
 
 /// Draws a thin line from a label to its finger, with a ring at the finger.
-fn line_ui(ui: &Ui, [from, knee, end]: [Pos2; 3], color: Color32) {
-    let stop = end + (knee - end).normalized() * RING;
+fn line_ui(ui: &Ui, figure: &Figure, color: Color32) {
     let painter = ui.painter();
-    painter.line(vec![from, knee, stop], Stroke::new(1.0, color));
-    painter.circle_stroke(end, RING, Stroke::new(theme::FOCUS_LINE, color));
+    if let Some([from, knee, end]) = figure.path {
+        let stop = end + (knee - end).normalized() * RING;
+        painter.line(vec![from, knee, stop], Stroke::new(1.0, color));
+    }
+    if let Some(end) = figure.end {
+        painter.circle_stroke(end, RING, Stroke::new(theme::FOCUS_LINE, color));
+    }
 }

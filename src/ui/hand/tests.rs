@@ -5,7 +5,7 @@ use crate::draw::figure::camera::Turn;
 use crate::draw::figure::render::{SeenPlace, Sketch};
 use crate::draw::figure::shape;
 use crate::hand::kinematics::{Segment, SegmentFrames, Side, tip_pad};
-use crate::hand::{Dof, Finger, PerDof};
+use crate::hand::{Dof, Finger, PerDof, PerFinger};
 use crate::sim::Scenario;
 use crate::sim::object::{NamedObject, Object};
 use crate::transport::Endpoint;
@@ -325,7 +325,7 @@ impl DrivenView {
 
     /// Where the tip of the index is seen.
     fn index(&self) -> Pos2 {
-        self.view.points().unwrap().tips[Finger::Index] + vec2(0.0, 3.0)
+        self.view.points().unwrap().along[Finger::Index][0].unwrap() + vec2(0.0, 3.0)
     }
 }
 
@@ -351,21 +351,34 @@ fn the_lines_to_the_fingers_do_not_cross_in_any_pose() {
                 turn: turn.of(side),
                 ..setting(side, 1.0)
             };
-            view.drawn = Some((posed(side, pose), setting));
+            let picture = posed(side, pose);
+            view.update(&picture, setting);
+            let camera = setting.camera(side);
+            let tips = PerFinger::from_fn(|own| camera.place(picture.pose().tip(own)));
             let points = view.points().unwrap();
             let figures = Figure::all(place, &points);
             for one in Finger::ALL {
                 for other in Finger::ALL.into_iter().filter(|other| *other != one) {
+                    let both = figures[one].path.zip(figures[other].path);
                     assert!(
-                        !cross(figures[one].path, figures[other].path),
+                        both.is_none_or(|(one, other)| !cross(one, other)),
                         "{side:?} {turn:?} {size} {pose:?}: {one:?} {other:?}"
                     );
                 }
+                // A line ends where its own finger is seen.
+                if let Some(end) = figures[one].end {
+                    let seen = view.sketch.segment_at(&view.mesh, end).unwrap();
+                    assert_eq!(seen.segment.finger(), Some(one));
+                }
             }
+            let lines = Finger::ALL.map(|own| figures[own].path.is_some());
+            let count = lines.into_iter().filter(|has| *has).count();
+            assert!(count >= 3, "{side:?} {turn:?} {size} {pose:?}: {lines:?}");
             // In a small picture the labels are too close to each other for that.
             if pose[0] > 0.99 && size.x > 600.0 {
-                for finger in Finger::ALL {
-                    assert_eq!(figures[finger].path[2], points.tips[finger], "{finger:?}");
+                for finger in [Finger::Little, Finger::Ring, Finger::Middle, Finger::Index] {
+                    let end = figures[finger].path.map(|[.., end]| end);
+                    assert_eq!(end, Some(tips[finger]), "{finger:?}");
                 }
             }
         }

@@ -47,9 +47,11 @@ pub(crate) struct HandView {
     /// Share of the way from the default viewpoint to the frontal one.
     front: f32,
     pub(crate) drawn: Option<(HandPicture, DrawSettings)>,
+    /// Anchor points of the drawn picture.
+    points: Option<HandPoints>,
     drag: HandDrag,
-    sketch: Sketch,
-    mesh: Arc<Mesh>,
+    pub(super) sketch: Sketch,
+    pub(super) mesh: Arc<Mesh>,
 }
 
 /// Effect of the current drag.
@@ -95,9 +97,8 @@ pub(crate) struct HandUse {
 /// Anchor points in the picture for the labels.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HandPoints {
-    pub(crate) tips: PerFinger<Pos2>,
-    /// Bases of the fingers, which do not move.
-    pub(crate) knuckles: PerFinger<Pos2>,
+    /// Places on each finger, from its tip to its base; `None` where something else hides it.
+    pub(crate) along: PerFinger<[Option<Pos2>; 5]>,
     /// Area that the hand covers over all poses.
     pub(crate) bounds: Rect,
     /// The thumb is on the right.
@@ -185,10 +186,8 @@ impl HandView {
             theme: palette.theme,
             feather: 1.0 / ui.pixels_per_point(),
         };
-        if rect.is_positive() && self.drawn != Some((*picture, setting)) {
-            let mesh = Arc::make_mut(&mut self.mesh);
-            draw(&mut self.sketch, picture, &setting, mesh);
-            self.drawn = Some((*picture, setting));
+        if rect.is_positive() {
+            self.update(picture, setting);
         }
         // A wide object may reach below the labels beside the hand.
         let sides = ui.max_rect().x_range();
@@ -198,11 +197,20 @@ impl HandView {
             .add(Shape::Mesh(Arc::clone(&self.mesh)));
     }
 
-    /// Anchor points of the last drawn picture; `None` before the first one.
-    pub(crate) fn points(&self) -> Option<HandPoints> {
-        let (picture, setting) = self.drawn.as_ref()?;
+    /// Draws the picture into the mesh, if it is not there yet, and finds its anchor points.
+    pub(super) fn update(&mut self, picture: &HandPicture, setting: DrawSettings) {
+        if self.drawn == Some((*picture, setting)) {
+            return;
+        }
+        let mesh = Arc::make_mut(&mut self.mesh);
+        draw(&mut self.sketch, picture, &setting, mesh);
+        self.drawn = Some((*picture, setting));
+        self.points = Some(self.find_points(picture, &setting));
+    }
+
+    fn find_points(&self, picture: &HandPicture, setting: &DrawSettings) -> HandPoints {
         let (camera, pose) = (setting.camera(picture.side), picture.pose());
-        let knuckles = PerFinger::from_fn(|finger| {
+        let base = |finger| {
             let first = match finger {
                 Finger::Little => Segment::Little1,
                 Finger::Ring => Segment::Ring1,
@@ -210,14 +218,35 @@ impl HandView {
                 Finger::Index => Segment::Index1,
                 Finger::Thumb => Segment::Thumb1,
             };
-            camera.place(pose.frame(first).translation)
-        });
-        Some(HandPoints {
-            tips: PerFinger::from_fn(|finger| camera.place(pose.tip(finger))),
+            pose.frame(first).translation
+        };
+        let is_seen = |finger: Finger, at: Pos2| {
+            let seen = self.sketch.segment_at(&self.mesh, at);
+            seen.is_some_and(|seen| seen.segment.finger() == Some(finger))
+        };
+        let along = |finger: Finger| {
+            let (tip, base) = (pose.tip(finger), base(finger));
+            let joint = pose.frame(Segment::tip(finger)).translation;
+            let along = [
+                tip,
+                tip.lerp(joint, 0.5),
+                joint,
+                joint.lerp(base, 0.5),
+                base,
+            ];
+            along.map(|at| Some(camera.place(at)).filter(|at| is_seen(finger, *at)))
+        };
+        let [little, index] = [Finger::Little, Finger::Index].map(|own| camera.place(base(own)).x);
+        HandPoints {
+            along: PerFinger::from_fn(along),
             bounds: camera.bounds,
-            is_forward: knuckles[Finger::Little].x < knuckles[Finger::Index].x,
-            knuckles,
-        })
+            is_forward: little < index,
+        }
+    }
+
+    /// Anchor points of the last drawn picture; `None` before the first one.
+    pub(crate) const fn points(&self) -> Option<HandPoints> {
+        self.points
     }
 
     /// Moves the default viewpoint to the frontal one or back, within [`EASE_S`]; at once if animations are off.

@@ -5,7 +5,7 @@ use crate::app::inputs::InputAction;
 use crate::app::slot::SlotId;
 use crate::app::state::State;
 use crate::link::Owner;
-use crate::motion::following::{FollowLimits, FollowPhase};
+use crate::motion::follow::step::{FollowLimits, FollowPhase};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, format};
 use crate::ui::text::{hold as hold_text, inputs, words};
 use crate::ui::theme;

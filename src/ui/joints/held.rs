@@ -87,11 +87,6 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, settings: &[HeldSetting]) {
         .filter(|own| !own.is_empty())
         .collect();
     let sent = look.fill(main::ARM_SENDS, &[&look.list(&own)]);
-    let color = if is_armed {
-        look.palette.muted
-    } else {
-        look.palette.warn
-    };
     kit::right_ui(ui, |ui| {
         if !is_armed {
             take_ui(ui, pane);
@@ -104,7 +99,7 @@ fn line_ui(ui: &mut Ui, pane: &mut Pane<'_>, settings: &[HeldSetting]) {
         if fits && !is_armed && !own.is_empty() {
             words = full;
         }
-        let label = Label::new(&words, color).small();
+        let label = Label::new(&words, look.palette.muted).small();
         label
             .put(ui, place)
             .on_hover_text(look.tip(main::HAND_HOLDS));

@@ -144,7 +144,7 @@ impl Cursors {
                         format!("{value:.digits$}")
                     });
                     let text = text.unwrap_or_else(|| format::UNKNOWN.into());
-                    let named = format!("{name} {title}: {}", look.tr(column));
+                    let named = look.pair(&format!("{name} {title}"), look.tr(column));
                     cell(ui, &text, Some(&named));
                 }
                 ui.end_row();

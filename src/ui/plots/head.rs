@@ -163,7 +163,7 @@ fn legend_ui(ui: &mut Ui, look: Look, view: &mut PlotView) {
                 sign: "■ ",
                 color: palette.dof[dof],
                 words,
-                name: &format!("{}: {words}", look.tr(panels::HISTORY)),
+                name: &look.pair(look.tr(panels::HISTORY), words),
                 is_on: !view.hidden[dof],
             };
             view.hidden[dof] ^= switch.ui(ui, look, look.tr(panels::SHOW_CURVE));

@@ -21,6 +21,8 @@ use egui::{Id, Rect, ScrollArea, Stroke, StrokeKind, Ui, vec2};
 /// Size of an entry in the strip, and its minimum height.
 const TILE: egui::Vec2 = vec2(96.0, 84.0);
 const TILE_LEAST: f32 = 56.0;
+/// Width from which on the title of the strip has room beside the buttons for several hands.
+const TITLED: f32 = 740.0;
 /// Height of a tile's name.
 const NAME_HEIGHT: f32 = 20.0;
 
@@ -77,7 +79,10 @@ pub(crate) fn tile_ui(ui: &mut Ui, pane: &mut Pane<'_>, pose: &LibraryPose, chos
 pub(crate) fn strip_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
     let look = pane.look;
     kit::card_ui(ui, look, |ui| {
-        kit::head_ui(ui, look, look.tr(poses::STRIP), |ui| {
+        // With several hands there is one button more.
+        let has_room = !pane.state.hands.is_several() || ui.available_width() >= TITLED;
+        let title = if has_room { look.tr(poses::STRIP) } else { "" };
+        kit::head_ui(ui, look, title, |ui| {
             let every = Button::text(look, poses::EVERY);
             every.navigate(ui, pane, ViewRequest::View(View::Poses));
             let tip = look.tip(poses::CAPTURE);

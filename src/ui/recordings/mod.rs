@@ -6,6 +6,7 @@ pub(crate) mod strip;
 pub(crate) mod table;
 
 use crate::app::action::Action;
+use crate::app::hand::Hand;
 use crate::app::recordings::{RecordingAction, RecordingItem};
 use crate::app::state::State;
 use crate::ui::hand::tile;
@@ -132,10 +133,26 @@ fn empty_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
         }
         Label::muted(look, recordings::NONE).wrap().ui(ui);
         ui.add_space(theme::GAP);
+        let hand = pane.hand();
+        if hand.connection.endpoint.is_some() {
+            let record = Button::text(look, recordings::NONE_RECORD).large();
+            let record = record.weight(Weight::Strong);
+            return record.on_click(ui, pane, toggle_recording(hand));
+        }
         let connect = Button::text(look, recordings::NONE_BUTTON).large();
         let connect = connect.weight(Weight::Strong);
         connect.navigate(ui, pane, ViewRequest::View(View::Connection));
     });
+}
+
+/// Begins or ends the recording of a hand.
+pub(crate) fn toggle_recording(hand: &Hand) -> Action {
+    let on = hand.recording.is_none();
+    Action::Recording(if hand.connection.is_simulated() {
+        RecordingAction::RecordSimulated(on)
+    } else {
+        RecordingAction::Record(on)
+    })
 }
 
 /// Draws the exports in progress.

@@ -42,7 +42,7 @@ texts! {
     NOT_KEPT: "It is not kept: {}", "没有保留：{}";
     BUILT_IN: "Check-ups of the built-in hand are not kept.", "内置仿真手的体检不保留。";
     PARTIAL_NOT_KEPT: "What is partial is not kept for the next ones.", "不完整的体检不会保留。";
-    USED: "Recorded since {}: {} h, {} h of them moving. {} closed most: {} times. Stalls: {}.", "自 {} 起的录制：{} 小时，其中运动 {} 小时。闭合最多的是{}：{} 次。堵转：{} 次。";
+    USED: "Recorded since {}: {} h, {} h of them moving. {} closed most often ({}). Stalls: {}.", "自 {} 起的录制：{} 小时，其中运动 {} 小时。闭合最多的是{}：{} 次。堵转：{} 次。";
     NOT_RECORDED: "Hours in use, closes and stalls are not known: there are no recordings of this hand.", "使用时间、闭合与堵转次数未知：没有这只手的录制。";
     DRIFTS: "Drifts from {} to {} over {} check-ups since {}.", "由 {} 漂移到 {}（{} 次体检，自 {} 起）。";
     CHANNELS: "channels {}", "通道 {}";

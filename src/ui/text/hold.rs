@@ -34,13 +34,13 @@ texts! {
     TIGHTENED: "tightened {} times, last: {}", "加力 {} 次，最近：{}";
     WARM: "a drive is warm", "驱动器温度偏高";
     OBJECT: "In the hand: {}", "手中物体：{}";
-    OBJECT_SIZE: "{} ±{} mm", "尺寸 {} ±{} mm";
+    OBJECT_SIZE: "size {} ±{} mm", "尺寸 {} ±{} mm";
     OBJECT_NO_SIZE: "size: cannot tell", "尺寸未知";
     OBJECT_STIFFNESS: "stiffness: cannot tell", "刚度未知";
     OBJECT_YIELDS: "yields", "会变形";
     OBJECT_KEEPS: "does not yield", "不变形";
     OBJECT_NO_YIELD: "yields: cannot tell", "是否变形未知";
-    OBJECT_WEIGHT: "{} ±{} g", "重量 {} ±{} g";
+    OBJECT_WEIGHT: "weight {} ±{} g", "重量 {} ±{} g";
     OBJECT_NO_WEIGHT: "weight: cannot tell", "重量未知";
     TOO_LITTLE: "too little force", "力过小";
     MARGIN: "little margin", "裕量不足";
@@ -48,6 +48,7 @@ texts! {
     SLIP: "slip", "打滑";
     ENDED: "Hold ended: {}", "保持已结束：{}";
     END_HELD: "the hand keeps what it holds", "手保持所抓物体";
+    END_PERSON: "the hand keeps its position", "手保持当前位置";
     END_NOTHING: "the hand holds nothing", "手中没有物体";
     END_LOST: "the object left the hand", "物体已脱离";
     END_LATE: "the hand did not get there in time", "未能按时到位";
@@ -234,7 +235,8 @@ pub(crate) fn doubted(look: Look, why: GraspDoubt) -> String {
 /// The end of a hold.
 pub(crate) fn end(look: Look, end: Ended<HoldEnd>) -> String {
     let why = match end {
-        Ok(HoldEnd::Held) | Err(Abort::Person) => look.tr(END_HELD).to_owned(),
+        Ok(HoldEnd::Held) => look.tr(END_HELD).to_owned(),
+        Err(Abort::Person) => look.tr(END_PERSON).to_owned(),
         Ok(HoldEnd::Nothing) => look.tr(END_NOTHING).to_owned(),
         Ok(HoldEnd::Lost) => look.tr(END_LOST).to_owned(),
         Ok(HoldEnd::Late) => look.tr(END_LATE).to_owned(),

@@ -3,7 +3,7 @@
 use crate::inputs::dds::ctrl::CtrlFault;
 use crate::inputs::line::StreamLineFault;
 use crate::inputs::pad::{PadAction, PadControl};
-use crate::motion::following::FollowPhase;
+use crate::motion::follow::step::FollowPhase;
 use crate::ui::style::phrase::texts;
 
 texts! {

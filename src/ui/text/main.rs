@@ -58,7 +58,7 @@ texts! {
     SETPOINT_WROTE: "{} {}: {}, we wrote {}", "{} {}：{}，我方写入 {}";
     SETPOINT: "{} {}: {}", "{} {}：{}";
     SETPOINT_OUTSIDE: "out of range", "超出范围";
-    FAULT_TITLE: "FAULT", "故障", "A drive reports a fault. Setpoints are blocked until it is cleared.", "驱动器报告故障。清除之前不会发送设置值。";
+    FAULT_TITLE: "FAULT", "故障", "A drive reports a fault. Setpoints are blocked until it is gone.", "驱动器报告故障。故障消失之前不会发送设置值。";
     FAULT_SHOW: "Show faults", "查看故障", "Opens the list of faults with causes and advice.", "打开故障列表，查看原因与建议。";
     LIST_END: ". ", "。";
     IDLE_TITLE: "ARMED", "已使能", "No command for", "未收到指令已有";

@@ -28,7 +28,7 @@ texts! {
     WHEN_READ: "when last read", "上次读取时";
     BEGAN: "Began {} ago", "{}前开始";
     LASTED: "lasted", "持续";
-    CAME: "came {} times", "共 {} 次";
+    CAME: "{} times", "共 {} 次";
     SEEN: "Seen", "已看", "You have seen this fault. It stays in the list until it is forgotten, and is unseen again if it comes again.", "表示已查看该故障。它仍留在列表中；再次出现时会重新标为未查看。";
     SEEN_ALL: "All seen", "全部已看", "You have seen all faults of the list.", "表示已查看列表中的全部故障。";
     SEEN_NONE: "Every fault was seen.", "没有未查看的故障。";

@@ -18,6 +18,7 @@ texts! {
     FIND_NONE: "No recording has these words.", "没有包含这些文字的录制。";
     NONE_TITLE: "No recordings yet", "还没有录制";
     NONE: "What a hand does is recorded here by itself once it is connected; built-in hands only if you ask for it.", "连接真实灵巧手后会自动录制；仿真手只在您要求时录制。";
+    NONE_RECORD: "Record this hand", "录制此灵巧手", "Records this hand until you end it in the header.", "录制此灵巧手，直到在标题栏中停止。";
     NONE_BUTTON: "Connect a hand", "连接灵巧手", "Opens the Connection view.", "打开连接灵巧手的页面。";
     NOWHERE: "There is no folder to record into: this computer has no documents folder.", "没有可供录制的文件夹：此计算机未提供您的文档目录。";
     FOLDER: "Folder", "文件夹", "Where recordings are stored. A running one stays in its file; the next goes into a newly chosen folder.", "录制的保存位置。正在进行的录制保留在原文件中；下一次录制使用新文件夹。";

@@ -104,7 +104,7 @@ pub(crate) fn mover(look: Look, owner: Owner) -> String {
 /// Remark of a scan, as a sentence; empty for its results.
 pub(crate) fn remark(look: Look, remark: &ScanEvent) -> String {
     match remark {
-        ScanEvent::Held { place } => format!("{place}: {}", look.tr(HELD)),
+        ScanEvent::Held { place } => look.pair(place, look.tr(HELD)),
         ScanEvent::Trouble { error, .. } => errors::transport(look, error),
         ScanEvent::Hint(hint) => errors::hint(look, hint),
         ScanEvent::Begun { .. } | ScanEvent::Found(_) | ScanEvent::Done(_) => String::new(),
@@ -170,10 +170,8 @@ pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
             let scenario = scenario.map(|own| look.tr(panels::scenario(own)));
             let given = scenario.into_iter().chain(object.as_deref());
             let given = given.chain(body.as_deref());
-            std::iter::once(kind)
-                .chain(given)
-                .collect::<Vec<_>>()
-                .join(", ")
+            let words: Vec<&str> = std::iter::once(kind).chain(given).collect();
+            look.list(&words)
         }
         Endpoint::Tcp { port, unit, .. } => look.fill(WITH_UNIT, &[&kind, port, unit]),
         Endpoint::Slcan { bitrate, id, .. } => look.fill(WITH_BITRATE, &[&kind, bitrate, id]),
@@ -191,7 +189,7 @@ pub(crate) fn recognised(look: Look, endpoint: &Endpoint) -> String {
 pub(crate) fn title(look: Look, endpoint: &Endpoint, id: Option<u16>) -> String {
     let kind = look.tr(panels::kind(endpoint.kind()));
     let speed = match endpoint {
-        Endpoint::Sim { scenario, .. } => return format!("{kind}, {scenario}"),
+        Endpoint::Sim { scenario, .. } => return look.list(&[kind, scenario.as_str()]),
         Endpoint::Slcan { bitrate, .. } => Some(*bitrate),
         other => other.baud(),
     };

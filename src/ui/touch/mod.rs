@@ -87,7 +87,7 @@ impl TouchView {
                 let (place, response) = ui.allocate_exact_size(size, Senses::click());
                 let fingertip = heat::tip(pane, finger).unwrap_or_default();
                 fingertip::paint(ui.painter(), look, place, &fingertip);
-                let name = format!("{}: {name}", look.tr(panels::TIP));
+                let name = look.pair(look.tr(panels::TIP), name);
                 response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
                 let tip = format!("{}\n{}", panel::felt(pane, finger), look.tip(panels::TOUCH));
                 let response = response.on_hover_cursor(CursorIcon::PointingHand);
@@ -142,7 +142,7 @@ impl TouchView {
         let look = pane.look;
         let finger = self.detail.finger;
         let name = look.tr(words::finger(finger));
-        let title = format!("{}: {name}", look.tr(panels::TIP));
+        let title = look.pair(look.tr(panels::TIP), name);
         kit::head_ui(ui, look, &title, |ui| {
             let all = [(true, panels::NUMBERS), (false, panels::DETAIL)];
             Pick::new(look, panels::NUMBERS.tip()).ui(ui, &mut self.numbers, all);
@@ -169,7 +169,7 @@ impl TouchView {
         let look = pane.look;
         let tip = heat::tip(pane, finger).unwrap_or_default();
         let name = look.tr(words::finger(finger));
-        let label = format!("{}: {name}", look.tr(panels::TIP));
+        let label = look.pair(look.tr(panels::TIP), name);
         let button = Button::new(name, look.tip(panels::TOUCH))
             .named(&label)
             .choice(self.detail.finger == finger);

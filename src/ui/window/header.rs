@@ -1,7 +1,6 @@
 //! The bar at the top of the window: hand, link, the five tabs, faults, arming, and STOP. Always visible.
 
 use crate::app::action::Action;
-use crate::app::hand::Hand;
 use crate::app::recordings::RecordingAction;
 use crate::hand::kinematics::Side;
 use crate::record::ArmRefusal;
@@ -9,6 +8,7 @@ use crate::record::file::RecorderStatus;
 use crate::ui::connection::link_words::{self, link_words};
 use crate::ui::faults::entry as fault_entry;
 use crate::ui::kit::{self, Button, Label, Look, Pane, ViewRequest, Weight, format};
+use crate::ui::recordings::toggle_recording;
 use crate::ui::text::{inputs, main, notices, panels, recordings, window, words};
 use crate::ui::theme;
 use crate::ui::view::{Tab, View};
@@ -158,16 +158,6 @@ fn recording_ui(ui: &mut Ui, pane: &mut Pane<'_>, is_wide: bool) {
     if lamp_button_ui(ui, look, button, Some(color), all).clicked() {
         pane.actions.push(toggle_recording(hand));
     }
-}
-
-/// Starts recording the hand, or ends the recording in progress.
-pub(super) fn toggle_recording(hand: &Hand) -> Action {
-    let on = hand.recording.is_none();
-    Action::Recording(if hand.connection.is_simulated() {
-        RecordingAction::RecordSimulated(on)
-    } else {
-        RecordingAction::Record(on)
-    })
 }
 
 /// Status of a recording, one line per value.

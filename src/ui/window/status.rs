@@ -174,7 +174,7 @@ fn faults(pane: &Pane<'_>) -> Option<Warning> {
         let name = look.tr(words::dof(dof));
         let titles = faults.value[dof].iter();
         let titles = titles.map(|fault| words::fault(fault, look.language).title);
-        list.extend(titles.map(|title| format!("{name}: {title}")));
+        list.extend(titles.map(|title| look.pair(name, title)));
     }
     let (list, end) = (list.join(" · "), look.tr(main::LIST_END));
     let color = look.value(pane.freshness(Some(faults.asked)), look.palette.bad);

@@ -10,7 +10,7 @@ use handscope::inputs::dds::ctrl::CtrlFault;
 use handscope::inputs::dds::source::{DdsCommands, DdsSource};
 use handscope::inputs::offer::SourceSite;
 use handscope::link::{ArmRequest, Owner};
-use handscope::motion::following::FollowPhase;
+use handscope::motion::follow::step::FollowPhase;
 use handscope::record::Abort;
 use handscope::record::file::format::cdr;
 use handscope::record::file::format::message::{Header, JointState};

@@ -31,7 +31,7 @@ use handscope::hand::{Angle, Dof, Fault, Force, Gesture, GestureRoute, Moment, S
 use handscope::history::{Mark, MarkKind};
 use handscope::inputs::pad::PadMap;
 use handscope::link::PollPriority;
-use handscope::motion::following::FollowLimits;
+use handscope::motion::follow::step::FollowLimits;
 use handscope::motion::hold::HoldClose;
 use handscope::motion::source::SourceKind;
 use handscope::params::place::WhichPlace;

@@ -11,7 +11,7 @@ use handscope::app::slot::SlotId;
 use handscope::hand::{Angle, Dof, Fault, Gesture, register};
 use handscope::inputs::mirror::MirrorScale;
 use handscope::link::Owner;
-use handscope::motion::following::FollowPhase;
+use handscope::motion::follow::step::FollowPhase;
 use handscope::motion::source::SourceKind;
 use handscope::record::{Disarmed, LinkState};
 use handscope::ui::View;

@@ -4,7 +4,7 @@ use crate::hand::gap::{Gap, gap_on_path, pad_distance};
 use crate::hand::{Angle, ArmEpoch, Dof, Force, Moment, PerDof, Speed, Target};
 use crate::inputs::offer::{END_TIMEOUT, HOLD_TIMEOUT, Offer, OfferLimits};
 use crate::link::ArmRequest;
-use crate::motion::following::{FREEZE_TIMEOUT, Follow, FollowInput, FollowLimits, FollowPhase};
+use crate::motion::follow::step::{FREEZE_TIMEOUT, Follow, FollowInput, FollowLimits, FollowPhase};
 use crate::motion::program::Order;
 use crate::record::{Disarmed, LinkState};
 use crate::soak;

@@ -1,6 +1,10 @@
 //! A hand that follows a source (gamepad, stream, another hand) under a lease that the user granted. `inputs` decides when and how far
 //! it moves; this program executes that.
 
+pub mod step;
+#[cfg(test)]
+mod step_tests;
+
 use crate::hand::gap::{Gap, SizeBlocks};
 use crate::hand::grip::GripEstimator;
 use crate::hand::hold_forces::HoldForces;
@@ -12,7 +16,7 @@ use crate::inputs::offer::HOLD_TIMEOUT;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Clock, HoldToRun, Lease, LinkHandle, PollRates};
 use crate::motion::drive::{ArmedBy, DriveStart, drive};
-use crate::motion::following::{Follow, FollowInput, FollowLimits, FollowPhase};
+use crate::motion::follow::step::{Follow, FollowInput, FollowLimits, FollowPhase};
 use crate::motion::hold::{self, HoldEnd, HoldStart, HoldView};
 use crate::motion::hosted_hold::HostedHold;
 use crate::motion::program::{AfterAbort, Ended, Order, Program, Progress, Seen};
