@@ -1,6 +1,7 @@
 //! `grip`: a grip by size on any hand. It moves the hand, so it requires `--arm`.
 
 use crate::cli::out::Out;
+use crate::cli::out::failure::FailureKind;
 use crate::cli::parse::{hand, moving_speed, rated_force};
 use crate::cli::session;
 use crate::cli::trial::drive::{ArmedHand, by_user};
@@ -61,11 +62,11 @@ pub(crate) fn gap(text: &str) -> Result<Gap, String> {
 /// Grips. Fails if it ended early, or if something stopped the hand that it does not hold.
 pub(crate) async fn run(out: &mut Out, args: &GripArgs) -> anyhow::Result<()> {
     if !args.arm {
-        bail!(
+        return Err(FailureKind::NotArmed.error(format!(
             "nothing was moved: this opens the hand at {} and closes thumb and index to {} mm; when nothing but the object is in the way, add --arm",
             args.hand,
             args.gap.mm()
-        );
+        )));
     }
     let report = drive(args).await?;
     let blocks = session::size_blocks(&args.hand);

@@ -33,27 +33,29 @@ use crate::link::guard::{hold_all, holder};
 use anyhow::Context as _;
 use args::{Cli, CliCommand};
 use clap::{CommandFactory as _, Parser as _};
-use out::{AlreadyReported, Out, ReaderGone, WrongUsage};
+use out::Out;
+use out::failure::{FailureForm, FailureKind};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 use tokio::runtime::Builder;
 
-/// Exit status of wrong usage, as clap defines it.
-const WRONG_USAGE: u8 = 2;
-
-/// Runs the command line. Errors are printed to standard error as one sentence each.
+/// Runs the command line. Errors are printed to standard error as one sentence each, with `--json` as one JSON object.
 ///
 /// The exit status is 0 when done, 1 on failure, 2 on wrong usage.
 pub fn run() -> ExitCode {
-    let Cli { command, window } = Cli::parse();
+    let form = FailureForm::requested(std::env::args_os());
+    let Cli { command, window } = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(said) => form.end_of_parse(&said),
+    };
     holder::use_this_program(out::notify);
-    report_panics();
+    report_panics(form);
     let done = catch_unwind(AssertUnwindSafe(|| match command {
         None => has_room_for_files().and_then(|()| window::run(window)),
         Some(command) => execute(command),
     }));
     let status = match done {
-        Ok(done) => status(done),
+        Ok(done) => form.status(done),
         // The panic hook has reported it.
         Err(_panic) => ExitCode::FAILURE,
     };
@@ -61,26 +63,9 @@ pub fn run() -> ExitCode {
     status
 }
 
-/// Exit status of a command. Its error is printed here, unless it was reported before.
-fn status(done: anyhow::Result<()>) -> ExitCode {
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) if error.is::<ReaderGone>() => ExitCode::SUCCESS,
-        Err(error) if error.is::<AlreadyReported>() => ExitCode::FAILURE,
-        Err(error) if error.is::<WrongUsage>() => {
-            out::notify(&error.to_string());
-            ExitCode::from(WRONG_USAGE)
-        }
-        Err(error) => {
-            out::notify(&format!("{error:#}"));
-            ExitCode::FAILURE
-        }
-    }
-}
-
 /// Installs the panic hook: a panic on any thread stops each hand that may move, and is reported in one sentence, with a backtrace
 /// if requested.
-fn report_panics() {
+fn report_panics(form: FailureForm) {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
         hold_all();
@@ -90,9 +75,10 @@ fn report_panics() {
         let place = panic.location().map(ToString::to_string);
         let (place, words) = (place.unwrap_or_default(), panic.payload_as_str());
         let words = words.unwrap_or("no words").replace('\n', " ");
-        out::notify(&format!(
+        let words = format!(
             "internal error, please report it ({place}: {words}); each hand that it moved is being stopped"
-        ));
+        );
+        form.report(FailureKind::Internal, &words);
     }));
 }
 

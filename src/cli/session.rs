@@ -3,6 +3,7 @@
 use crate::app::connect::SimDial;
 use crate::app::files::settings_file;
 use crate::checkup::{free_file, newtons_file};
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::notify;
 use crate::hand::PerDof;
 use crate::hand::gap::SizeBlocks;
@@ -26,6 +27,9 @@ pub(crate) const ANSWER_TIMEOUT: Duration = Duration::from_secs(3);
 const IDENTIFY_TIMEOUT: Duration = Duration::from_secs(6);
 /// Polling interval of the wait.
 const POLL_INTERVAL: Duration = Duration::from_millis(10);
+
+/// Pause between closing a port and reopening it.
+pub(crate) const PORT_RESTS: Duration = Duration::from_millis(300);
 
 /// Message if feedback does not show that a stopped hand rests, or has ceased.
 pub(crate) const NOT_CONFIRMED: &str =
@@ -167,10 +171,10 @@ pub(crate) async fn answered(link: &LinkHandle, endpoint: &Endpoint) -> anyhow::
             return Ok(());
         }
         if let Some(trouble) = status.trouble {
-            bail!(no_hand(endpoint, &trouble));
+            return Err(FailureKind::NoHand.error(no_hand(endpoint, &trouble)));
         }
         if begun.elapsed() >= patience(&status) {
-            bail!(unanswered(endpoint));
+            return Err(FailureKind::NoHand.error(unanswered(endpoint)));
         }
         sleep(POLL_INTERVAL).await;
     }
@@ -191,7 +195,7 @@ pub(crate) fn stopped(link: &LinkHandle) -> impl Future<Output = anyhow::Result<
         match stop.await {
             Stop::Confirmed { .. } => Ok(()),
             Stop::NotConfirmed => bail!(NOT_CONFIRMED),
-            Stop::LinkLost => bail!(STOP_LOST),
+            Stop::LinkLost => Err(FailureKind::LinkLost.error(STOP_LOST)),
         }
     }
 }

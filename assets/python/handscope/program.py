@@ -114,6 +114,8 @@ def apart() -> Dict[str, Any]:
         return {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}  # type: ignore[attr-defined]
     return {"start_new_session": True}
 
+        if line.startswith('{"error":'):
+            return str(json.loads(line)["error"]["message"])
 
 def sentence(words: Sequence[str], otherwise: str) -> str:
     """The last thing that the program said, without its name."""

@@ -10,6 +10,7 @@ use crate::app::files::settings_file;
 use crate::checkup::free_file;
 use crate::checkup::subject::Grade;
 use crate::checkup::{Checkup, CheckupPlan, expected};
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{Out, end};
 use crate::cli::trial::drive::ArmedHand;
 use crate::link::ArmRequest;
@@ -23,11 +24,11 @@ use std::path::Path;
 pub(crate) async fn run(out: &mut Out, args: &CheckArgs) -> anyhow::Result<()> {
     let plan = CheckupPlan { press: args.press };
     if !args.arm {
-        bail!(
+        return Err(FailureKind::NotArmed.error(format!(
             "nothing was moved: a check-up bends and opens each joint of the hand at {} for about {} seconds; when the hand is empty and nothing is in its way, add --arm",
             args.hand,
             expected(CheckupPlan::default()).as_secs()
-        );
+        )));
     }
     let files = files(args)?;
     prepare(&files)?;

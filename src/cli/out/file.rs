@@ -1,7 +1,8 @@
 //! New output files at a path given by the user, readable only by their owner.
 
+use crate::cli::out::failure::FailureKind;
 use crate::store::write_new;
-use anyhow::{Context as _, bail};
+use anyhow::Context as _;
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -11,7 +12,7 @@ use std::path::Path;
 /// The path exists.
 pub(crate) fn nothing_at(path: &Path, option: &str) -> anyhow::Result<()> {
     if path.symlink_metadata().is_ok() {
-        bail!("{}", taken(path, option));
+        return Err(taken(path, option));
     }
     Ok(())
 }
@@ -26,12 +27,14 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         Err(error) => error,
     };
     if error.kind() == ErrorKind::AlreadyExists {
-        bail!("{}", taken(path, "--out"));
+        return Err(taken(path, "--out"));
     }
     Err(error).with_context(|| format!("cannot write {}", path.display()))
 }
 
-fn taken(path: &Path, option: &str) -> String {
+fn taken(path: &Path, option: &str) -> anyhow::Error {
     let path = path.display();
-    format!("{path} already exists and is not overwritten; name another file with {option}")
+    FailureKind::File.error(format!(
+        "{path} already exists and is not overwritten; name another file with {option}"
+    ))
 }

@@ -22,13 +22,17 @@ fn messages() -> Option<&'static LineWriter> {
 }
 
 pub(crate) fn notify(words: &str) {
+    push_line(&format!("handscope: {}", printable::line(words)));
+}
+
+/// Prints one printable line.
+pub(crate) fn push_line(text: &str) {
     static LOST: AtomicU64 = AtomicU64::new(0);
     let mut line = match LOST.load(Ordering::Relaxed) {
         0 => String::new(),
         lost => format!("handscope: {lost} messages were not read in time and are left out\n"),
     };
-    line.push_str("handscope: ");
-    line.push_str(&printable::line(words));
+    line.push_str(text);
     line.push('\n');
     match messages() {
         Some(messages) => match messages.push(line.as_bytes(), LineClass::Result) {

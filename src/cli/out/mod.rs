@@ -2,6 +2,7 @@
 //! a hand. A closed reader ends the command quietly.
 
 pub(crate) mod ending;
+pub(crate) mod failure;
 pub(crate) mod file;
 mod messages;
 pub(crate) mod progress;

@@ -1,5 +1,6 @@
 //! `params apply`: writes rows of a file to the hand and reads each back, with a backup before and a rollback after a failure.
 
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{Out, WrongUsage, end, notify};
 use crate::cli::params::args::ApplyArgs;
 use crate::cli::params::patience::Patience;
@@ -10,7 +11,7 @@ use crate::params::rows::ParamId;
 use crate::params::values::Params;
 use crate::tasks::apply::{Applied, Apply, Otherwise, apply};
 use crate::tasks::{Risks, TaskError, TaskStep};
-use anyhow::{anyhow, bail};
+use anyhow::bail;
 use serde_json::json;
 
 /// Message if the user does not wait for the end.
@@ -18,8 +19,8 @@ pub(crate) const UNKNOWN: &str = "what the hand holds is unknown: check with 'ha
 
 /// Applies the file. Fails unless every chosen row is in effect.
 pub(crate) async fn run(out: &mut Out, args: &ApplyArgs) -> anyhow::Result<()> {
-    let (file, note) =
-        words::load(&args.file).map_err(|error| anyhow!("{error}; nothing was written"))?;
+    let (file, note) = words::load(&args.file)
+        .map_err(|error| FailureKind::File.error(format!("{error}; nothing was written")))?;
     note.iter().for_each(|note| notify(note));
     let wanted = args.chosen(&file.params);
     if wanted.is_empty() {

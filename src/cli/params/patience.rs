@@ -1,9 +1,9 @@
 //! Ctrl-C during writes to a hand: no write is left half done without a report. Before the first write, Ctrl-C ends the command;
 //! after it, the command completes or rolls back, and reports the values in the hand; a second Ctrl-C ends it at once.
 
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::notify;
 use crate::shell::interrupt::Interrupt;
-use anyhow::bail;
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -42,10 +42,12 @@ impl Patience {
                 () = self.interrupt.wished() => {}
             }
             if !self.is_written.get() {
-                bail!("ended before anything was written to the hand");
+                let words = "ended before anything was written to the hand";
+                return Err(FailureKind::Interrupted.error(words));
             }
             if std::mem::replace(&mut is_asked, true) {
-                bail!("ended at once: {unknown}");
+                let words = format!("ended at once: {unknown}");
+                return Err(FailureKind::Interrupted.error(words));
             }
             notify(
                 "this is finished first, then what the hand holds is reported; Ctrl-C again ends at once",

@@ -2,7 +2,7 @@
 
 use crate::app::files::settings_file;
 use crate::cli::params::words;
-use crate::cli::session::{self, ANSWER_TIMEOUT};
+use crate::cli::session::{self, ANSWER_TIMEOUT, PORT_RESTS};
 use crate::hand::overshoot::OvershootMap;
 use crate::link::{Clock, LinkHandle, PollRates};
 use crate::tasks::hand::answers;
@@ -10,7 +10,6 @@ use crate::tasks::{Question, Reach};
 use crate::transport::Endpoint;
 use crate::trials::overshoot_file;
 use std::sync::Arc;
-use std::time::Duration;
 use tokio::time::sleep;
 
 /// Rate that suffices to detect motion of the hand.
@@ -19,8 +18,6 @@ const ONLY_THE_STATE: PollRates = PollRates {
     tactile_hz: 0.0,
     settings_hz: 0.0,
 };
-/// Pause between closing a port and reopening it.
-const PORT_RESTS: Duration = Duration::from_millis(300);
 
 /// Opens the link and waits for the hand. Must be called within a tokio runtime.
 pub(crate) async fn open(hand: &Endpoint) -> anyhow::Result<LinkHandle> {

@@ -1,5 +1,6 @@
 //! Rows, dangers and results as sentences, tables and JSON, shared by the parameter commands. Pure.
 
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{Out, ReaderGone, notify};
 use crate::hand::overshoot::MeasuredOn;
 use crate::params::changes::{RowOutcome, RowVerdict};
@@ -8,7 +9,6 @@ use crate::params::file::{self, ParamsFile};
 use crate::params::rows::{ParamId, Value};
 use crate::record::Saved;
 use crate::tasks::Risks;
-use anyhow::anyhow;
 use serde_json::{Value as Json, json};
 use std::path::Path;
 
@@ -36,7 +36,8 @@ pub(crate) fn table(
 
 /// Loads a parameter file, with a note about unknown keys.
 pub(crate) fn load(path: &Path) -> anyhow::Result<(ParamsFile, Option<String>)> {
-    let file = file::load(path).map_err(|error| anyhow!("{}: {error}", path.display()))?;
+    let file = file::load(path)
+        .map_err(|error| FailureKind::File.error(format!("{}: {error}", path.display())))?;
     let unknown = file.unknown_keys();
     let note = format!("unknown keys: {}", unknown.join(", "));
     Ok((file, (!unknown.is_empty()).then_some(note)))

@@ -1,6 +1,7 @@
 //! `export`: writes recordings, or a time range of each, in another format; `recover`: repairs a damaged one.
 
 use crate::cli::out::ending::EndFlag;
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::progress::ProgressLine;
 use crate::cli::out::{Out, ReaderGone, WrongUsage, notify};
 use crate::cli::recordings::picture;
@@ -412,12 +413,17 @@ fn as_json(path: &Path, exported: &Exported) -> serde_json::Value {
 /// An export error with advice.
 pub(crate) fn explained(error: ExportError) -> anyhow::Error {
     match error {
-        ExportError::Exists { .. } => anyhow!("{error}; name another place with --out"),
-        ExportError::Unwritable { .. } => {
-            anyhow!("{error}; choose a folder that exists and has room")
+        ExportError::Exists { .. } => {
+            FailureKind::File.error(format!("{error}; name another place with --out"))
         }
-        ExportError::Unreadable { .. } | ExportError::Interrupted => {
-            anyhow!("{error}; nothing was written")
+        ExportError::Unwritable { .. } => {
+            FailureKind::File.error(format!("{error}; choose a folder that exists and has room"))
+        }
+        ExportError::Unreadable { .. } => {
+            FailureKind::File.error(format!("{error}; nothing was written"))
+        }
+        ExportError::Interrupted => {
+            FailureKind::Interrupted.error(format!("{error}; nothing was written"))
         }
         ExportError::Empty => anyhow!(
             "{error}; 'handscope info' shows what a recording holds, --from and --to choose of it"

@@ -1,15 +1,16 @@
 //! `import`: creates a recording file from values that `export --csv` wrote.
 
 use crate::cli::out::ending::EndFlag;
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::progress::ProgressLine;
 use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::recordings::export::explained;
 use crate::cli::recordings::recording_file::{is_standard, stdin_as_file};
 use crate::record::export::Destination;
 use crate::record::import::csv::{self, ImportError, Imported};
-use anyhow::anyhow;
 use serde_json::json;
 use std::cell::Cell;
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufReader, IsTerminal as _, Read, Seek as _};
 use std::path::{Path, PathBuf};
@@ -69,16 +70,20 @@ fn import(out: &mut Out, args: &ImportArgs, file: &Path) -> anyhow::Result<()> {
     } else {
         Destination::Path(path.clone())
     };
+    let unread = |error: &dyn Display| {
+        FailureKind::File.error(format!("cannot import {name}: {error}; check the path"))
+    };
     let from = if is_standard(file) {
         stdin_as_file()?
     } else {
-        File::open(file)
-            .map_err(|error| anyhow!("cannot import {name}: {error}; check the path"))?
+        File::open(file).map_err(|error| unread(&error))?
     };
     let imported = values(from, &to).map_err(|error| match error {
         ImportError::Output(error) => explained(error),
-        ImportError::Unreadable { .. } => anyhow!("cannot import {name}: {error}; check the path"),
-        ImportError::Line { .. } => anyhow!("cannot import {name}: {error}; nothing was written"),
+        ImportError::Unreadable { .. } => unread(&error),
+        ImportError::Line { .. } => FailureKind::File.error(format!(
+            "cannot import {name}: {error}; nothing was written"
+        )),
     })?;
     let mut lines = vec![format!("{} lines in {}", imported.rows, path.display())];
     if !imported.unknown.is_empty() {

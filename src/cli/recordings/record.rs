@@ -2,6 +2,7 @@
 //! hand.
 
 use crate::app::env::day_folder;
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::file::nothing_at;
 use crate::cli::out::{Out, notify};
 use crate::cli::parse::seconds;
@@ -20,7 +21,7 @@ use crate::shell::interrupt::Interrupt;
 use crate::store::calendar;
 use crate::tasks::read;
 use crate::transport::Endpoint;
-use anyhow::{Context as _, anyhow, bail};
+use anyhow::{Context as _, anyhow};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::pin::pin;
@@ -70,7 +71,10 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
     let observed = link.observe();
     tokio::select! {
         biased;
-        () = interrupt.wished() => bail!("ended before {} answered; nothing was recorded", args.hand),
+        () = interrupt.wished() => {
+            let words = format!("ended before {} answered; nothing was recorded", args.hand);
+            return Err(FailureKind::Interrupted.error(words));
+        }
         answered = session::answered(&link, &args.hand) => answered?,
     }
     let recorder = Recorder::start(RecordingPlan {
@@ -104,10 +108,10 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
     };
     let status = link.status();
     let lost = session::trouble(&status).map(|trouble| {
-        anyhow!(
+        FailureKind::LinkLost.error(format!(
             "the link to {} is lost: {trouble}; the recording ends before that",
             args.hand
-        )
+        ))
     });
     drop(link);
     let _ended = timeout(LINK_END_TIMEOUT, pump).await;
@@ -149,10 +153,10 @@ async fn begun(recorder: &Recorder, path: &Path) -> anyhow::Result<()> {
 }
 
 fn cannot_write(path: &Path, trouble: &str) -> anyhow::Error {
-    anyhow!(
+    FailureKind::File.error(format!(
         "cannot write {}: {trouble}; choose another place with --out",
         path.display()
-    )
+    ))
 }
 
 /// Records the hand's persistent parameters, if they can be read.

@@ -1,11 +1,12 @@
 //! Recording files named by the user: opening, time ranges in seconds from the start, and remarks on missing data.
 
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{WrongUsage, notify};
 use crate::cli::parse::{RecordingTime, recording_time};
 use crate::hand::Moment;
 use crate::record::file::RecordingFile;
 use crate::record::file::reader::{Damage, OpenError, TimeRange};
-use anyhow::{Context as _, anyhow, bail};
+use anyhow::{Context as _, bail};
 use serde_json::{Value, json};
 use std::fs::File;
 use std::io::{self, IsTerminal as _};
@@ -104,7 +105,10 @@ fn opened(file: Result<RecordingFile, OpenError>, path: &Path) -> anyhow::Result
             OpenError::TooMuch { .. } => "only recordings of Handscope can be opened",
             OpenError::Empty => "there is nothing to recover",
         };
-        anyhow!("cannot open {}: {error}; {what_to_do}", path.display())
+        FailureKind::File.error(format!(
+            "cannot open {}: {error}; {what_to_do}",
+            path.display()
+        ))
     })
 }
 

@@ -1,5 +1,6 @@
 //! A series on a real link: arming by the user, Ctrl-C as a stop, and the results. Contains no trial logic.
 
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{Out, notify};
 use crate::cli::session;
 use crate::cli::trial::args::TrialArgs;
@@ -70,7 +71,10 @@ impl ArmedHand {
             let stop = stop_words(Some(link.stop().await));
             match (ready, status.disarmed) {
                 (Some(_), Some(why)) => bail!("ended before anything moved: {why}{stop}"),
-                _ => bail!("ended by the user before anything moved{stop}"),
+                _ => {
+                    let words = format!("ended by the user before anything moved{stop}");
+                    return Err(FailureKind::Interrupted.error(words));
+                }
             }
         };
         Ok(Self {

@@ -8,6 +8,7 @@ pub(crate) mod results;
 
 pub(crate) use args::TrialArgs;
 
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{Out, WrongUsage};
 use crate::motion::drive::stop_words;
 use anyhow::bail;
@@ -19,11 +20,11 @@ pub(crate) async fn run(out: &mut Out, args: &TrialArgs) -> anyhow::Result<()> {
     plan.check()
         .map_err(|error| WrongUsage::error(error.to_string()))?;
     if !args.series.arm {
-        bail!(
+        return Err(FailureKind::NotArmed.error(format!(
             "nothing was moved: these trials close {} on the hand at {}; when nothing but the object is in the way, add --arm",
             output::joints(&plan),
             args.series.hand
-        );
+        )));
     }
     let outcome = drive::drive(out, args, &plan).await?;
     out.result(args.series.json, &outcome.json(args), outcome.lines())?;

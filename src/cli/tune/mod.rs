@@ -5,6 +5,7 @@ mod output;
 
 pub(crate) use args::TuneArgs;
 
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{Out, WrongUsage};
 use crate::cli::session;
 use crate::cli::trial::drive::ArmedHand;
@@ -22,11 +23,11 @@ pub(crate) async fn run(out: &mut Out, args: &TuneArgs) -> anyhow::Result<()> {
     let search =
         SettingsSearch::new(args.goal()).map_err(|error| WrongUsage::error(error.to_string()))?;
     if !args.series.arm {
-        bail!(
+        return Err(FailureKind::NotArmed.error(format!(
             "nothing was moved: this search closes {} on the hand at {} about 65 times; when nothing but the object is in the way, add --arm",
             joints(&search.plan()),
             args.series.hand
-        );
+        )));
     }
     let report = run_search(out, args, search).await?;
     out.result(

@@ -7,6 +7,7 @@ mod wire;
 
 pub(crate) use args::WatchArgs;
 
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{Out, notify};
 use crate::cli::session;
 use crate::cli::watch::datagrams::Datagrams;
@@ -153,7 +154,7 @@ impl<'a> WatchRun<'a> {
             return Ok(());
         }
         self.statistics()?;
-        bail!("{why}")
+        Err(FailureKind::NoHand.error(why))
     }
 
     fn apply(&mut self, record: Record) -> anyhow::Result<()> {
@@ -201,14 +202,18 @@ impl<'a> WatchRun<'a> {
             self.taken,
         ) {
             (Some(trouble), 1..) if !status.state.is_live() => {
-                bail!("the link to {hand} is lost: {trouble}")
+                let words = format!("the link to {hand} is lost: {trouble}");
+                Err(FailureKind::LinkLost.error(words))
             }
             (_, 1..) => Ok(()),
-            (Some(trouble), 0) => bail!("the hand never answered; last: {trouble}"),
+            (Some(trouble), 0) => {
+                let words = format!("the hand never answered; last: {trouble}");
+                Err(FailureKind::NoHand.error(words))
+            }
             (None, 0) if self.answered => {
                 bail!("{hand} answers, but no state of it was read: watch for longer")
             }
-            (None, 0) => bail!("the hand did not answer in time"),
+            (None, 0) => Err(FailureKind::NoHand.error("the hand did not answer in time")),
         }
     }
 

@@ -14,6 +14,7 @@ mod doctor;
 mod doors;
 #[cfg(unix)]
 mod exports;
+mod failures;
 #[cfg(target_os = "linux")]
 mod follow;
 #[cfg(unix)]
