@@ -19,6 +19,7 @@ use crate::cli::recordings::import::ImportArgs;
 use crate::cli::recordings::info::InfoArgs;
 use crate::cli::recordings::record::RecordArgs;
 use crate::cli::recordings::replay::ReplayArgs;
+use crate::cli::report::ReportArgs;
 use crate::cli::scale::ScaleArgs;
 use crate::cli::scan::ScanArgs;
 use crate::cli::share::ShareArgs;
@@ -74,6 +75,11 @@ pub(crate) enum CliCommand {
         after_help = "Examples:\n  handscope doctor --hand rs485:/dev/ttyUSB0\n  handscope doctor --hand tcp:192.168.11.210 --for 20 --json\n\nIt only reads, and asks only the named hand. Exit status: 0 all is well, 1 something is wrong, 2 wrong usage."
     )]
     Doctor(DoctorArgs),
+    /// Collect everything that support asks for about a hand into one ZIP file
+    #[command(
+        after_help = "Examples:\n  handscope report --hand rs485:/dev/ttyUSB0\n  handscope report --hand rs485:/dev/ttyUSB0 --out for-support.zip\n\nIt only reads from the hand, lists what the file contains before it writes it, and sends nothing anywhere. 'handscope help wiring' describes the file. Exit status: 0 done, also if the hand does not answer; 1 the file cannot be written; 2 wrong usage."
+    )]
+    Report(ReportArgs),
     /// Find out how this hand differs from others, by reading only
     #[command(
         after_help = "Examples:\n  handscope quirks --hand rtu:/dev/ttyUSB0\n  handscope quirks --hand tcp:192.168.11.210 --json\n  handscope quirks --hand rs485:/dev/ttyUSB0 --out left-hand.toml\n\nThe window keeps such a sheet for every hand, beside its settings."

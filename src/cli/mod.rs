@@ -17,6 +17,7 @@ mod parse;
 mod quirks;
 mod read;
 mod recordings;
+mod report;
 mod scale;
 mod scan;
 mod session;
@@ -101,6 +102,7 @@ fn execute(command: CliCommand) -> anyhow::Result<()> {
         CliCommand::Read(args) => wait_for(read::run(&mut out, &args)),
         CliCommand::Scan(args) => wait_for(scan::run(&mut out, &args)),
         CliCommand::Doctor(args) => wait_for(doctor::run(&mut out, &args)),
+        CliCommand::Report(args) => wait_for(report::run(&mut out, &args)),
         CliCommand::Quirks(args) => wait_for(quirks::run(&mut out, &args)),
         CliCommand::Params(args) => wait_for(params::run(&mut out, &args)),
         CliCommand::Inputs(args) => wait_for(inputs::show::run(&mut out, &args)),

@@ -55,7 +55,10 @@ pub(crate) async fn run(out: &mut Out, args: &ReadArgs) -> anyhow::Result<()> {
 }
 
 /// Reads a register, in pieces if it is longer than a frame.
-async fn read_register(link: &LinkHandle, row: &Register) -> Result<Vec<u8>, RequestError> {
+pub(crate) async fn read_register(
+    link: &LinkHandle,
+    row: &Register,
+) -> Result<Vec<u8>, RequestError> {
     let mut bytes = Vec::new();
     let end = row.address + row.len;
     for address in (row.address..end).step_by(PIECE.into()) {

@@ -15,6 +15,7 @@ use crate::shell::interrupt::Interrupt;
 use crate::transport::can_facts::can_facts;
 use crate::transport::{Endpoint, Sysfs, port_facts, route};
 use anyhow::bail;
+use serde_json::Value;
 use std::path::Path;
 use std::time::Duration;
 use tokio::time::{Instant, sleep, sleep_until};
@@ -34,15 +35,35 @@ pub(crate) struct DoctorArgs {
 
 /// Runs a check-up and prints it. Fails if something is wrong.
 pub(crate) async fn run(out: &mut Out, args: &DoctorArgs) -> anyhow::Result<()> {
-    let checkup = check(&args.hand, args.length).await?;
-    let found = findings::judge(&checkup);
-    let object = json::object(&checkup, &found);
-    out.result(args.json, &object, text::lines(&checkup, &found))?;
-    match found.iter().filter(|finding| finding.is_wrong).count() {
+    let diagnosed = diagnose(&args.hand, args.length).await?;
+    out.result(args.json, &diagnosed.object, &diagnosed.lines)?;
+    match diagnosed.wrong {
         0 => Ok(()),
         1 => bail!("one thing is wrong with {}", args.hand),
         count => bail!("{count} things are wrong with {}", args.hand),
     }
+}
+
+/// A check-up in both forms.
+pub(crate) struct Diagnosed {
+    pub(crate) object: Value,
+    pub(crate) lines: Vec<String>,
+    /// Number of problems.
+    pub(crate) wrong: usize,
+    /// True if the hand answered.
+    pub(crate) answers: bool,
+}
+
+/// Runs a check-up.
+pub(crate) async fn diagnose(hand: &Endpoint, length: Duration) -> anyhow::Result<Diagnosed> {
+    let checkup = check(hand, length).await?;
+    let found = findings::judge(&checkup);
+    Ok(Diagnosed {
+        object: json::object(&checkup, &found),
+        lines: text::lines(&checkup, &found),
+        wrong: found.iter().filter(|finding| finding.is_wrong).count(),
+        answers: checkup.answer.is_ok(),
+    })
 }
 
 /// Besides the measurement, only the setpoints are polled: they show if another controller changes them.

@@ -6,7 +6,7 @@ use crate::record::file::reader::Damage;
 use crate::record::file::writer::{Counted, RecordingWriter};
 use crate::record::file::{Opening, RecordingFile};
 use crate::record::grip::GripFollower;
-use crate::record::{Entry, Event, EventKind, Record};
+use crate::record::{Entry, Event, EventKind, LinkReport, Record};
 use std::io::Write;
 
 /// Entries between two writes to the disk: some hundred kilobytes.
@@ -17,7 +17,22 @@ const ENTRIES_AT_ONCE: u64 = 1024;
 /// # Errors
 /// [`ExportError`]; then there is no file.
 pub(crate) fn write(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
-    put(source, to, |_| None)
+    put(source, to, |_| None, None)
+}
+
+/// Returns a text as it is to stand in the copy.
+pub type RewriteText<'a> = dyn Fn(&str) -> String + 'a;
+
+/// Writes a time range with all its texts rewritten: the hand's endpoint, the events, and the states of the link.
+///
+/// # Errors
+/// [`ExportError`]; then there is no file.
+pub fn rewrite(
+    source: ExportSource<'_>,
+    to: &Destination,
+    text: &RewriteText<'_>,
+) -> Result<Exported, ExportError> {
+    put(source, to, |_| None, Some(text))
 }
 
 /// Writes all readable entries of a damaged file, and a final event that reports the loss.
@@ -25,18 +40,20 @@ pub(crate) fn write(source: ExportSource<'_>, to: &Destination) -> Result<Export
 /// # Errors
 /// [`ExportError`]; then there is no file.
 pub fn recover(source: ExportSource<'_>, to: &Destination) -> Result<Exported, ExportError> {
-    put(source, to, |damage| {
-        (*damage != Damage::default()).then(|| recovered(source.file, damage))
-    })
+    let event_of =
+        |damage: &Damage| (*damage != Damage::default()).then(|| recovered(source.file, damage));
+    put(source, to, event_of, None)
 }
 
 fn put(
     source: ExportSource<'_>,
     to: &Destination,
     event_of: impl FnOnce(&Damage) -> Option<Event>,
+    text: Option<&RewriteText<'_>>,
 ) -> Result<Exported, ExportError> {
     let output = Unfinished::new(to)?;
-    let copied = copy(source, output.file()?, event_of).map_err(|error| error.of(&output))?;
+    let copied = copy_with(source, output.file()?, event_of, text);
+    let copied = copied.map_err(|error| error.of(&output))?;
     output.sync(copied.to)?;
     output.finish(copied.exported.rows)?;
     Ok(copied.exported)
@@ -66,19 +83,52 @@ pub(crate) fn copy<W: Write>(
     to: W,
     event_of: impl FnOnce(&Damage) -> Option<Event>,
 ) -> Result<Copied<W>, Broken> {
-    let opening = Opening {
+    copy_with(source, to, event_of, None)
+}
+
+fn copy_with<W: Write>(
+    source: ExportSource<'_>,
+    to: W,
+    event_of: impl FnOnce(&Damage) -> Option<Event>,
+    text: Option<&RewriteText<'_>>,
+) -> Result<Copied<W>, Broken> {
+    let mut opening = Opening {
         began: source.stretch.from.max(source.file.first()),
         part: None,
         ..source.file.opening().clone()
     };
+    if let Some(text) = text {
+        opening.hand = text(&opening.hand);
+    }
     let mut copy = RecordingCopy::after(&opening, to, source.grip_before()?)?;
-    let damage = source.entries(|entry| copy.push(&entry))?;
+    let damage = source.entries(|entry| match text {
+        Some(text) => copy.push(&rewritten(entry, text)),
+        None => copy.push(&entry),
+    })?;
     if let Some(event) = event_of(&damage) {
         copy.push(&Entry::Event(event))?;
     }
     let mut copied = copy.end()?;
     copied.exported.damage = damage;
     Ok(copied)
+}
+
+/// An entry with all its texts rewritten.
+fn rewritten(entry: Entry, text: &RewriteText<'_>) -> Entry {
+    match entry {
+        Entry::Event(event) => Entry::Event(Event {
+            words: text(&event.words),
+            ..event
+        }),
+        Entry::Link(report) => Entry::Link(LinkReport {
+            trouble: text(&report.trouble),
+            status: text(&report.status),
+            figures: text(&report.figures),
+            ..report
+        }),
+        // Numbers, and names of this program.
+        Entry::Heard(_) | Entry::Wire(_) => entry,
+    }
 }
 
 /// A recording file built from entries.

@@ -30,6 +30,7 @@ fn a_failed_command_tells_its_kind_with_json_and_the_same_sentence_without() {
         (&["info", &path("no.mcap")], 1, "file"),
         (&["params", "diff", &missing, "--hand", "sim:"], 1, "file"),
         (&["import", &missing], 1, "file"),
+        (&["report", "--hand", "sim:", "--out", &taken], 1, "file"),
         (
             &["trial", "--hand", "sim:", "--joint", "index"],
             1,

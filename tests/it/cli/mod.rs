@@ -40,6 +40,8 @@ mod pictures;
 mod quirks;
 #[cfg(unix)]
 mod recordings;
+#[cfg(unix)]
+mod report;
 mod ros2;
 #[cfg(unix)]
 mod scale;
