@@ -3,7 +3,7 @@
 use crate::app::env::{Env, day_folder};
 use crate::app::notices::NoticeKind;
 use crate::hand::Moment;
-use crate::record::export::{Destination, ExportFormat, ExportOptions, ExportSource};
+use crate::record::export::{Destination, ExportFormat, ExportOptions, ExportSource, LeRobotPlan};
 use crate::record::file::RecordingFile;
 use crate::record::file::reader::TimeRange;
 use crate::store::{calendar, on_thread};
@@ -19,6 +19,8 @@ pub struct RecordingExport {
     pub format: ExportFormat,
     /// Start and end of the time range; `None` = the whole recording.
     pub stretch: Option<(Moment, Moment)>,
+    /// True if a data set in which no joint was commanded is written nevertheless.
+    pub uncommanded: bool,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -121,9 +123,13 @@ impl RecordingExport {
             ..ExportSource::new(&file, stretch)
         };
         let place = Destination::Path(to.clone());
-        let written = self
-            .format
-            .write(&[source], &place, &ExportOptions::default());
+        let options = ExportOptions {
+            lerobot: LeRobotPlan {
+                uncommanded: self.uncommanded,
+                ..LeRobotPlan::default()
+            },
+        };
+        let written = self.format.write(&[source], &place, &options);
         match written {
             Ok(written) => NoticeKind::Saved {
                 path: to,

@@ -206,20 +206,28 @@ impl RecordingTable<'_> {
             None => look.tr(recordings::EXPORT).to_owned(),
         };
         ui.label(title);
+        let stretch = marked.map(|marked| marked.stretch(item));
+        let mut export = |ui: &mut Ui, format, uncommanded| {
+            let export = RecordingExport {
+                path: item.path.clone(),
+                format,
+                stretch,
+                uncommanded,
+            };
+            pane.actions
+                .push(Action::Recording(RecordingAction::Export(export)));
+            ui.close();
+        };
         for &format in ExportFormat::ALL {
-            if ui
-                .button(look.tr(recordings::export_format(format)))
-                .clicked()
-            {
-                let export = RecordingExport {
-                    path: item.path.clone(),
-                    format,
-                    stretch: marked.map(|marked| marked.stretch(item)),
-                };
-                pane.actions
-                    .push(Action::Recording(RecordingAction::Export(export)));
-                ui.close();
+            let label = look.tr(recordings::export_format(format));
+            if ui.button(label).clicked() {
+                export(ui, format, false);
             }
+        }
+        let uncommanded = ui.button(look.tr(recordings::UNCOMMANDED));
+        let uncommanded = uncommanded.on_hover_text(look.tip(recordings::UNCOMMANDED));
+        if uncommanded.clicked() {
+            export(ui, ExportFormat::LeRobot, true);
         }
     }
 

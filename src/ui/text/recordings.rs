@@ -122,6 +122,8 @@ texts! {
     DELETED: "Recordings deleted:", "已删除录制：";
     SIM_TOO: "Record built-in hands, too", "也录制仿真手", "Simulated hands are recorded, too, and their recordings are marked.", "仿真手也会被录制，其录制会有标记。";
 
+    UNCOMMANDED: "Data set without commands (LeRobot)", "无指令的数据集（LeRobot）", "Also if no joint was commanded: the action in it never changes, and says nothing about what moved the hand.", "即使没有向任何自由度发过指令也会导出：其中的动作始终不变，不能说明是什么使灵巧手运动。";
+
     /// Export formats of a recording.
     fn export_format(ExportFormat) {
         ExportFormat::Csv => "Table (CSV)", "表格（CSV）";

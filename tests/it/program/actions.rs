@@ -140,6 +140,7 @@ fn sessions() -> Vec<RecordingAction> {
             path: path(),
             format: ExportFormat::Csv,
             stretch: None,
+            uncommanded: false,
         }),
         RecordingAction::Name(path(), "name".into()),
         RecordingAction::Star(path(), true),

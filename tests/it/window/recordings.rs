@@ -377,7 +377,36 @@ fn export(path: &Path, format: ExportFormat, stretch: Option<(Moment, Moment)>) 
         path,
         format,
         stretch,
+        uncommanded: false,
     })
+}
+
+#[test]
+fn a_data_set_without_commands_is_exported_by_a_button_of_its_own() {
+    let mut bench = bench(Scenario::Grasp);
+    bench.wait(1000);
+    let _path = ended(&mut bench);
+    bench.show(View::Recordings);
+    settle(&mut bench, |bench| {
+        !bench.state().recordings.items.is_empty()
+    });
+    bench.run(100);
+    let title = bench.state().recordings.items[0].title();
+    bench.click_button(&format!("More: {title}"));
+    bench.run(100);
+    bench.click_button("Data set without commands (LeRobot)");
+    let saved = |bench: &Bench| {
+        let mut notices = bench.state().notices.iter();
+        notices.find_map(|notice| match &notice.what {
+            NoticeKind::Saved { path, .. } => Some(path.clone()),
+            _ => None,
+        })
+    };
+    settle(&mut bench, |bench| saved(bench).is_some());
+    let info = std::fs::read_to_string(saved(&bench).unwrap().join("meta/info.json")).unwrap();
+    let info: serde_json::Value = serde_json::from_str(&info).unwrap();
+    assert_eq!(info["handscope"]["action_uncommanded_episodes"], 1);
+    assert!(info["handscope"]["action_warning"].is_string());
 }
 
 #[test]
