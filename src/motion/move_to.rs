@@ -19,7 +19,7 @@ const START_DELAY: Duration = Duration::from_millis(500);
 /// Settings with which a motion starts.
 #[derive(Debug, Clone)]
 pub struct MoveStart {
-    /// Target of each joint; `None` leaves a joint unchanged.
+    /// Target of each joint; `None` leaves a joint unchanged. Without any target, the end of what already moves is awaited.
     pub targets: Targets,
     /// Speeds and force thresholds of the moving joints.
     pub limits: ArmRequest,
@@ -150,9 +150,11 @@ impl Moving {
         }
     }
 
-    /// The speed of the slowest joint that moves.
+    /// The speed of the slowest joint that moves; without targets, any may.
     fn slowest(&self) -> Speed {
-        let goes = self.start.targets.iter().filter(|(_, to)| to.is_some());
+        let all = self.start.targets.iter().all(|(_, to)| to.is_none());
+        let goes = self.start.targets.iter();
+        let goes = goes.filter(|(_, to)| all || to.is_some());
         let speeds = goes.map(|(dof, _)| self.start.limits.speed[dof]);
         speeds.min().unwrap_or(Speed::GENTLE)
     }

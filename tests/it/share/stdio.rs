@@ -182,6 +182,64 @@ fn a_pose_is_told_as_the_angles_of_a_move_and_moves_nothing() {
 }
 
 #[test]
+fn a_gesture_of_the_hand_moves_it_while_armed_and_its_end_is_awaited() {
+    unless_busy(|| {
+        let mut script = Script::start("sim:");
+        let gesture = json!({"do": "gesture", "number": 3, "speed": 900});
+        assert_eq!(script.ask(gesture.clone())["kind"], "not_armed");
+        assert_eq!(script.until("state")["angle"], json!(vec![1000; 6]));
+        script.done(json!({"do": "arm"}));
+        let ended = script.done(gesture);
+        assert_eq!(ended["end"], "reached");
+        let state = script.until("state");
+        for (joint, to) in [1000, 1000, 1000, 420, 420, 200].into_iter().enumerate() {
+            let at = state["angle"][joint].as_i64().unwrap();
+            assert!((at - to).abs() < 20, "{joint}: {state}");
+        }
+        while script.until("state")["target_speed"] != json!(vec![900; 6]) {}
+        // A gesture that nobody taught moves nothing.
+        assert_eq!(
+            script.done(json!({"do": "gesture", "number": 14}))["end"],
+            "reached"
+        );
+        let no = script.ask(json!({"do": "gesture", "number": 0}));
+        assert_eq!(no["kind"], "wrong");
+        assert_eq!(script.end(), Some(0));
+    });
+}
+
+#[test]
+fn a_gesture_is_stopped_as_any_motion_and_not_started_where_the_user_switched_gestures_off() {
+    unless_busy(|| {
+        let home = tempfile::tempdir().unwrap();
+        let settings = home.path().join(".config/handscope");
+        std::fs::create_dir_all(&settings).unwrap();
+        std::fs::write(settings.join("settings.toml"), "gesture_route = \"off\"\n").unwrap();
+        let mut command = handscope();
+        command.env("HOME", home.path());
+        command.args(["share", "--stdio", "--hand", "sim:"]);
+        let mut script = Script::of(command.args(["--tcp", "127.0.0.1:0", "--writers"]));
+        script.done(json!({"do": "arm"}));
+        let no = script.ask(json!({"do": "gesture", "number": 3}));
+        assert_eq!(no["kind"], "refused");
+        assert!(
+            no["error"].as_str().unwrap().contains("gestures are off"),
+            "{no}"
+        );
+        assert_eq!(script.until("state")["angle"], json!(vec![1000; 6]));
+        assert_eq!(script.end(), Some(0));
+        let mut script = Script::start("sim:");
+        script.done(json!({"do": "arm"}));
+        script.tell(&json!({"id": 1, "do": "gesture", "number": 2, "speed": 100}));
+        while script.until("state")["angle"][3].as_i64().unwrap() > 950 {}
+        script.tell(&json!({"do": "stop"}));
+        let told = script.until("reply");
+        assert_eq!((&told["id"], &told["kind"]), (&json!(1), &json!("stop")));
+        assert_eq!(script.end(), Some(0));
+    });
+}
+
+#[test]
 fn nothing_moves_before_it_is_armed_and_what_is_wrong_is_told() {
     unless_busy(|| {
         let mut script = Script::start("sim:");

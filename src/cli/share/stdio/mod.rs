@@ -5,6 +5,7 @@ mod pipe;
 mod refused;
 mod request;
 
+use crate::app::files::settings_file;
 use crate::cli::hold;
 use crate::cli::out::{Out, notify};
 use crate::cli::recordings::beside::SideRecording;
@@ -15,7 +16,10 @@ use crate::cli::share::stdio::request::{LimitsRequest, MoveRequest, StdioLine, S
 use crate::cli::watch::telemetry::{grip_json, watch_json};
 use crate::hand::grip::{Grip, GripEstimator};
 use crate::hand::kinematics::Side;
-use crate::hand::{Angle, ArmEpoch, Group, HandCommand, HandSample, Moment, PerDof};
+use crate::hand::{
+    Angle, ArmEpoch, Gesture, GestureRoute, Group, HandCommand, HandSample, Moment, PerDof,
+    Setpoints,
+};
 use crate::inputs::line::StreamLine;
 use crate::inputs::{Offer, OfferLimits};
 use crate::link::{ArmRequest, Lease, LeaseRefusal, LinkHandle, LinkStatus, Owner, Records};
@@ -488,14 +492,21 @@ impl StdioSession<'_> {
     ) -> Result<(), NobodyReads> {
         let link = self.hand.link.clone();
         let (seen, grip) = (self.seen, self.grip.clone());
+        let limits = request.limits.over(right.limits);
         let moving = async move {
             let epoch = match armed(&link, right).await {
                 Ok(epoch) => epoch,
                 Err(no) => return TaskResult::Moved(Err(no)),
             };
+            if let Some(gesture) = request.gesture {
+                let limits = limits.setpoints(epoch);
+                if let Err(no) = begin_gesture(&link, right.lease, &limits, gesture).await {
+                    return TaskResult::Moved(Err(no));
+                }
+            }
             let start = MoveStart {
                 targets: request.targets,
-                limits: request.limits.over(right.limits),
+                limits,
                 settles: request.settles,
                 grip,
             };
@@ -734,6 +745,31 @@ async fn granted(
             Err(no) => return Err(no),
         }
     }
+}
+
+/// Starts a gesture that the hand stores, with these limits, by the register that the user chose in the window.
+async fn begin_gesture(
+    link: &LinkHandle,
+    lease: Lease,
+    limits: &Setpoints,
+    gesture: Gesture,
+) -> Result<(), StdioRefusal> {
+    let settings = settings_file::default_path().and_then(|path| settings_file::peek(&path));
+    let route = settings.unwrap_or_default().gesture_route;
+    if route == GestureRoute::Off {
+        return Err(StdioRefusal::new(
+            RefusalKind::Refused,
+            "nothing was moved: gestures are off in the settings of the window",
+        ));
+    }
+    link.set(lease, limits)?;
+    let written = link.write_as(lease, HandCommand::Gesture(gesture, route));
+    let Err(error) = written.await else {
+        return Ok(());
+    };
+    // A lost control is more informative than the write that it prevented.
+    link.check(lease)?;
+    Err(StdioRefusal::new(RefusalKind::Refused, error.to_string()))
 }
 
 /// Arms the hand under an existing lease, once an earlier stop has completed.

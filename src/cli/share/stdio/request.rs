@@ -3,7 +3,7 @@
 
 use crate::cli::parse::{moving, rated};
 use crate::hand::kinematics::Side;
-use crate::hand::{Angle, Dof, Force, PerDof, Speed};
+use crate::hand::{Angle, Dof, Force, Gesture, PerDof, Speed};
 use crate::inputs::fields::{self, FieldFault, Fields};
 use crate::inputs::line::{LINE_VERSION, StreamLine};
 use crate::inputs::lines::LONGEST;
@@ -48,10 +48,13 @@ pub(crate) enum StdioRequest {
     Record(Option<PathBuf>),
 }
 
-/// A motion to targets.
+/// A motion to targets, or one that the hand itself stores.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct MoveRequest {
+    /// Target of each joint; none for a gesture.
     pub(crate) targets: Targets,
+    /// Gesture that the hand starts by itself.
+    pub(crate) gesture: Option<Gesture>,
     pub(crate) limits: LimitsRequest,
     pub(crate) settles: bool,
 }
@@ -155,8 +158,16 @@ fn request(fields: &mut Fields) -> Result<StdioRequest, String> {
         "arm" => StdioRequest::Arm(LimitsRequest::read(fields)?),
         "move" => StdioRequest::Move(MoveRequest {
             targets: targets(fields)?,
+            gesture: None,
             limits: LimitsRequest::read(fields)?,
             settles: field(fields, "settle", flag)?.unwrap_or(false),
+        }),
+        "gesture" => StdioRequest::Move(MoveRequest {
+            targets: PerDof::splat(None),
+            gesture: Some(gesture(fields)?),
+            limits: LimitsRequest::read(fields)?,
+            // The program does not know where a gesture ends.
+            settles: true,
         }),
         "pose" => StdioRequest::Pose(field(fields, "name", text)?.ok_or("name: no pose is named")?),
         "stop" => StdioRequest::Stop,
@@ -229,6 +240,11 @@ fn targets(fields: &mut Fields) -> Result<Targets, String> {
         return Err("angle: no joint is to be moved".into());
     }
     Ok(targets)
+}
+
+fn gesture(fields: &mut Fields) -> Result<Gesture, String> {
+    let number = field(fields, "number", fields::whole)?.ok_or("number: no gesture is named")?;
+    Gesture::new(number).map_err(|error| format!("number: {error}"))
 }
 
 fn moving_speed(fields: &mut Fields) -> Result<Option<Speed>, String> {
@@ -316,6 +332,12 @@ mod tests {
             (r#"{"id":1,"do":"arm","speed":1001}"#, "1001"),
             (r#"{"id":1,"do":"rate","state_hz":0}"#, "1 to 1000"),
             (r#"{"id":1,"do":"pose"}"#, "no pose is named"),
+            (r#"{"id":1,"do":"gesture"}"#, "no gesture is named"),
+            (r#"{"id":1,"do":"gesture","number":41}"#, "number: "),
+            (
+                r#"{"id":1,"do":"gesture","number":3,"angle":[0,0,0,0,0,0]}"#,
+                "angle: not a field of gesture",
+            ),
             (r#"{"id":1,"do":"fly"}"#, "help share"),
             (
                 r#"{"id":1,"do":"arm","now":true}"#,
