@@ -10,12 +10,12 @@ from importlib import metadata as _metadata
 from .errors import Disarmed, HandscopeError, LinkLost, NotArmed, ProgramNotFound, Refused, Taken
 from .hand import Hand, Motion, Recording, States, hands
 from .recording import events, read
-from .state import FINGERS, JOINTS, Finger, Grip, GripResult, GripState, Joint, MoveEnd, State, Touch
+from .state import FINGERS, JOINTS, Check, Finger, Grip, GripResult, Gripped, GripState, Joint, MoveEnd, State, Touch, Trial, Tune
 
 __all__ = [
-    "FINGERS", "JOINTS", "Disarmed", "Finger", "Grip", "GripResult", "GripState", "Hand", "HandscopeError", "Joint", "LinkLost",
-    "Motion", "MoveEnd", "NotArmed", "ProgramNotFound", "Recording", "Refused", "State", "States", "Taken", "Touch", "events",
-    "hands", "open", "read",
+    "FINGERS", "JOINTS", "Check", "Disarmed", "Finger", "Grip", "GripResult", "GripState", "Gripped", "Hand", "HandscopeError",
+    "Joint", "LinkLost", "Motion", "MoveEnd", "NotArmed", "ProgramNotFound", "Recording", "Refused", "State", "States", "Taken",
+    "Touch", "Trial", "Tune", "events", "hands", "open", "read",
 ]  # fmt: skip
 
 try:

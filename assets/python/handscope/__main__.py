@@ -5,5 +5,4 @@ import sys
 
 from .program import find
 
-if __name__ == "__main__":
-    sys.exit(subprocess.call([find(), *sys.argv[1:]]))
+sys.exit(subprocess.call([find(), *sys.argv[1:]]))

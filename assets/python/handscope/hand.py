@@ -13,15 +13,13 @@ import time
 import weakref
 from collections import deque
 from contextlib import contextmanager
-from typing import (
-    Any, Callable, Deque, Dict, Iterable, Iterator, List, Literal, Mapping, NoReturn, Optional, Sequence, Tuple, Union, overload,
-)  # fmt: skip
+from typing import Any, Callable, Iterable, Iterator, Literal, Mapping, NoReturn, Optional, Sequence, TypeVar, Union, cast, overload
 
 from . import program
 from .errors import Disarmed, HandscopeError, LinkLost, NotArmed, Refused, Taken, of
-from .state import JOINTS, Finger, Grip, GripResult, Joint, State, Touch
+from .state import JOINTS, Check, Finger, Grip, Gripped, GripResult, Joint, State, Touch, Trial, Tune
 
-CLOSING: Tuple[Joint, ...] = ("little", "ring", "middle", "index", "thumb_bend")
+CLOSING: tuple[Joint, ...] = ("little", "ring", "middle", "index", "thumb_bend")
 """The joints that `close_until` closes, unless others are named."""
 
 _WAITING_MAX = 4096
@@ -35,9 +33,10 @@ _hands: "weakref.WeakSet[Hand]" = weakref.WeakSet()
 Callback = Callable[[State], None]
 Count = Optional[int]
 Share = Optional[float]
+Told = TypeVar("Told")
 
 
-def hands() -> List["Hand"]:
+def hands() -> list["Hand"]:
     """The hands that this script has open, also those that no name of it is left of."""
     return [hand for hand in list(_hands) if not hand._ended and hand._program.is_own]
 
@@ -47,7 +46,7 @@ class States:
 
     def __init__(self, hand: "Hand") -> None:
         self._hand = hand
-        self._waiting: Deque[State] = deque()
+        self._waiting: deque[State] = deque()
         self._lost = 0
         self._news = threading.Condition()
 
@@ -143,10 +142,10 @@ class Hand:
         self._link_lost: Optional[str] = None
         self._disarmed: Optional[HandscopeError] = None
         self._refused: Optional[HandscopeError] = None
-        self._armed: Optional[Dict[str, Count]] = None
-        self._callbacks: List[Callback] = []
+        self._armed: Optional[dict[str, Count]] = None
+        self._callbacks: list[Callback] = []
         self._readers: "weakref.WeakSet[States]" = weakref.WeakSet()
-        self._windows: List["subprocess.Popen[str]"] = []
+        self._windows: list["subprocess.Popen[str]"] = []
         options = ["--hand", url, "--side", side, "--tcp", f"127.0.0.1:{port}"]
         self._side = side
         self._began = 0.0
@@ -167,8 +166,6 @@ class Hand:
             raise
         _hands.add(self)
 
-    # What is heard
-
     def _told(self, told: Mapping[str, Any]) -> None:
         # On the thread that reads what the program says.
         if "state" in told:
@@ -184,7 +181,7 @@ class Hand:
                     callback(state)
                 except Exception:
                     _log.exception("a callback of states failed, and is called no more")
-                    self._callbacks.remove(callback)
+                    self._forget(callback)
         elif "lost" in told:
             self._lost += told["lost"]
         elif "disarmed" in told:
@@ -221,7 +218,7 @@ class Hand:
             return self._newest
 
     @property
-    def touch(self) -> Dict[Finger, Touch]:
+    def touch(self) -> dict[Finger, Touch]:
         """The fingertips of the newest state."""
         return self.state.touch
 
@@ -242,19 +239,15 @@ class Hand:
         time is lost, and told as lost."""
         self._program.check()
         self._callbacks.append(callback)
+        return lambda: self._forget(callback)
 
-        def end() -> None:
-            # One that failed is called no more already.
-            if callback in self._callbacks:
-                self._callbacks.remove(callback)
-
-        return end
+    def _forget(self, callback: Callback) -> None:
+        if callback in self._callbacks:
+            self._callbacks.remove(callback)
 
     def rate(self, hz: float) -> None:
         """Reads so many states a second, up to 500, or as many as the wire carries."""
         self._program.ask("rate", state_hz=float(hz))
-
-    # What moves the hand
 
     @contextmanager
     def armed(self, speed: Count = None, force_g: Count = None) -> Iterator["Hand"]:
@@ -352,9 +345,7 @@ class Hand:
         """Clears what drives report and can be cleared. That moves nothing; outside `armed()`."""
         self._program.ask("clear")
 
-    # What the program does as commands
-
-    def trial(self, joint: Union[str, Sequence[str]], **options: Any) -> List[Mapping[str, Any]]:
+    def trial(self, joint: Union[str, Sequence[str]], **options: Any) -> list[Trial]:
         """Closes joints on an object and measures each grasp, as `handscope trial` does, with its options:
         `hand.trial("index", speed=[25, 250], force=500)`. Gives the trials."""
         told, why = self._command("trial", joint=joint, **options)
@@ -362,18 +353,18 @@ class Hand:
             raise HandscopeError(why)
         return [one["trial"] for one in told if "trial" in one]
 
-    def tune(self, joint: Union[str, Sequence[str]], limit: int, **options: Any) -> Mapping[str, Any]:
+    def tune(self, joint: Union[str, Sequence[str]], limit: int, **options: Any) -> Tune:
         """Finds the fastest close that stays under a force, as `handscope tune` does. Without a result, `why` says why."""
-        return _last("tune", *self._command("tune", joint=joint, limit=limit, **options))
+        return _last(Tune, "tune", *self._command("tune", joint=joint, limit=limit, **options))
 
-    def check(self, **options: Any) -> Mapping[str, Any]:
+    def check(self, **options: Any) -> Check:
         """Checks an empty hand for wear, as `handscope check` does. It is not kept with the hand's earlier ones."""
         with tempfile.TemporaryDirectory() as folder:
-            return _last("check", *self._command("check", **{"folder": folder, **options}))
+            return _last(Check, "check", *self._command("check", **{"folder": folder, **options}))
 
-    def grip_to(self, gap_mm: float, **options: Any) -> Mapping[str, Any]:
+    def grip_to(self, gap_mm: float, **options: Any) -> Gripped:
         """Closes thumb and index to a gap, as `handscope grip` does."""
-        return _last("grip", *self._command("grip", gap=gap_mm, **options))
+        return _last(Gripped, "grip", *self._command("grip", gap=gap_mm, **options))
 
     def hold(
         self, for_s: float, *, put_down: Optional[Callable[[int], object]] = None, **options: Any
@@ -385,7 +376,7 @@ class Hand:
         # The command reaches the hand over its shared one, and knows it by its own name.
         options = {"for": for_s, "known_as": self.url, **options}
         if put_down is None:
-            return _last("hold", *self._command("hold", **options))
+            return _last(dict, "hold", *self._command("hold", **options))
         says = put_down
 
         def answer(told: Mapping[str, Any]) -> bool:
@@ -393,18 +384,20 @@ class Hand:
                 says(asked["close"])
             return bool(asked)
 
-        return _last("hold", *self._command("hold", answer, **options, consent="stdin"))
+        return _last(dict, "hold", *self._command("hold", answer, **options, consent="stdin"))
 
     def _command(
         self, name: str, answer: Optional[Callable[[Mapping[str, Any]], bool]] = None, /, **options: Any
-    ) -> Tuple[List[Any], Optional[str]]:  # fmt: skip
+    ) -> tuple[list[Any], Optional[str]]:  # fmt: skip
         """Lets a command move the hand in this script's place, over the shared hand: what it told, and why it failed, if so."""
         self._may_move()
         self._program.ask("disarm")
         command = [name, "--hand", self.share_url, *_options(options), "--arm", "--json"]
         done = program.run(command) if answer is None else program.converse(command, answer)
         told = [json.loads(line) for line in done.lines]
-        if done.why and not done.did_nothing and not _is_whole(told):
+        last = next(iter(told[-1].values())) if told else {}
+        # A command that ran to its end says so, whatever it found.
+        if done.why and not done.did_nothing and last.get("aborted", done) is not None:
             # It may have been stopped by a person, who is not overruled.
             self._disarmed = Disarmed(f"'{name}' ended early, and the hand is not armed any more: {done.why}", "ended")
         else:
@@ -457,7 +450,7 @@ class Hand:
         return f"<handscope.Hand {self.url}>"
 
 
-def _started(url: str, options: List[str], told: "weakref.WeakMethod[Any]") -> program.Program:
+def _started(url: str, options: list[str], told: "weakref.WeakMethod[Any]") -> program.Program:
     """Starts the program of a hand, whose last name may be gone before it ends."""
 
     def tell(line: Mapping[str, Any]) -> None:
@@ -477,7 +470,7 @@ def _started(url: str, options: List[str], told: "weakref.WeakMethod[Any]") -> p
         raise
 
 
-def _end(ended: program.Program, windows: "List[subprocess.Popen[str]]") -> None:
+def _end(ended: program.Program, windows: "list[subprocess.Popen[str]]") -> None:
     """Ends what belongs to a hand, once."""
     ended.close()
     for window in windows if ended.is_own else ():
@@ -485,7 +478,7 @@ def _end(ended: program.Program, windows: "List[subprocess.Popen[str]]") -> None
         window.communicate()
 
 
-def _joints(others: Mapping[str, object], *six: Share) -> Dict[Joint, Share]:
+def _joints(others: Mapping[str, object], *six: Share) -> dict[Joint, Share]:
     _known(others)
     return dict(zip(JOINTS, six))
 
@@ -505,30 +498,23 @@ def _whole(name: str, value: float, more: str = "") -> int:
     return int(value)
 
 
-def _limits(speed: Count, force_g: Count) -> Dict[str, Count]:
+def _limits(speed: Count, force_g: Count) -> dict[str, Count]:
     limits = {"speed": speed, "force_g": force_g}
     return {name: None if value is None else _whole(name, value) for name, value in limits.items()}
 
 
-def _options(options: Mapping[str, Any]) -> List[str]:
+def _options(options: Mapping[str, Any]) -> list[str]:
     """Keywords as options of the command line: `max_temp=60` is `--max-temp 60`."""
-    words: List[str] = []
+    words: list[str] = []
     for name, value in options.items():
-        option = "--" + name.replace("_", "-")
-        listed = ",".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
         if value is not None and value is not False:
-            words += [option] if value is True else [option, listed]
+            listed = ",".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
+            words += ["--" + name.replace("_", "-")] + [listed] * (value is not True)
     return words
 
 
-def _is_whole(told: Sequence[Mapping[str, Any]]) -> bool:
-    """Whether a command says that it ran to its end, whatever it found."""
-    last: Mapping[str, Any] = next(iter(told[-1].values())) if told else {}
-    return "aborted" in last and last["aborted"] is None
-
-
-def _last(key: str, told: List[Any], why: Optional[str]) -> Mapping[str, Any]:
-    found: List[Mapping[str, Any]] = [one[key] for one in told if key in one]
-    if not found:
-        raise HandscopeError(why or f"'handscope {key}' told no result")
-    return found[-1]
+def _last(of: type[Told], key: str, told: list[Any], why: Optional[str]) -> Told:
+    for one in reversed(told):
+        if key in one:
+            return cast(Told, one[key])
+    raise HandscopeError(why or f"'handscope {key}' told no result")

@@ -30,22 +30,17 @@ _WITHIN_S = 30.0
 def find() -> str:
     """The program: beside this package, then `$HANDSCOPE`, then on the path."""
     user = sysconfig.get_preferred_scheme("user") if sys.version_info >= (3, 10) else f"{os.name}_user"
-    places = [
-        Path(sysconfig.get_path("scripts"), _NAME),
-        Path(sysconfig.get_path("scripts", user), _NAME),
-        Path(__file__).parent.parent / "bin" / _NAME,  # pip install --target
-    ]
-    for place in places:
+    own = Path(__file__).parent.parent / "bin"  # pip install --target
+    folders = sysconfig.get_path("scripts"), sysconfig.get_path("scripts", user), own
+    for place in (Path(folder, _NAME) for folder in folders):
         if os.access(place, os.X_OK):
             return str(place)
     named = os.environ.get("HANDSCOPE") or shutil.which(_NAME)
     if named and os.access(named, os.X_OK):
         return named
-    if named:
-        raise ProgramNotFound(f"$HANDSCOPE names {named}, which is no program; unset it, or name the program 'handscope'")
-    raise ProgramNotFound(
-        "the program 'handscope' is not installed: the wheel of this package brings it, or name it in $HANDSCOPE"
-    )
+    missing = "the program 'handscope' is not installed: the wheel of this package brings it, or name it in $HANDSCOPE"
+    wrong = f"$HANDSCOPE names {named}, which is no program; unset it, or name the program 'handscope'"
+    raise ProgramNotFound(wrong if named else missing)
 
 
 class Ran(NamedTuple):
@@ -114,13 +109,13 @@ def apart() -> Dict[str, Any]:
         return {"creationflags": subprocess.CREATE_NEW_PROCESS_GROUP}  # type: ignore[attr-defined]
     return {"start_new_session": True}
 
-        if line.startswith('{"error":'):
-            return str(json.loads(line)["error"]["message"])
 
 def sentence(words: Sequence[str], otherwise: str) -> str:
     """The last thing that the program said, without its name."""
     said = [line.strip() for line in words if line.strip()]
     for line in reversed(said):
+        if line.startswith('{"error":'):
+            return str(json.loads(line)["error"]["message"])
         if line.startswith(("handscope: ", "error: ")):
             return line.split(": ", 1)[1]
     return said[-1] if said else otherwise

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from dataclasses import dataclass, fields
-from typing import Any, Dict, List, Literal, Mapping, Optional, Tuple, cast
+from typing import Any, Dict, List, Literal, Mapping, Optional, Tuple, TypedDict
 
 Joint = Literal["little", "ring", "middle", "index", "thumb_bend", "thumb_rotate"]
 Finger = Literal["little", "ring", "middle", "index", "thumb"]
@@ -20,21 +21,13 @@ FINGERS: Tuple[Finger, ...] = ("little", "ring", "middle", "index", "thumb")
 Joints = Dict[Joint, Optional[int]]
 """A value of each joint, by its name."""
 
-
-class _Value:
-    """A value of `__slots__`, which a frozen dataclass cannot be copied as without this."""
-
-    __slots__ = ()
-
-    def __reduce__(self) -> Tuple[Any, ...]:
-        return type(self), tuple(getattr(self, one.name) for one in fields(cast(Any, self)))
+# Python 3.9 cannot make them.
+_SLOTS: Dict[str, bool] = {"slots": True} if sys.version_info >= (3, 10) else {}
 
 
-@dataclass(frozen=True)
-class Touch(_Value):
+@dataclass(frozen=True, **_SLOTS)
+class Touch:
     """One fingertip."""
-
-    __slots__ = ("normal_n", "tangential_n", "direction_deg", "proximity", "raw")
 
     normal_n: Optional[float]
     """Force into the fingertip, N."""
@@ -48,11 +41,9 @@ class Touch(_Value):
     """The eight channels."""
 
 
-@dataclass(frozen=True)
-class Grip(_Value):
+@dataclass(frozen=True, **_SLOTS)
+class Grip:
     """What the hand does to an object."""
-
-    __slots__ = ("state", "fingers")
 
     state: GripState
     fingers: Mapping[Finger, GripState]
@@ -73,11 +64,9 @@ class Grip(_Value):
         return cls(told["state"], {one["finger"]: one["state"] for one in told["fingers"]})
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, **_SLOTS)
 class GripResult(Grip):
     """What a motion came to."""
-
-    __slots__ = ("end",)
 
     end: MoveEnd
     """`reached`; `stopped`: at rest elsewhere, by an object or a force threshold; `late`: it took too long, and was stopped."""
@@ -88,14 +77,9 @@ class GripResult(Grip):
         return cls(grip.state, grip.fingers, told["end"])
 
 
-@dataclass(frozen=True, repr=False)
-class State(_Value):
+@dataclass(frozen=True, repr=False, **_SLOTS)
+class State:
     """One reading of the hand."""
-
-    __slots__ = (
-        "t_s", "time", "angle", "angle_rad", "force_g", "force_n", "current_ma", "temp_c", "status", "faults", "touch", "grip",
-        "target", "speed", "threshold_g", "undocumented", "lost", "raw", "received",
-    )  # fmt: skip
 
     t_s: float
     """Seconds since the program was started."""
@@ -135,7 +119,7 @@ class State(_Value):
         return time.monotonic() - self.received
 
     def __repr__(self) -> str:
-        shown = (f"{name}={getattr(self, name)!r}" for name in self.__slots__ if name not in ("raw", "received"))
+        shown = (f"{one.name}={getattr(self, one.name)!r}" for one in fields(self) if one.name not in ("raw", "received"))
         return f"State({', '.join(shown)})"
 
     @classmethod
@@ -150,10 +134,36 @@ class State(_Value):
             **joints,
             t_s=told["t_s"],
             time=began + told["t_s"],
-            touch={tip["finger"]: Touch(**{name: tip[name] for name in Touch.__slots__}) for tip in told["tactile"]},
+            touch={tip["finger"]: Touch(**{one.name: tip[one.name] for one in fields(Touch)}) for tip in told["tactile"]},
             grip=Grip._of(told["grip"]),
             undocumented={(one["field"], one.get("joint") or one["finger"]): one["raw"] for one in told["undocumented"]},
             lost=lost,
             raw=told,
             received=time.monotonic(),
         )
+
+
+# What commands tell, with what a script uses most of it; `handscope help json` has all.
+GripEnd = Literal["held", "reached", "stopped", "not_opened", "late", "person", "taken_over", "fault", "link_lost", "disarmed"]
+Light = Literal["fine", "watch", "act", "unknown"]
+Whole = Optional[int]
+Figure = Optional[float]
+Words = Optional[str]
+
+TrialJoint = TypedDict("TrialJoint", {
+    "joint": Joint, "contact_angle": Figure, "peak_force_g": Figure, "overshoot_g": Figure, "steady_force_g": Figure,
+    "relaxation_g": Figure, "dead_time_s": Figure, "time_to_contact_s": Figure, "time_to_stop_s": Figure,
+    "settle_time_s": Figure, "slip_count": Whole, "peak_current_ma": float, "end_status": str})  # fmt: skip
+Trial = TypedDict("Trial", {
+    "number": int, "kind": str, "repeat": Whole, "speed": int, "force_threshold_g": int, "aborted": Words,
+    "joints": List[TrialJoint], "stall_s": Figure})  # fmt: skip
+Tune = TypedDict("Tune", {
+    "limit_g": int, "hold_g": int, "result": Words, "why": Words, "speed": Whole, "force_threshold_g": Whole,
+    "contact_angle": Figure, "close_s": Figure, "peak_bound_g": Figure, "confidence": Figure, "coverage": Figure,
+    "distribution_free": bool, "closes": Whole, "closes_here": Whole, "trials": int, "aborted": Words})  # fmt: skip
+Checked = TypedDict("Checked", {
+    "what": str, "of": str, "measured": Figure, "unit": str, "good": List[Figure], "light": Light, "advice": Words})  # fmt: skip
+Check = TypedDict("Check", {
+    "at": str, "complete": bool, "aborted": Words, "earlier": int, "remarks": List[str], "checks": List[Checked]})  # fmt: skip
+Gripped = TypedDict("Gripped", {
+    "end": GripEnd, "state": GripState, "asked_mm": float, "gap_mm": Figure, "size_mm": Figure, "size_of": Words})  # fmt: skip

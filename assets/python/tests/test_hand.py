@@ -626,6 +626,8 @@ with handscope.open("sim:") as hand, hand.armed():
 
 class Typed(unittest.TestCase):
     @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
+    print(hand.gesture(3).end == "reached", hand.trial("index")[0]["joints"][0]["peak_force_g"])
+    print(hand.tune("index", 300)["speed"], hand.check()["checks"][0]["light"] == "act", hand.grip_to(30)["end"] == "held")
     def test_a_name_that_does_not_exist_is_found_before_the_script_runs(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "typed.py")
@@ -633,6 +635,12 @@ class Typed(unittest.TestCase):
             command = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "--hide-error-context", str(path)]
             package = str(pathlib.Path(handscope.__file__).parent.parent)
             places = {**os.environ, "MYPYPATH": package}
+    hand.gesture("fist")  # wrong
+    print(hand.trial("index")[0]["joint"])  # wrong
+    print(hand.trial("index")[0]["joints"][0]["peak"])  # wrong
+    print(hand.tune("index", 300)["sped"])  # wrong
+    print(hand.check()["checks"][0]["light"] == "red")  # wrong
+    print(hand.grip_to(30)["end"] == "hold")  # wrong
             done = subprocess.run(command, env=places, cwd=folder, capture_output=True, text=True)
         wrong = {number for number, line in enumerate(TYPED.splitlines(), 1) if line.endswith("# wrong")}
         found = {int(line.split(":")[1]) for line in done.stdout.splitlines() if ": error:" in line}
