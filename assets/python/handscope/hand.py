@@ -281,11 +281,14 @@ class Hand:
         self._raise_refused()
 
     def _begin(self, angle: Mapping[Joint, Share], speed: Count, force_g: Count) -> Motion:
-        limits = _limits(speed, force_g)
         six = [None if (at := angle.get(joint)) is None else _whole(joint, at, _NO_SHARE) for joint in JOINTS]
-        self._may_move()
         # At rest, because what a hand holds is not known before.
-        asked = self._program.begin("move", angle=six, settle=True, **limits)
+        return self._motion("move", speed, force_g, angle=six, settle=True)
+
+    def _motion(self, what: str, speed: Count, force_g: Count, **fields: Any) -> Motion:
+        limits = _limits(speed, force_g)
+        self._may_move()
+        asked = self._program.begin(what, **fields, **limits)
         assert asked
         return Motion(self, asked)
 
@@ -325,6 +328,11 @@ class Hand:
         """Moves to a pose of the window's library, as `move` does: `hand.pose("Pinch")`. Upper or lower case is the same."""
         angles = self._program.ask("pose", name=name)["angle"]
         return self._begin(dict(zip(JOINTS, angles)), speed, force_g).result()
+
+    def gesture(self, number: int, *, speed: Count = None, force_g: Count = None) -> GripResult:
+        """Starts a gesture that the hand itself stores, 1 to 40, and waits for rest. `end` is `reached` wherever that is: the
+        hand does not tell where a gesture leads."""
+        return self._motion("gesture", speed, force_g, number=_whole("number", number)).result()
 
     def follow(
         self, *, little: Share = None, ring: Share = None, middle: Share = None, index: Share = None, thumb_bend: Share = None,

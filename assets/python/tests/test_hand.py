@@ -290,6 +290,18 @@ class Moves(unittest.TestCase):
                 with self.assertRaisesRegex(handscope.Refused, "no pose 'Cube'"):
                     hand.pose("Cube")
 
+    def test_a_gesture_of_the_hand_is_started_and_its_end_awaited(self):
+        with handscope.open("sim:") as hand:
+            self.assertEqual(error_of(lambda: hand.gesture(3)).kind, "not_armed")
+            self.assertEqual(hand.state.angle["index"], 1000)
+            with hand.armed(speed=900):
+                result = hand.gesture(3)
+                self.assertEqual((result.end, hand.state.angle["little"]), ("reached", 1000))
+                self.assertAlmostEqual(hand.state.angle["index"], 420, delta=20)
+                self.assertEqual(error_of(lambda: hand.gesture(41)).kind, "wrong")
+                self.assertEqual(error_of(lambda: hand.gesture(2.5)).kind, "wrong")
+                self.assertAlmostEqual(hand.state.angle["index"], 420, delta=20)
+
     def test_settings_that_are_not_whole_are_refused_in_a_sentence(self):
         with handscope.open("sim:") as hand, hand.armed():
             for act in (
@@ -614,6 +626,8 @@ with handscope.open("sim:") as hand, hand.armed():
     hand.close_until(300, joints="index")
     hand.follow(index=0.3)
     print(hand.touch["thumb"].normal_n, hand.state.angle["index"], hand.grip.state == "holding")
+    print(hand.gesture(3).end == "reached", hand.trial("index")[0]["joints"][0]["peak_force_g"])
+    print(hand.tune("index", 300)["speed"], hand.check()["checks"][0]["light"] == "act", hand.grip_to(30)["end"] == "held")
     hand.move(idnex=3)  # wrong
     hand.follow(idnex=0.3)  # wrong
     hand.close_until(300, joints=("index", "thumb"))  # wrong
@@ -621,13 +635,17 @@ with handscope.open("sim:") as hand, hand.armed():
     print(hand.grip.state == "holdng")  # wrong
     print(result.end == "there")  # wrong
     print(hand.state.angles)  # wrong
+    hand.gesture("fist")  # wrong
+    print(hand.trial("index")[0]["joint"])  # wrong
+    print(hand.trial("index")[0]["joints"][0]["peak"])  # wrong
+    print(hand.tune("index", 300)["sped"])  # wrong
+    print(hand.check()["checks"][0]["light"] == "red")  # wrong
+    print(hand.grip_to(30)["end"] == "hold")  # wrong
 """
 
 
 class Typed(unittest.TestCase):
     @unittest.skipUnless(importlib.util.find_spec("mypy"), "mypy is not installed")
-    print(hand.gesture(3).end == "reached", hand.trial("index")[0]["joints"][0]["peak_force_g"])
-    print(hand.tune("index", 300)["speed"], hand.check()["checks"][0]["light"] == "act", hand.grip_to(30)["end"] == "held")
     def test_a_name_that_does_not_exist_is_found_before_the_script_runs(self):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder, "typed.py")
@@ -635,12 +653,6 @@ class Typed(unittest.TestCase):
             command = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "--hide-error-context", str(path)]
             package = str(pathlib.Path(handscope.__file__).parent.parent)
             places = {**os.environ, "MYPYPATH": package}
-    hand.gesture("fist")  # wrong
-    print(hand.trial("index")[0]["joint"])  # wrong
-    print(hand.trial("index")[0]["joints"][0]["peak"])  # wrong
-    print(hand.tune("index", 300)["sped"])  # wrong
-    print(hand.check()["checks"][0]["light"] == "red")  # wrong
-    print(hand.grip_to(30)["end"] == "hold")  # wrong
             done = subprocess.run(command, env=places, cwd=folder, capture_output=True, text=True)
         wrong = {number for number, line in enumerate(TYPED.splitlines(), 1) if line.endswith("# wrong")}
         found = {int(line.split(":")[1]) for line in done.stdout.splitlines() if ": error:" in line}
