@@ -245,9 +245,9 @@ class Hand:
         if callback in self._callbacks:
             self._callbacks.remove(callback)
 
-    def rate(self, hz: float) -> None:
-        """Reads so many states a second, up to 500, or as many as the wire carries."""
-        self._program.ask("rate", state_hz=float(hz))
+    def rate(self, hz: float, target_hz: float = 2.0) -> None:
+        """Reads so many states a second, up to 500, or as many as the wire carries, and so often what the hand is told."""
+        self._program.ask("rate", state_hz=float(hz), target_hz=float(target_hz))
 
     @contextmanager
     def armed(self, speed: Count = None, force_g: Count = None) -> Iterator["Hand"]:

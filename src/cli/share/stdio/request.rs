@@ -211,10 +211,15 @@ fn rates(fields: &mut Fields) -> Result<PollRates, String> {
     let state_hz = field(fields, "state_hz", fields::number)?;
     let state_hz = state_hz.filter(|hz| (1.0..=1000.0).contains(hz));
     let state_hz = state_hz.ok_or("state_hz: not a rate of 1 to 1000 states a second")?;
+    let default = PollRates::default();
+    let target_hz = field(fields, "target_hz", fields::number)?.unwrap_or(default.settings_hz);
+    if !(1.0..=100.0).contains(&target_hz) {
+        return Err("target_hz: not a rate of 1 to 100 a second".into());
+    }
     Ok(PollRates {
         state_hz,
-        tactile_hz: PollRates::default().tactile_hz.max(state_hz / 8.0),
-        ..PollRates::default()
+        tactile_hz: default.tactile_hz.max(state_hz / 8.0),
+        settings_hz: target_hz,
     })
 }
 
@@ -331,6 +336,10 @@ mod tests {
             ),
             (r#"{"id":1,"do":"arm","speed":1001}"#, "1001"),
             (r#"{"id":1,"do":"rate","state_hz":0}"#, "1 to 1000"),
+            (
+                r#"{"id":1,"do":"rate","state_hz":100,"target_hz":0}"#,
+                "target_hz: not a rate",
+            ),
             (r#"{"id":1,"do":"pose"}"#, "no pose is named"),
             (r#"{"id":1,"do":"gesture"}"#, "no gesture is named"),
             (r#"{"id":1,"do":"gesture","number":41}"#, "number: "),
