@@ -158,7 +158,7 @@ class Hand:
         """True for the built-in hand."""
         self.share_url: str = f"tcp:{ready['tcp']}"
         """Where other programs of this computer, and other scripts, find the same hand."""
-        self._asked_url = url
+        self.asked_url = url  # As `open` was given it.
         try:
             self.rate(hz)
         except BaseException:
@@ -468,7 +468,7 @@ def _started(url: str, options: list[str], told: "weakref.WeakMethod[Any]") -> p
     words = f"{url} is open in this script already: use that hand of handscope.hands(), or close() it first"
     shared = [hand.share_url for hand in hands()]
     # A simulated hand is another one each time.
-    if any(url in (hand.url, hand._asked_url) for hand in hands() if not hand.simulated) and url not in shared:
+    if any(url in (hand.url, hand.asked_url) for hand in hands() if not hand.simulated) and url not in shared:
         raise Refused(words, "open_already")
     try:
         return program.Program(options, tell)

@@ -31,8 +31,21 @@ class HandscopeConfig(RobotConfig):
     """Speed of the drives; gentle if none is named."""
     force_g: int | None = None
     """Force threshold of all joints; gentle if none is named."""
+    watch: bool = False
+    """Another program moves the hand: the window, a gamepad, a stream. Actions are recorded, and not sent."""
     hz: float = 100.0
     """States that are read a second."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.arm and self.watch:
+            raise ValueError("a hand that another program moves is not armed here: leave out --robot.arm or --robot.watch")
+
+
+def open_shared(url: str, **options: Any) -> handscope.Hand:
+    """The hand; one that this process has open already, as a teleoperator that leads by its targets has, is shared with it."""
+    open_here = [hand.share_url for hand in handscope.hands() if url in (hand.url, hand.asked_url) and not hand.simulated]
+    return handscope.open(next(iter(open_here), url), **options)
 
 
 class Handscope(Robot):
@@ -76,15 +89,13 @@ class Handscope(Robot):
     def connect(self, calibrate: bool = True) -> None:
         if self._hand is not None:
             raise handscope.HandscopeError(f"{self} is connected already")
-        hand = handscope.open(self.config.url, hz=self.config.hz, side=self.config.side)
-        try:
+        with contextlib.ExitStack() as opened:
+            hand = opened.enter_context(open_shared(self.config.url, hz=self.config.hz, side=self.config.side))
             with hand.states() as states:
                 for state in states:
                     if all(tip.normal_n is not None for tip in state.touch.values()) or state.t_s > 3:
                         break
-        except BaseException:
-            hand.close()
-            raise
+            opened.pop_all()
         self._hand = hand
 
     def calibrate(self) -> None:
@@ -115,6 +126,8 @@ class Handscope(Robot):
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
         """Sends targets to be followed; gives them as they were sent, within 0 to 1."""
         hand = self._connected()
+        if self.config.watch:
+            return action
         if not self.config.arm:
             raise handscope.NotArmed("nothing was moved: when nothing is in the way of the hand, add --robot.arm=true")
         if not self._is_armed:
@@ -129,5 +142,6 @@ class Handscope(Robot):
         """Stops the hand, and ends its program."""
         hand = self._connected()
         self._hand, self._is_armed = None, False
-        with contextlib.closing(hand):
+        with contextlib.ExitStack() as ends:
+            ends.callback(hand.close)
             self._armed.close()

@@ -1,4 +1,5 @@
-"""A second hand as a LeRobot teleoperator: what its joints do, another robot follows. It is only read."""
+"""A hand as a LeRobot teleoperator, which is only read: what its joints do, another robot follows; or what it is told, is the
+action of the same hand."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ from typing import Any
 import handscope
 from lerobot.teleoperators import Teleoperator, TeleoperatorConfig
 
+TARGETS_HZ = 30.0
 JOINTS = dict(zip(handscope.JOINTS, ("Pinky", "Ring", "Middle", "Index", "ThumbBend", "ThumbRotation")))
 
 
@@ -18,6 +20,9 @@ class HandscopeTeleoperatorConfig(TeleoperatorConfig):
 
     url: str = "sim:?scenario=grasp"
     """The hand, as `handscope help hands` has it; the built-in one that grasps by itself, if none is named."""
+    targets: bool = False
+    """Lead by what the hand is told, in place of where its joints are. One hand is enough then: the window, a gamepad or a stream
+    moves it, and the robot has the same URL and `--robot.watch=true`."""
     side: str = "right"
     """Side of the hand that follows, after which its joints are named."""
 
@@ -54,7 +59,11 @@ class HandscopeTeleoperator(Teleoperator):
     def connect(self, calibrate: bool = True) -> None:
         if self._hand is not None:
             raise handscope.HandscopeError(f"{self} is connected already")
-        self._hand = handscope.open(self.config.url)
+        url = self.config.url
+        open_here = [hand.share_url for hand in handscope.hands() if url in (hand.url, hand.asked_url) and not hand.simulated]
+        self._hand = handscope.open(next(iter(open_here), url))
+        if self.config.targets:
+            self._hand.rate(100, TARGETS_HZ)
         self._led = {}
 
     def calibrate(self) -> None:
@@ -64,10 +73,14 @@ class HandscopeTeleoperator(Teleoperator):
         """The hand keeps its own settings."""
 
     def get_action(self) -> dict[str, Any]:
-        """Where the joints of the leading hand are: 0 bent to 1 open. One that reads outside its range leads to where it was last."""
+        """Where the joints of the leading hand are, or what it is told: 0 bent to 1 open. One that reads outside its range leads
+        to where it was last, and one that was told nothing to where it is."""
         if self._hand is None:
             raise handscope.HandscopeError(f"{self} is not connected")
-        for joint, angle in self._hand.state.angle.items():
+        state = self._hand.state
+        for joint, angle in state.angle.items():
+            if self.config.targets and state.target[joint] is not None:
+                angle = state.target[joint]
             if angle is not None:
                 self._led[self._prefix + JOINTS[joint]] = angle / 1000
             elif self._prefix + JOINTS[joint] not in self._led:
