@@ -85,6 +85,28 @@ class Robots(unittest.TestCase):
     def robot(self, **options):
         return self.robots.Handscope(self.robots.HandscopeConfig(**options))
 
+    def test_a_picture_of_each_camera_is_observed(self):
+        robot = self.robot(cameras={"front": CameraConfig(), "wrist": CameraConfig(width=2)})
+        self.assertEqual(robot.observation_features["front"], (3, 4, 3))
+        self.assertEqual(robot.observation_features["wrist"], (3, 2, 3))
+        self.assertFalse(robot.is_connected)
+        robot.connect()
+        self.assertTrue(robot.is_connected)
+        seen = robot.get_observation()
+        self.assertEqual(list(seen), list(robot.observation_features))
+        self.assertEqual((len(seen["wrist"]), len(seen["wrist"][0])), (3, 2))
+        self.assertEqual(seen["kRightHandIndex"], 1.0)
+        robot.disconnect()
+        self.assertEqual([camera.is_connected for camera in robot.cameras.values()], [False, False])
+        self.assertEqual(handscope.hands(), [])
+
+    def test_a_camera_that_is_not_there_leaves_nothing_open(self):
+        robot = self.robot(cameras={"front": CameraConfig(), "wrist": CameraConfig(fails=True)})
+        with self.assertRaises(ConnectionError):
+            robot.connect()
+        self.assertFalse(robot.cameras["front"].is_connected)
+        self.assertEqual((robot.is_connected, handscope.hands()), (False, []))
+
     def test_one_hand_that_another_program_moves_leads_and_is_recorded(self):
         again(self.led_by_targets)
 

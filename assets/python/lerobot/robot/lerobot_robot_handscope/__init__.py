@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import contextlib
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import handscope
+from lerobot.cameras import CameraConfig, make_cameras_from_configs
 from lerobot.robots import Robot, RobotConfig
 
 JOINTS = dict(zip(handscope.JOINTS, ("Pinky", "Ring", "Middle", "Index", "ThumbBend", "ThumbRotation")))
@@ -35,6 +36,8 @@ class HandscopeConfig(RobotConfig):
     """Another program moves the hand: the window, a gamepad, a stream. Actions are recorded, and not sent."""
     hz: float = 100.0
     """States that are read a second."""
+    cameras: dict[str, CameraConfig] = field(default_factory=dict)
+    """Cameras of LeRobot, by the names that their pictures have."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -57,8 +60,7 @@ class Handscope(Robot):
     def __init__(self, config: HandscopeConfig) -> None:
         super().__init__(config)
         self.config = config
-        self.cameras: dict[str, Any] = {}
-        """None; LeRobot counts them."""
+        self.cameras: dict[str, Any] = make_cameras_from_configs(config.cameras)
         self._prefix = f"k{config.side.capitalize()}Hand"
         self._hand: handscope.Hand | None = None
         self._armed = contextlib.ExitStack()
@@ -68,11 +70,12 @@ class Handscope(Robot):
         return self._prefix + JOINTS[name]
 
     @property
-    def observation_features(self) -> dict[str, type]:
+    def observation_features(self) -> dict[str, Any]:
         tips = [self._prefix + finger for finger in FINGERS.values()]
         joints = list(self.action_features)
         touch = [tip + what for what in ("Normal", "Tangential") for tip in tips]
-        return {name: float for name in [*joints, *(joint + "Force" for joint in joints), *touch]}
+        numbers = {name: float for name in [*joints, *(joint + "Force" for joint in joints), *touch]}
+        return {**numbers, **{name: (camera.height, camera.width, 3) for name, camera in self.cameras.items()}}
 
     @property
     def action_features(self) -> dict[str, type]:
@@ -80,7 +83,7 @@ class Handscope(Robot):
 
     @property
     def is_connected(self) -> bool:
-        return self._hand is not None
+        return self._hand is not None and all(camera.is_connected for camera in self.cameras.values())
 
     @property
     def is_calibrated(self) -> bool:
@@ -95,6 +98,10 @@ class Handscope(Robot):
                 for state in states:
                     if all(tip.normal_n is not None for tip in state.touch.values()) or state.t_s > 3:
                         break
+            for camera in self.cameras.values():
+                camera.connect()
+                opened.callback(camera.disconnect)
+            # All are there: none is closed again.
             opened.pop_all()
         self._hand = hand
 
@@ -110,9 +117,9 @@ class Handscope(Robot):
         return self._hand
 
     def get_observation(self) -> dict[str, Any]:
-        """The newest reading; what is not known is NaN."""
+        """The newest reading, and the newest picture of each camera; what is not known is NaN."""
         state = self._connected().state
-        seen: dict[str, float] = {}
+        seen: dict[str, Any] = {}
         for joint in handscope.JOINTS:
             angle, force = state.angle[joint], state.force_g[joint]
             seen[self._joint(joint)] = math.nan if angle is None else angle / 1000
@@ -121,6 +128,9 @@ class Handscope(Robot):
             tip = state.touch[finger]
             seen[f"{self._prefix}{name}Normal"] = math.nan if tip.normal_n is None else tip.normal_n
             seen[f"{self._prefix}{name}Tangential"] = math.nan if tip.tangential_n is None else tip.tangential_n
+        for name, camera in self.cameras.items():
+            # Older versions of LeRobot have no other way.
+            seen[name] = getattr(camera, "read_latest", camera.async_read)()
         return {name: seen[name] for name in self.observation_features}
 
     def send_action(self, action: dict[str, Any]) -> dict[str, Any]:
@@ -139,9 +149,11 @@ class Handscope(Robot):
         return {self._joint(joint): sent.get(joint, wanted[joint]) for joint in handscope.JOINTS}
 
     def disconnect(self) -> None:
-        """Stops the hand, and ends its program."""
+        """Stops the hand, and ends its program and the cameras."""
         hand = self._connected()
         self._hand, self._is_armed = None, False
         with contextlib.ExitStack() as ends:
+            for camera in self.cameras.values():
+                ends.callback(camera.disconnect)
             ends.callback(hand.close)
             self._armed.close()
