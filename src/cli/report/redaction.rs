@@ -3,7 +3,6 @@
 
 use crate::share::fleet;
 use directories::UserDirs;
-use std::path::PathBuf;
 
 /// Stand-ins of the home folder, the user and the computer.
 pub(super) const HOME: &str = "~";
@@ -12,7 +11,7 @@ pub(super) const COMPUTER: &str = "COMPUTER";
 /// Shorter names are initials that occur by chance.
 const NAME_LEN_MIN: usize = 2;
 
-/// The texts to replace, each with its stand-in.
+/// The texts to replace, each with its stand-in, the longest first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Redaction(Vec<(String, &'static str)>);
 
@@ -21,7 +20,8 @@ impl Redaction {
     pub(super) fn of_this_user() -> Self {
         let home = UserDirs::new().map(|user| user.home_dir().to_owned());
         let real = home.as_ref().and_then(|home| home.canonicalize().ok());
-        let homes = home.iter().chain(&real).map(home_text).collect();
+        let homes = home.iter().chain(&real);
+        let homes = homes.map(|home| home.display().to_string()).collect();
         let host = fleet::host();
         // A full name contains that of the network.
         let short = host.split('.').next().unwrap_or_default().to_owned();
@@ -37,7 +37,10 @@ impl Redaction {
         let names = names.filter(|(text, _)| text.len() >= NAME_LEN_MIN);
         // The root of the file system is part of every path.
         let homes = homes.filter(|(text, _)| text.len() > 1);
-        Self(homes.chain(names).collect())
+        let mut all: Vec<(String, &str)> = homes.chain(names).collect();
+        // A name may be part of a longer one, such as a first name.
+        all.sort_by_key(|(text, _)| std::cmp::Reverse(text.len()));
+        Self(all)
     }
 
     /// The text without them, where they stand as words of their own, in any case of letters.
@@ -45,10 +48,6 @@ impl Redaction {
         let replaced = |text: String, (word, by): &(String, &str)| replace(&text, word, by);
         self.0.iter().fold(text.to_owned(), replaced)
     }
-}
-
-fn home_text(home: &PathBuf) -> String {
-    home.display().to_string()
 }
 
 /// Names of the user: of the account that runs the program, and as the environment has it.
@@ -105,7 +104,7 @@ mod tests {
             ("/home/alice2/rec", "/home/alice2/rec"),
             ("/media/alice/disk", "/media/USER/disk"),
             (r"C:\\Users\\Alice\\rec", r"C:\\Users\\USER\\rec"),
-            ("by ALICE_2 of Alice Liddell", "by USER_2 of USER Liddell"),
+            ("by ALICE_2 of Alice Liddell", "by USER_2 of USER"),
             ("malice alices", "malice alices"),
             ("held by x on lab7", "held by x on COMPUTER"),
             ("lab7.example.org lab72", "COMPUTER lab72"),
