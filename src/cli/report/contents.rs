@@ -4,7 +4,6 @@ use crate::app::env::day_folder;
 use crate::app::files::settings_file;
 use crate::checkup::kept;
 use crate::cli::doctor::diagnose;
-use crate::cli::out::failure::FailureKind;
 use crate::cli::report::recorded::{self, HandNow};
 use crate::cli::report::redaction::Redaction;
 use crate::cli::session::PORT_RESTS;
@@ -14,7 +13,6 @@ use crate::motion::checkup::CheckupFiles;
 use crate::record::export::{Destination, ExportSource, cut};
 use crate::record::file::RecordingFile;
 use crate::record::file::reader::TimeRange;
-use crate::shell::interrupt;
 use crate::store::{calendar, on_thread, read_text};
 use crate::transport::Endpoint;
 use anyhow::Context as _;
@@ -88,7 +86,6 @@ impl Contents {
     async fn examine(&mut self) -> anyhow::Result<bool> {
         let length = self.length.min(DOCTOR_DURATION_MAX);
         let diagnosed = diagnose(&self.hand, length).await?;
-        not_interrupted()?;
         let about = match diagnosed.wrong {
             0 => "the connection: nothing is wrong".to_owned(),
             1 => "the connection: one thing is wrong".to_owned(),
@@ -118,7 +115,6 @@ impl Contents {
             }
             false => Err(anyhow::anyhow!("the hand does not answer")),
         };
-        not_interrupted()?;
         let hand = self.hand.clone();
         let recordings = recordings_folder(settings);
         let newest = on_thread(move || {
@@ -271,14 +267,6 @@ impl Contents {
         }
         Ok(zip.finish()?.into_inner())
     }
-}
-
-fn not_interrupted() -> anyhow::Result<()> {
-    if interrupt::came() {
-        let words = "ended before the report was complete; nothing was written";
-        return Err(FailureKind::Interrupted.error(words));
-    }
-    Ok(())
 }
 
 /// Folder of the recordings, as the window has it.

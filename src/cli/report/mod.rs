@@ -10,6 +10,7 @@ use crate::cli::out::file::{nothing_at, write_file};
 use crate::cli::parse::seconds;
 use crate::cli::report::contents::Contents;
 use crate::cli::report::redaction::{COMPUTER, HOME, USER};
+use crate::shell::interrupt::Interrupt;
 use crate::transport::Endpoint;
 use clap::Args;
 use serde_json::json;
@@ -37,7 +38,15 @@ pub(crate) async fn run(out: &mut Out, args: &ReportArgs) -> anyhow::Result<()> 
     if let Some(path) = &args.out {
         may_be_written(path)?;
     }
-    let contents = Contents::collect(&args.hand, args.length).await?;
+    let mut interrupt = Interrupt::listen()?;
+    let contents = tokio::select! {
+        biased;
+        () = interrupt.wished() => {
+            let words = "ended before the report was complete; nothing was written";
+            return Err(FailureKind::Interrupted.error(words));
+        }
+        contents = Contents::collect(&args.hand, args.length) => contents?,
+    };
     out.result(args.json, &listed(args, &contents), lines(&contents))?;
     // A user sees the contents before the file exists.
     out.shown()?;

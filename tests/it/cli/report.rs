@@ -1,17 +1,20 @@
 //! The file for support: what is in it, and whom it does not name.
 
-use crate::setup::process::{Ended, handscope, listen, sim_on_link};
+use crate::setup::process::{Ended, handscope, listen, sim_on_link, start};
 use crate::setup::recorded::three;
 use handscope::record::export::{Destination, ExportSource, cut};
 use handscope::record::file::RecordingFile;
 use handscope::record::file::reader::TimeRange;
 use handscope::transport::Endpoint;
 use mcap::MessageStream;
+use nix::sys::signal::Signal;
 use serde_json::Value;
 use std::fs::{self, File};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::thread::sleep;
+use std::time::Duration;
 use zip::ZipArchive;
 
 const CHECKUP: &str =
@@ -257,4 +260,27 @@ fn without_a_file_nothing_is_written_and_a_silent_hand_is_reported_too() {
     ]);
     assert_eq!((ended.code, ended.err.lines().count()), (Some(1), 1));
     assert!(ended.err.contains("there is no folder"), "{}", ended.err);
+}
+
+#[test]
+fn ctrl_c_ends_a_report_at_any_time_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    // The connection is examined for five seconds, then the hand is recorded.
+    for after_ms in [800, 7500] {
+        let out = folder.path().join("never.zip");
+        let args = [
+            "report", "--hand", "sim:", "--for", "600", "--json", "--out",
+        ];
+        let report = start(&[&args[..], &[out.to_str().unwrap()]].concat());
+        sleep(Duration::from_millis(after_ms));
+        report.signal(Signal::SIGINT);
+        let ended = report.end();
+        assert_eq!((ended.code, ended.out.as_str()), (Some(1), ""));
+        assert!(
+            ended.err.contains("\"kind\":\"interrupted\""),
+            "{}",
+            ended.err
+        );
+        assert!(!out.exists());
+    }
 }
