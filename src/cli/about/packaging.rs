@@ -63,8 +63,11 @@ fn offering(command: Command, helped: &[&'static str]) -> Command {
     });
     let name = command.get_name().to_owned();
     command.mut_args(|arg| {
+        let bending = Dof::ALL.into_iter().filter(|dof| *dof != Dof::ThumbRotate);
         let values = match (name.as_str(), arg.get_id().as_str()) {
             (_, "hand") => HANDS.to_vec(),
+            // The thumb does not press by rotation.
+            ("scale", "joint") => bending.map(Dof::name).collect(),
             (_, "joint") => Dof::ALL.map(Dof::name).to_vec(),
             ("read", "names") => REGISTERS.iter().map(|row| row.name).collect(),
             ("help", "words") => helped.to_vec(),
