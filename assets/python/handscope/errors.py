@@ -7,7 +7,6 @@ from typing import Optional
 
 class HandscopeError(Exception):
     """Something could not be done; the message says what, why, and what to do, and `kind` in one word what it was."""
-
     kind = "failed"
 
     def __init__(self, message: str, kind: Optional[str] = None) -> None:
@@ -18,37 +17,31 @@ class HandscopeError(Exception):
 
 class ProgramNotFound(HandscopeError):
     """There is no program `handscope`, or not one of this package's version."""
-
     kind = "no_program"
 
 
 class NotArmed(HandscopeError):
     """The hand was asked to move outside `with hand.armed():`. Nothing was moved."""
-
     kind = "not_armed"
 
 
 class Disarmed(HandscopeError):
     """The script may no longer move the hand. `kind` says why: `stop`, `fault`, `silent`, `hot`, ..."""
-
     kind = "disarmed"
 
 
 class Taken(Disarmed):
     """Another program moves the hand now, or took it from the script."""
-
     kind = "taken"
 
 
 class LinkLost(Disarmed):
     """The hand does not answer any more. Nothing stops it: it may finish its move."""
-
     kind = "link_lost"
 
 
 class Refused(HandscopeError):
     """The program or the hand did not take what was asked for. `kind` says why: `wrong`, `refused`, `replaced`, ..."""
-
     kind = "refused"
 
 

@@ -19,9 +19,8 @@ from . import program
 from .errors import Disarmed, HandscopeError, LinkLost, NotArmed, Refused, Taken, of
 from .state import JOINTS, Check, Finger, Grip, Gripped, GripResult, Joint, State, Touch, Trial, Tune
 
+# The joints that `close_until` closes, unless others are named.
 CLOSING: tuple[Joint, ...] = ("little", "ring", "middle", "index", "thumb_bend")
-"""The joints that `close_until` closes, unless others are named."""
-
 _WAITING_MAX = 4096
 _FIRST_STATE_S = 5.0
 _WINDOW_OPENS_S = 2.0
@@ -152,12 +151,9 @@ class Hand:
         self._program = _started(url, options + ["--writers"] * writers, weakref.WeakMethod(self._told))
         self._close = weakref.finalize(self, _end, self._program, self._windows)
         ready = self._program.ready or {}
-        self.url: str = ready["hand"]
-        """The hand, as the program spells it."""
-        self.simulated: bool = ready["simulated"]
-        """True for the built-in hand."""
-        self.share_url: str = f"tcp:{ready['tcp']}"
-        """Where other programs of this computer, and other scripts, find the same hand."""
+        self.url: str = ready["hand"]  # As the program spells it.
+        self.simulated: bool = ready["simulated"]  # True for the built-in hand.
+        self.share_url: str = f"tcp:{ready['tcp']}"  # Where other programs of this computer find the same hand.
         self.asked_url = url  # As `open` was given it.
         try:
             self.rate(hz)
@@ -330,8 +326,7 @@ class Hand:
         return self._begin(dict(zip(JOINTS, angles)), speed, force_g).result()
 
     def gesture(self, number: int, *, speed: Count = None, force_g: Count = None) -> GripResult:
-        """Starts a gesture that the hand itself stores, 1 to 40, and waits for rest. `end` is `reached` wherever that is: the
-        hand does not tell where a gesture leads."""
+        """Starts a gesture that the hand itself stores, 1 to 40, and waits for rest: that is `reached`, wherever it is."""
         return self._motion("gesture", speed, force_g, number=_whole("number", number)).result()
 
     def follow(

@@ -18,8 +18,7 @@ from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Seq
 
 from .errors import HandscopeError, ProgramNotFound, of
 
-LINES_VERSION = 1
-"""The version of the lines that is spoken here."""
+LINES_VERSION = 1  # That of the lines that are spoken here.
 
 _log = logging.getLogger("handscope")
 _children: "weakref.WeakSet[subprocess.Popen[str]]" = weakref.WeakSet()
@@ -47,10 +46,8 @@ class Ran(NamedTuple):
     """A command that was run to its end."""
 
     lines: List[str]
-    why: Optional[str]
-    """Why it failed, if it did."""
-    did_nothing: bool
-    """It was used wrongly."""
+    why: Optional[str]  # Why it failed, if it did.
+    did_nothing: bool  # It was used wrongly.
 
 
 def run(arguments: Sequence[str]) -> Ran:
@@ -146,8 +143,7 @@ class Program:
     """One shared hand, in a process of its own. That process stops the hand when this one ends, however it does."""
 
     def __init__(self, arguments: Sequence[str], on_told: Callable[[Mapping[str, Any]], None]) -> None:
-        self.path = find()
-        """Where the program is."""
+        self.path = find()  # Where the program is.
         self._on_told = on_told
         self._ids = itertools.count(1)
         self._lock = threading.Lock()

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from dataclasses import dataclass, fields
-from typing import Any, Dict, List, Literal, Mapping, Optional, Tuple, TypedDict
+from typing import Any, Dict, List, Literal, Mapping, Optional, Tuple, TypedDict, cast
 
 Joint = Literal["little", "ring", "middle", "index", "thumb_bend", "thumb_rotate"]
 Finger = Literal["little", "ring", "middle", "index", "thumb"]
@@ -18,15 +17,20 @@ JOINTS: Tuple[Joint, ...] = ("little", "ring", "middle", "index", "thumb_bend", 
 FINGERS: Tuple[Finger, ...] = ("little", "ring", "middle", "index", "thumb")
 """The five fingers in the hand's own order."""
 
-Joints = Dict[Joint, Optional[int]]
-"""A value of each joint, by its name."""
-
-# Python 3.9 cannot make them.
-_SLOTS: Dict[str, bool] = {"slots": True} if sys.version_info >= (3, 10) else {}
+Joints = Dict[Joint, Optional[int]]  # A value of each joint, by its name.
 
 
-@dataclass(frozen=True, **_SLOTS)
-class Touch:
+class _Value:
+    """A value of `__slots__`, which a frozen dataclass cannot be copied as without this."""
+
+    __slots__ = ()
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return type(self), tuple(getattr(self, one.name) for one in fields(cast(Any, self)))
+
+
+@dataclass(frozen=True)
+class Touch(_Value):
     """One fingertip."""
 
     normal_n: Optional[float]
@@ -39,15 +43,17 @@ class Touch:
     """Counts of the proximity channel."""
     raw: Optional[List[int]]
     """The eight channels."""
+    __slots__ = tuple(__annotations__)
 
 
-@dataclass(frozen=True, **_SLOTS)
-class Grip:
+@dataclass(frozen=True)
+class Grip(_Value):
     """What the hand does to an object."""
 
     state: GripState
     fingers: Mapping[Finger, GripState]
     """The same of each finger."""
+    __slots__ = tuple(__annotations__)
 
     @property
     def holding(self) -> bool:
@@ -64,12 +70,13 @@ class Grip:
         return cls(told["state"], {one["finger"]: one["state"] for one in told["fingers"]})
 
 
-@dataclass(frozen=True, **_SLOTS)
+@dataclass(frozen=True)
 class GripResult(Grip):
     """What a motion came to."""
 
     end: MoveEnd
     """`reached`; `stopped`: at rest elsewhere, by an object or a force threshold; `late`: it took too long, and was stopped."""
+    __slots__ = tuple(__annotations__)
 
     @classmethod
     def _done(cls, told: Mapping[str, Any]) -> "GripResult":
@@ -77,8 +84,8 @@ class GripResult(Grip):
         return cls(grip.state, grip.fingers, told["end"])
 
 
-@dataclass(frozen=True, repr=False, **_SLOTS)
-class State:
+@dataclass(frozen=True, repr=False)
+class State(_Value):
     """One reading of the hand."""
 
     t_s: float
@@ -112,6 +119,7 @@ class State:
     """All that the program tells, as `handscope help json` has it under `watch`."""
     received: float
     """When it came, by `time.monotonic()`."""
+    __slots__ = tuple(__annotations__)
 
     @property
     def age_s(self) -> float:
@@ -143,27 +151,35 @@ class State:
         )
 
 
-# What commands tell, with what a script uses most of it; `handscope help json` has all.
+# What commands tell, as `handscope help json` has it.
 GripEnd = Literal["held", "reached", "stopped", "not_opened", "late", "person", "taken_over", "fault", "link_lost", "disarmed"]
 Light = Literal["fine", "watch", "act", "unknown"]
 Whole = Optional[int]
 Figure = Optional[float]
 Words = Optional[str]
+Told = Mapping[str, Any]
 
 TrialJoint = TypedDict("TrialJoint", {
-    "joint": Joint, "contact_angle": Figure, "peak_force_g": Figure, "overshoot_g": Figure, "steady_force_g": Figure,
-    "relaxation_g": Figure, "dead_time_s": Figure, "time_to_contact_s": Figure, "time_to_stop_s": Figure,
-    "settle_time_s": Figure, "slip_count": Whole, "peak_current_ma": float, "end_status": str})  # fmt: skip
+    "joint": Joint, "contact_angle": Figure, "contact_at_start": bool, "clipped": Optional[bool], "peak_force_g": Figure,
+    "peak_doubt": Words, "peak_missed_g": Figure, "overshoot_g": Figure, "steady_force_g": Figure, "rest_force_g": float,
+    "relaxation_g": Figure, "noise_g": float, "dead_time_s": Figure, "time_to_touch_s": Figure, "time_to_contact_s": Figure,
+    "time_to_stop_s": Figure, "settle_time_s": Figure, "slip_count": Whole, "peak_current_ma": float, "rate_hz": float,
+    "temperature_rise_c": float, "longest_gap_s": float, "end_status": str})  # fmt: skip
 Trial = TypedDict("Trial", {
-    "number": int, "kind": str, "repeat": Whole, "speed": int, "force_threshold_g": int, "aborted": Words,
-    "joints": List[TrialJoint], "stall_s": Figure})  # fmt: skip
+    "number": int, "kind": str, "repeat": Whole, "speed": int, "force_threshold_g": int, "aborted": Words, "stall_s": Figure,
+    "samples": Words, "rows": int, "rows_lost": int, "joints": List[TrialJoint]})  # fmt: skip
 Tune = TypedDict("Tune", {
-    "limit_g": int, "hold_g": int, "result": Words, "why": Words, "speed": Whole, "force_threshold_g": Whole,
-    "contact_angle": Figure, "close_s": Figure, "peak_bound_g": Figure, "confidence": Figure, "coverage": Figure,
-    "distribution_free": bool, "closes": Whole, "closes_here": Whole, "trials": int, "aborted": Words})  # fmt: skip
+    "hand": str, "folder": Words, "limit_g": int, "hold_g": int, "result": Words, "why": Words, "speed": Whole, "closes": Whole,
+    "force_threshold_g": Whole, "approach": Optional[Told], "contact_angle": Figure, "close_s": Figure, "peak_bound_g": Figure,
+    "peak_bound_n": Figure, "confidence": Figure, "coverage": Figure, "distribution_free": bool, "closes_here": Whole,
+    "trials": int, "peaks_g": Optional[List[float]], "joints": Optional[List[Told]], "tried": List[Told], "stop": Optional[Told],
+    "compared": Optional[List[Told]], "untold": List[str], "aborted": Words})  # fmt: skip
 Checked = TypedDict("Checked", {
-    "what": str, "of": str, "measured": Figure, "unit": str, "good": List[Figure], "light": Light, "advice": Words})  # fmt: skip
+    "what": str, "of": str, "measured": Figure, "unit": str, "good": List[Figure], "light": Light, "advice": Words,
+    "first": Figure, "last": Figure, "past": List[Told], "drift": Optional[Told], "channels": List[int]})  # fmt: skip
 Check = TypedDict("Check", {
-    "at": str, "complete": bool, "aborted": Words, "earlier": int, "remarks": List[str], "checks": List[Checked]})  # fmt: skip
+    "hand": str, "at": str, "complete": bool, "aborted": Words, "earlier": int, "kept": bool, "remarks": List[str],
+    "usage": Optional[Told], "checks": List[Checked]})  # fmt: skip
 Gripped = TypedDict("Gripped", {
-    "end": GripEnd, "state": GripState, "asked_mm": float, "gap_mm": Figure, "size_mm": Figure, "size_of": Words})  # fmt: skip
+    "hand": str, "kind": str, "end": GripEnd, "state": GripState, "asked_mm": float, "gap_mm": Figure, "size_mm": Figure,
+    "size_by": Words, "size_of": Words, "stop": Optional[Told]})  # fmt: skip
