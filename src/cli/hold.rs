@@ -7,6 +7,7 @@ use crate::cli::grasp::{
     self, AskedClose, ChosenGrasp, GraspPlace, Trust, grasp_place, note, put_down,
 };
 use crate::cli::grip::gap;
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::parse::{hand, seconds};
 use crate::cli::session;
@@ -135,7 +136,7 @@ pub(crate) async fn run(out: &mut Out, args: &HoldArgs) -> anyhow::Result<()> {
     let newtons = newtons(args.own_hand())?;
     let mut asked = AskedHold::of(args, newtons)?;
     if !args.arm {
-        bail!("{}", asked.unarmed(args));
+        return Err(FailureKind::NotArmed.error(asked.unarmed(args)));
     }
     if asked.is_unconfirmed() {
         can_answer(args.consent).map_err(|nobody| anyhow!("nothing was moved: {nobody}"))?;

@@ -3,6 +3,7 @@
 
 use crate::app::files::settings_file;
 use crate::checkup::newtons_file;
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::parse::{dof, hand, number};
 use crate::cli::trial::drive::{ArmedHand, by_user};
@@ -76,12 +77,12 @@ pub(crate) async fn run(out: &mut Out, args: &ScaleArgs) -> anyhow::Result<()> {
     let file = settings.and_then(|settings| newtons_file::file_of(&settings, &args.hand));
     match args.joint {
         Some(joint) if args.arm => measure(out, args, joint, file.as_deref()).await,
-        Some(joint) if !args.forget => bail!(
+        Some(joint) if !args.forget => Err(FailureKind::NotArmed.error(format!(
             "nothing was moved: this presses {} of the hand at {} on a kitchen scale with up to {} g; when nothing but the scale is in the way, add --arm",
             joint.name(),
             args.hand,
             args.limit.get()
-        ),
+        ))),
         _ if args.hand.is_sim() => Err(WrongUsage::error(
             "the built-in hand differs each time: nothing is stored for it; name the URL of a hand",
         )),

@@ -39,6 +39,24 @@ fn a_failed_command_tells_its_kind_with_json_and_the_same_sentence_without() {
         (&["check", "--hand", "sim:"], 1, "not_armed"),
         (&["grip", "--hand", "sim:", "--gap", "30"], 1, "not_armed"),
         (
+            &[
+                "hold",
+                "--hand",
+                "sim:",
+                "--at-least",
+                "150",
+                "--at-most",
+                "400",
+            ],
+            1,
+            "not_armed",
+        ),
+        (
+            &["scale", "--hand", "tcp:127.0.0.1:9", "--joint", "index"],
+            1,
+            "not_armed",
+        ),
+        (
             &["export", &missing, "--csv", "--fps", "3", "--out", "-"],
             2,
             "wrong_usage",
