@@ -4,6 +4,7 @@ use crate::app::settings::Theme;
 use crate::draw::figure::camera::{Camera, REACH, Turn};
 use crate::draw::figure::light::Light;
 use crate::draw::figure::render::{Model, Sketch};
+use crate::draw::figure::shape;
 use crate::hand::kinematics::{Segment, Side};
 use crate::hand::{Dof, Finger, PerDof, PerFinger};
 use crate::ui::hand::finger_drag::FingerDrag;
@@ -75,6 +76,9 @@ pub(crate) struct DrawSettings {
     /// Points per pixel: the width of soft edges.
     pub(crate) feather: f32,
 }
+
+/// Depth below the pad of the point that stands for a fingertip.
+const INSIDE_MM: f32 = 7.0;
 
 /// Position and content of a picture, and the joints that a drag may move.
 #[derive(Debug, Clone, Copy)]
@@ -225,8 +229,11 @@ impl HandView {
             seen.is_some_and(|seen| seen.segment.finger() == Some(finger))
         };
         let along = |finger: Finger| {
-            let (tip, base) = (pose.tip(finger), base(finger));
-            let joint = pose.frame(Segment::tip(finger)).translation;
+            let end = pose.frame(Segment::tip(finger));
+            let [out, _] = shape::pad_ways(finger);
+            // The middle of the pad may lie at the edge of what is seen of its finger.
+            let tip = pose.tip(finger) - end.matrix3 * out * INSIDE_MM;
+            let (joint, base) = (end.translation, base(finger));
             let along = [
                 tip,
                 tip.lerp(joint, 0.5),
