@@ -50,29 +50,27 @@ impl HeldPlace {
             let [out, _] = pad_ways(finger);
             pose.frame(Segment::tip(finger)).matrix3 * out
         });
-        let mean = |all: [Vec3; 4]| all.into_iter().sum::<Vec3>() / 4.0;
-        let mut middle = mean(pads) + mean(outs).normalize_or_zero() * radius;
-        // A small ball lies between the outer fingers.
-        let reach = if shape == Held::Ball {
-            radius
-        } else {
-            f32::MAX
+        let [little, _, _, index] = pads;
+        // A ball that is narrower than the hand lies where thumb and index take it.
+        let is_small = shape == Held::Ball && 2.0 * radius < (little.x - index.x).abs();
+        let touches = [!is_small, !is_small, true, true];
+        let mean = |all: [Vec3; 4]| {
+            let all = all.into_iter().zip(touches).filter(|(_, touches)| *touches);
+            let add = |(sum, count), (at, _)| (sum + at, count + 1.0);
+            let (sum, count) = all.fold((Vec3::ZERO, 0.0_f32), add);
+            sum / count
         };
-        let touches = pads.map(|pad| (pad.x - middle.x).abs() < reach);
+        let mut middle = mean(pads) + mean(outs).normalize_or_zero() * radius;
         for _ in 0..FIT_STEPS {
             // Each finger that touches it wants its pad on the surface.
-            let wanted = pads.into_iter().map(|pad| {
+            middle = mean(pads.map(|pad| {
                 let towards = match shape {
                     Held::Ball => middle - pad,
                     Held::Cup | Held::Tube => (middle - pad) * (Vec3::Y + Vec3::Z),
                     Held::Block => Vec3::NEG_Z,
                 };
                 pad + towards.normalize_or_zero() * radius
-            });
-            let wanted = wanted.zip(touches).filter(|(_, touches)| *touches);
-            let add = |(sum, count), (at, _)| (sum + at, count + 1.0);
-            let (sum, count) = wanted.fold((Vec3::ZERO, 0.0_f32), add);
-            middle = sum / count.max(1.0);
+            }));
         }
         let scale = Vec3::splat(thickness_mm / shape.thickness_mm());
         let frame = Affine3::from_scale_rotation_translation(scale, Quat::IDENTITY, middle);
