@@ -5,7 +5,6 @@ mod args;
 mod check;
 mod consent;
 mod doctor;
-mod grasp;
 mod grip;
 mod guard;
 mod hold;

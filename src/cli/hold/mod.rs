@@ -1,12 +1,14 @@
 //! `hold`: keeps an object between two forces. It moves the hand, so it requires `--arm`.
 
+mod grasp;
+
 use crate::app::files::{pose_file, settings_file};
 use crate::checkup::newtons_file;
 use crate::cli::consent::{ConsentFrom, can_answer};
-use crate::cli::grasp::{
-    self, AskedClose, ChosenGrasp, GraspPlace, Trust, grasp_place, note, put_down,
-};
 use crate::cli::grip::gap;
+use crate::cli::hold::grasp::{
+    AskedClose, ChosenGrasp, GraspPlace, Trust, grasp_place, note, put_down,
+};
 use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::parse::{hand, seconds};
