@@ -101,7 +101,7 @@ fn a_pulled_object_is_held_tighter_and_each_time_is_a_mark() {
     assert!(bench.state().hand().connection.status.armed.is_none());
     let pressed = bench.hand(|hand, _| hand.true_loads());
     assert!(pressed.as_array().iter().all(|g| *g > 50.0), "{pressed:?}");
-    assert!(bench.shows("Hold ended: the hand keeps what it holds"));
+    assert!(bench.shows("Hold ended: the hand keeps its position"));
 }
 
 #[test]

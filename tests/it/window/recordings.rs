@@ -468,6 +468,11 @@ fn an_empty_place_says_what_comes_there_and_leads_to_a_hand() {
     settle(&mut bench, |bench| bench.state().recordings.scans > 0);
     bench.run(60);
     assert!(bench.shows("No recordings yet"));
+    bench.act(Action::Disconnect);
+    settle(&mut bench, |bench| {
+        bench.state().hand().connection.endpoint.is_none()
+    });
+    bench.run(60);
     bench.click_button("Connect a hand");
     bench.run(60);
     assert!(
@@ -475,6 +480,17 @@ fn an_empty_place_says_what_comes_there_and_leads_to_a_hand() {
         "{:?}",
         bench.texts()
     );
+}
+
+#[test]
+fn an_empty_place_offers_to_record_the_hand_that_is_connected() {
+    let mut bench = Bench::keeping(SimConfig::default());
+    bench.show(View::Recordings);
+    settle(&mut bench, |bench| bench.state().recordings.scans > 0);
+    bench.run(60);
+    assert!(bench.state().hand().recording.is_none());
+    bench.click_button("Record this hand");
+    settle(&mut bench, |bench| bench.state().hand().recording.is_some());
 }
 
 #[test]
