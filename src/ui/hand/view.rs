@@ -12,6 +12,7 @@ use crate::ui::hand::scene::HandPicture;
 use crate::ui::theme::Palette;
 use egui::{CursorIcon, Mesh, Pos2, Rect, Response, Shape, Ui, emath};
 use glam::Vec3;
+use std::cell::OnceCell;
 use std::sync::Arc;
 
 /// Default viewpoint: three quarters from the thumb's side and from above, where a grasp is recognised as one.
@@ -48,8 +49,8 @@ pub(crate) struct HandView {
     /// Share of the way from the default viewpoint to the frontal one.
     front: f32,
     pub(crate) drawn: Option<(HandPicture, DrawSettings)>,
-    /// Anchor points of the drawn picture.
-    points: Option<HandPoints>,
+    /// Anchor points of the drawn picture, once they are asked for: pictures without labels need none.
+    points: OnceCell<HandPoints>,
     drag: HandDrag,
     pub(super) sketch: Sketch,
     pub(super) mesh: Arc<Mesh>,
@@ -201,7 +202,7 @@ impl HandView {
             .add(Shape::Mesh(Arc::clone(&self.mesh)));
     }
 
-    /// Draws the picture into the mesh, if it is not there yet, and finds its anchor points.
+    /// Draws the picture into the mesh, if it is not there yet.
     pub(super) fn update(&mut self, picture: &HandPicture, setting: DrawSettings) {
         if self.drawn == Some((*picture, setting)) {
             return;
@@ -209,7 +210,7 @@ impl HandView {
         let mesh = Arc::make_mut(&mut self.mesh);
         draw(&mut self.sketch, picture, &setting, mesh);
         self.drawn = Some((*picture, setting));
-        self.points = Some(self.find_points(picture, &setting));
+        self.points = OnceCell::new();
     }
 
     fn find_points(&self, picture: &HandPicture, setting: &DrawSettings) -> HandPoints {
@@ -252,8 +253,10 @@ impl HandView {
     }
 
     /// Anchor points of the last drawn picture; `None` before the first one.
-    pub(crate) const fn points(&self) -> Option<HandPoints> {
-        self.points
+    pub(crate) fn points(&self) -> Option<HandPoints> {
+        let (picture, setting) = self.drawn.as_ref()?;
+        let found = || self.find_points(picture, setting);
+        Some(*self.points.get_or_init(found))
     }
 
     /// Moves the default viewpoint to the frontal one or back, within [`EASE_S`]; at once if animations are off.
