@@ -1,11 +1,11 @@
 //! Check-ups in the window: the running one, its files, and the last result. Measurements and judgements are defined in
 //! [`crate::checkup`]. Draws nothing.
 
-use crate::app::env::running::Running;
 use crate::app::env::{Ctx, Env, day_folder};
+use crate::app::hand::motion_task::MotionTask;
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
-use crate::app::trials::work::{SeriesHand, ends};
+use crate::app::trials::work::SeriesHand;
 use crate::checkup::free_file;
 use crate::checkup::report::{CheckupReport, PAGE_FILE};
 use crate::checkup::run::CheckupView;
@@ -22,7 +22,6 @@ use crate::transport::Endpoint;
 use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
-use tokio::sync::oneshot;
 
 /// User requests concerning check-ups. By sending one, the user confirms that the hand is empty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantNames, strum::IntoStaticStr)]
@@ -76,8 +75,7 @@ pub struct CheckupRun {
     pub epoch: ArmEpoch,
     /// Start of the current step.
     pub since: Moment,
-    end: Option<oneshot::Sender<Abort>>,
-    task: Running<CheckupView, io::Result<ConcludedCheckup>>,
+    task: MotionTask<Abort, CheckupView, io::Result<ConcludedCheckup>>,
 }
 
 impl CheckupRun {
@@ -89,7 +87,6 @@ impl CheckupRun {
         ctx: &Ctx<'_>,
     ) -> Self {
         let clock = ctx.env.clock;
-        let (end, ended) = oneshot::channel();
         let (epoch, link) = (hand.epoch, hand.link);
         let checkup = Checkup::start(epoch, plan);
         let view = checkup.view();
@@ -99,7 +96,7 @@ impl CheckupRun {
             seen: hand.seen,
             clock,
         };
-        let task = Running::start(ctx.env, |steps| async move {
+        let task = MotionTask::start(ctx.env, |steps, ends| async move {
             let wanted = files.clone();
             let prepared = on_thread(move || prepare(&wanted)).await;
             let recording = prepared.and_then(|()| files.record(link.observe(), clock));
@@ -116,7 +113,7 @@ impl CheckupRun {
                 }
                 true
             };
-            let driven = drive(&link, armed, checkup, ends(ended), report).await;
+            let driven = drive(&link, armed, checkup, ends, report).await;
             let ended = EndedCheckup { driven, recording };
             on_thread(move || Ok(files.conclude(ended))).await
         });
@@ -124,7 +121,6 @@ impl CheckupRun {
             view,
             epoch,
             since: ctx.now,
-            end: Some(end),
             task,
         }
     }
@@ -144,11 +140,8 @@ impl CheckupRun {
     }
 
     /// Ends the check-up early. The caller stops the hand, and the task makes sure of it.
-    pub(crate) fn end(&mut self, why: Abort) {
-        if let Some(end) = self.end.take() {
-            // A finished task no longer listens.
-            let _heard = end.send(why);
-        }
+    pub(crate) fn end(&self, why: Abort) {
+        self.task.input(why);
     }
 }
 

@@ -16,9 +16,8 @@ use crate::poses::player::{PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView, Pla
 use crate::poses::reaction::TouchWatch;
 use crate::poses::way::Targets;
 use crate::record::Abort;
-use futures::stream::poll_fn;
+use futures::Stream;
 use std::time::Duration;
-use tokio::sync::mpsc;
 
 /// Settings with which a sequence starts.
 #[derive(Debug, Clone)]
@@ -69,11 +68,10 @@ pub async fn play(
     hand: &LinkHandle,
     armed: Armed,
     start: PlayStart,
-    mut commands: mpsc::Receiver<PlayCommand>,
+    commands: impl Stream<Item = PlayCommand>,
     mut report: impl FnMut(PlayProgress),
 ) -> Ended<PlayEnd> {
     let program = Playing::new(armed.epoch, start, armed.clock.now());
-    let commands = poll_fn(move |context| commands.poll_recv(context));
     let driven = drive(hand, armed, program, commands, |progress| {
         report(progress);
         true

@@ -1,8 +1,7 @@
 //! A hold between two forces with a hand of the window.
 
 use crate::app::env::Env;
-use crate::app::env::running::Running;
-use crate::app::trials::work::ends;
+use crate::app::hand::motion_task::MotionTask;
 use crate::hand::grip::Tightened;
 use crate::hand::hold_forces::HoldForces;
 use crate::hand::{Moment, Setpoints};
@@ -18,8 +17,6 @@ use crate::motion::grasp::seen::{GraspLabel, NoGrasp};
 use crate::motion::hold::{HoldClose, HoldEnd, HoldPhase, HoldView};
 use crate::motion::program::{Ended, Progress};
 use crate::record::Abort;
-use futures::{StreamExt as _, stream};
-use tokio::sync::{mpsc, oneshot};
 
 /// A user action on a hold.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,10 +56,7 @@ pub struct HoldMotion {
     pub end: Option<HoldEnded>,
     /// The grasp that it repeats.
     pub(crate) repeats: Option<Grasp>,
-    ender: Option<oneshot::Sender<Abort>>,
-    /// The user's word that the object stands; one at a time.
-    put_down: mpsc::Sender<()>,
-    task: Option<Running<Progress<GraspView, Tightened>, (HoldEnded, HoldDone)>>,
+    task: MotionTask<GraspInput, Progress<GraspView, Tightened>, (HoldEnded, HoldDone)>,
     done: Option<HoldDone>,
 }
 
@@ -98,18 +92,11 @@ impl HoldMotion {
         let view = HoldView::first(start.hold.forces);
         let program = GraspRun::new(armed.epoch, start, env.clock.now());
         let clock = env.clock;
-        let (ender, ended) = oneshot::channel();
-        let (put_down, words) = mpsc::channel(1);
-        let task = Running::start(env, |steps| async move {
+        let task = MotionTask::start(env, |steps, inputs| async move {
             let report = |progress| {
                 steps.send(progress);
                 true
             };
-            let words = stream::unfold(words, |mut words| async {
-                let () = words.recv().await?;
-                Some((GraspInput::PutDown, words))
-            });
-            let inputs = stream::select(ends(ended).map(GraspInput::Abort), words);
             let driven = drive(&link, armed, program, inputs, report).await;
             let (program, at) = (driven.program, clock.now());
             (driven.end, HoldDone { program, at })
@@ -120,9 +107,7 @@ impl HoldMotion {
             repeats,
             done: None,
             end: None,
-            ender: Some(ender),
-            put_down,
-            task: Some(task),
+            task,
         }
     }
 
@@ -160,24 +145,15 @@ impl HoldMotion {
         self.is_running() && step == Some(ConfirmStep::Release)
     }
 
-    /// Passes on that the object stands. The program ignores it unless it waits for that.
-    pub(crate) fn put_down(&self) {
-        // A closed channel means that it has ended.
-        let _sent = self.put_down.try_send(());
-    }
-
-    /// Ends it early.
-    pub(crate) fn end(&mut self, why: Abort) {
-        if let Some(ender) = self.ender.take() {
-            // A closed channel means that it has ended.
-            let _sent = ender.send(why);
-        }
+    /// Passes an input of the user to the program.
+    pub(crate) fn input(&self, input: GraspInput) {
+        self.task.input(input);
     }
 
     /// Marks that it has lost control of the hand.
     pub(crate) fn leave(&mut self) {
         if self.is_running() {
-            self.end(Abort::TakenOver);
+            self.task.leave();
             self.end = Some(Err(Abort::TakenOver));
         }
     }
@@ -185,11 +161,8 @@ impl HoldMotion {
     /// Applies the progress of its task; none after it lost control of the hand.
     pub(crate) fn news(&mut self) -> HoldNews {
         let mut news = HoldNews::default();
-        let Some(task) = &mut self.task else {
-            return news;
-        };
-        let (steps, end) = task.news();
-        for (at, step) in steps.into_iter().filter(|_| self.end.is_none()) {
+        let (steps, end) = self.task.news();
+        for (at, step) in steps {
             match step {
                 Progress::View(GraspView {
                     hold: view,
@@ -203,7 +176,7 @@ impl HoldMotion {
             }
         }
         if let Some((end, done)) = end {
-            (self.task, self.done, self.confirming) = (None, Some(done), None);
+            (self.done, self.confirming) = (Some(done), None);
             if self.end.is_none() {
                 (self.end, news.end) = (Some(end), Some(end));
             }

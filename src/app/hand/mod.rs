@@ -6,6 +6,7 @@ pub mod grasps;
 pub mod grip;
 pub mod hold;
 pub mod list;
+pub(crate) mod motion_task;
 pub mod mover;
 #[cfg(test)]
 mod news_tests;
@@ -22,9 +23,9 @@ use crate::app::controls::{Controls, HoldKey};
 use crate::app::controls::{HeldOtherwise, JointChange};
 use crate::app::env::Ctx;
 use crate::app::env::Env;
-use crate::app::env::running::Running;
 use crate::app::hand::free_force::HandFreeForce;
 use crate::app::hand::grasps::HandGrasps;
+use crate::app::hand::motion_task::MotionTask;
 use crate::app::hand::newtons::HandNewtons;
 use crate::app::hand::running::SequenceRun;
 use crate::app::hand::running::{AskedSeries, MotionRun, RunningMotion};
@@ -54,13 +55,10 @@ use crate::tasks::Question;
 use crate::transport::Endpoint;
 use crate::trials::TrialPlan;
 use std::time::Duration;
-use tokio::sync::mpsc;
 
 /// Maximum wait for a stopped hand to show rest before its link is closed regardless: the time after which the link itself raises the
 /// alarm, plus a margin.
 pub(crate) const REST_TIMEOUT: Duration = Duration::from_millis(600);
-/// Maximum number of queued commands to a sequence: the user cannot press faster than a task receives them.
-const COMMANDS_MAX: usize = 16;
 
 /// Everything about one hand.
 #[derive(Debug, Default)]
@@ -112,10 +110,7 @@ impl Hand {
             Activity::Series
         } else if let Some(owner) = self.connection.outside_owner() {
             Activity::Following(owner)
-        } else if self.running.sequence().is_some_and(SequenceRun::is_running)
-            || self.running.holds()
-            || self.running.calibrates()
-        {
+        } else if self.running.plays() {
             Activity::Playing
         } else {
             Activity::Idle
@@ -474,15 +469,7 @@ impl Hand {
 
     /// Gives control to the user; whatever moved the hand before loses it.
     pub(crate) fn take_over(&mut self) {
-        if let Some(run) = self.running.sequence_mut() {
-            run.leave();
-        }
-        if let Some(run) = self.running.hold_mut() {
-            run.leave();
-        }
-        if let Some(run) = self.running.scale_mut() {
-            run.leave();
-        }
+        self.running.leave();
         self.connection.take_over();
     }
 
@@ -539,16 +526,14 @@ impl Hand {
             blocks,
             force_limit: Force::MAX,
         };
-        let (commands, wanted) = mpsc::channel(COMMANDS_MAX);
-        let task = Running::start(env, |steps| async move {
-            play::play(&link, armed, start, wanted, |step| steps.send(step)).await
+        let task = MotionTask::start(env, |steps, commands| async move {
+            play::play(&link, armed, start, commands, |step| steps.send(step)).await
         });
         self.running.0 = Some(MotionRun::Sequence(SequenceRun {
             entry,
             view: PlayView::first(now),
             hold: None,
-            commands: Some(commands),
-            task: Some(task),
+            task,
             thresholds,
         }));
         true

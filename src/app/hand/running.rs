@@ -1,8 +1,8 @@
 //! The program that moves a hand of the window: at most one.
 
 use crate::app::checkup::CheckupRun;
-use crate::app::env::running::Running;
 use crate::app::hand::hold::{HoldMotion, HoldNews};
+use crate::app::hand::motion_task::MotionTask;
 use crate::app::hand::scale::ScaleMotion;
 use crate::app::inputs::FollowRun;
 use crate::app::trials::{SeriesPlan, SeriesRun};
@@ -10,6 +10,7 @@ use crate::checkup::CheckupPlan;
 use crate::hand::Moment;
 use crate::hand::grip::GripThresholds;
 use crate::link::Owner;
+use crate::motion::grasp::run::GraspInput;
 use crate::motion::hold::HoldView;
 use crate::motion::play::{PlayCommand, PlayProgress};
 use crate::motion::program::{Ended, Progress};
@@ -17,7 +18,6 @@ use crate::motion::scale::ScaleInput;
 use crate::poses::library::EntryId;
 use crate::poses::player::{PlayEnd, PlayPhase, PlayView};
 use crate::record::Abort;
-use tokio::sync::mpsc;
 
 /// A series that starts once the hand is armed for it.
 #[derive(Debug, Clone, PartialEq)]
@@ -124,6 +124,22 @@ impl RunningMotion {
         }
     }
 
+    /// True while a sequence, a hold or a calibration with a scale runs.
+    pub fn plays(&self) -> bool {
+        let plays = self.sequence().is_some_and(SequenceRun::is_running);
+        plays || self.holds() || self.calibrates()
+    }
+
+    /// Marks that a sequence, a hold or a calibration with a scale has lost control of the hand.
+    pub(crate) fn leave(&mut self) {
+        match &mut self.0 {
+            Some(MotionRun::Sequence(run)) => run.leave(),
+            Some(MotionRun::Hold(run)) => run.leave(),
+            Some(MotionRun::Scale(run)) => run.leave(),
+            _ => {}
+        }
+    }
+
     /// True while a calibration with a scale runs.
     pub fn calibrates(&self) -> bool {
         self.scale().is_some_and(ScaleMotion::is_running)
@@ -155,7 +171,7 @@ impl RunningMotion {
         match &mut self.0 {
             Some(MotionRun::Trials(run)) => run.end(Abort::Person),
             Some(MotionRun::Checkup(run)) => run.end(Abort::Person),
-            Some(MotionRun::Hold(run)) => run.end(Abort::Person),
+            Some(MotionRun::Hold(run)) => run.input(GraspInput::Abort(Abort::Person)),
             Some(MotionRun::Scale(run)) => run.answer(ScaleInput::Abort(Abort::Person)),
             Some(MotionRun::Arming(..) | MotionRun::Sequence(_) | MotionRun::Follow(_)) | None => {}
         }
@@ -175,9 +191,7 @@ pub struct SequenceRun {
     pub view: PlayView,
     /// The hold of the current step; `None` while there is none.
     pub hold: Option<HoldView>,
-    /// `None` once the user moves the hand in another way.
-    pub(crate) commands: Option<mpsc::Sender<PlayCommand>>,
-    pub(crate) task: Option<Running<PlayProgress, Ended<PlayEnd>>>,
+    pub(crate) task: MotionTask<PlayCommand, PlayProgress, Ended<PlayEnd>>,
     /// Thresholds of the grip estimate for each step; empty once the user moves the hand in another way.
     pub(crate) thresholds: Vec<Option<GripThresholds>>,
 }
@@ -209,17 +223,14 @@ impl SequenceRun {
     }
 
     pub(crate) fn command(&self, command: PlayCommand) {
-        if let Some(commands) = &self.commands {
-            // A closed channel means that it has ended.
-            let _taken = commands.try_send(command);
-        }
+        self.task.input(command);
     }
 
     /// Marks that it has lost control of the hand.
     pub(crate) fn leave(&mut self) {
         self.thresholds.clear();
         if self.is_running() {
-            self.commands = None;
+            self.task.leave();
             self.view.phase = PlayPhase::Ended(Err(Abort::TakenOver));
         }
     }
@@ -227,12 +238,8 @@ impl SequenceRun {
     /// Applies the progress of its task; none after it lost control of the hand.
     pub(crate) fn news(&mut self) -> HoldNews {
         let mut news = HoldNews::default();
-        let Some(task) = &mut self.task else {
-            return news;
-        };
-        let (steps, end) = task.news();
-        let moves = self.commands.is_some();
-        for (at, step) in steps.into_iter().filter(|_| moves) {
+        let (steps, end) = self.task.news();
+        for (at, step) in steps {
             match step {
                 Progress::View(view) => {
                     self.view = view.play;
@@ -246,7 +253,6 @@ impl SequenceRun {
             }
         }
         if let Some(end) = end {
-            self.task = None;
             if self.is_running() {
                 self.view.phase = PlayPhase::Ended(end);
             }

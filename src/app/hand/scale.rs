@@ -1,7 +1,7 @@
 //! A calibration of the force of one joint with a kitchen scale, with a hand of the window.
 
 use crate::app::env::Env;
-use crate::app::env::running::Running;
+use crate::app::hand::motion_task::MotionTask;
 use crate::hand::newtons::{Contradiction, ScalePoint};
 use crate::hand::{Dof, Force};
 use crate::link::LinkHandle;
@@ -9,11 +9,6 @@ use crate::motion::drive::Armed;
 use crate::motion::program::{Ended, Progress};
 use crate::motion::scale::{ScaleEnd, ScaleEvent, ScaleInput, ScaleStart, calibrate};
 use crate::record::Abort;
-use futures::stream;
-use tokio::sync::mpsc;
-
-/// Answers that wait for the program; the user types one at a time.
-const ANSWERS_MAX: usize = 8;
 
 /// A user action on a calibration with a scale.
 #[derive(Debug, Clone, Copy, PartialEq, strum::VariantNames, strum::IntoStaticStr)]
@@ -47,27 +42,21 @@ pub struct ScaleMotion {
     pub doubt: Option<Contradiction>,
     /// Its end; `None` while it runs.
     pub end: Option<Ended<ScaleEnd>>,
-    answers: Option<mpsc::Sender<ScaleInput>>,
-    task: Option<Running<ScaleEvent, Ended<ScaleEnd>>>,
+    task: MotionTask<ScaleInput, ScaleEvent, Ended<ScaleEnd>>,
 }
 
 impl ScaleMotion {
     /// Starts a calibration.
     pub(crate) fn begin(link: LinkHandle, armed: Armed, start: ScaleStart, env: &Env) -> Self {
         let (dof, limit, points) = (start.dof, start.limit, start.points.clone());
-        let (answers, typed) = mpsc::channel(ANSWERS_MAX);
-        let task = Running::start(env, |steps| async move {
+        let task = MotionTask::start(env, |steps, inputs| async move {
             let report = |progress| {
                 if let Progress::Event(event) = progress {
                     steps.send(event);
                 }
                 true
             };
-            let typed = stream::unfold(typed, |mut typed| async {
-                let answer = typed.recv().await?;
-                Some((answer, typed))
-            });
-            calibrate(&link, armed, start, typed, report).await.end
+            calibrate(&link, armed, start, inputs, report).await.end
         });
         Self {
             dof,
@@ -76,8 +65,7 @@ impl ScaleMotion {
             asked: None,
             doubt: None,
             end: None,
-            answers: Some(answers),
-            task: Some(task),
+            task,
         }
     }
 
@@ -89,25 +77,23 @@ impl ScaleMotion {
     /// Passes an answer of the user on.
     pub(crate) fn answer(&mut self, answer: ScaleInput) {
         self.asked = None;
-        if let Some(answers) = &self.answers {
-            // A closed channel means that it has ended.
-            let _sent = answers.try_send(answer);
-        }
+        self.task.input(answer);
     }
 
     /// Marks that it has lost control of the hand.
     pub(crate) fn leave(&mut self) {
         if self.is_running() {
-            (self.answers, self.asked) = (None, None);
+            self.task.leave();
+            self.asked = None;
             self.end = Some(Err(Abort::TakenOver));
         }
     }
 
     /// Applies the progress of its task; none after it lost control of the hand. Returns the points if they changed.
     pub(crate) fn news(&mut self) -> Option<&[ScalePoint]> {
-        let (steps, end) = self.task.as_mut()?.news();
+        let (steps, end) = self.task.news();
         let mut is_changed = false;
-        for (_, event) in steps.into_iter().filter(|_| self.end.is_none()) {
+        for (_, event) in steps {
             match event {
                 ScaleEvent::Asked { load, hand_g } => self.asked = Some((load, hand_g)),
                 ScaleEvent::NotAsked => {}
@@ -120,7 +106,7 @@ impl ScaleMotion {
             }
         }
         if let Some(end) = end {
-            (self.task, self.answers, self.asked) = (None, None, None);
+            self.asked = None;
             self.end.get_or_insert(end);
         }
         is_changed.then_some(self.points.as_slice())

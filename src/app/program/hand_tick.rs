@@ -51,10 +51,7 @@ pub(super) fn tick(hand: &mut Hand, shared: &mut Shared<'_>, ctx: &mut Ctx<'_>) 
     }
     tick_hold(hand, ctx);
     scale::tick(hand, ctx);
-    if !hand.running.sequence().is_some_and(SequenceRun::is_running)
-        && !hand.running.holds()
-        && !hand.running.calibrates()
-    {
+    if !hand.running.plays() {
         restore_rested(hand);
     }
     inputs::tick(hand, shared.settings, shared.poses, ctx);

@@ -10,7 +10,7 @@ use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Angle, PerDof};
-use crate::motion::grasp::run::GraspStart;
+use crate::motion::grasp::run::{GraspInput, GraspStart};
 use crate::motion::grasp::seen::GraspLabel;
 use crate::motion::hold::{HoldClose, HoldStart};
 use crate::poses::library::free_name;
@@ -30,12 +30,12 @@ pub(super) fn hold(hand: &mut Hand, action: HoldAction, settings: &Settings, ctx
         HoldAction::Save => save(hand, ctx),
         HoldAction::PutDown => {
             if let Some(run) = hand.running.hold().filter(|run| run.asks()) {
-                run.put_down();
+                run.input(GraspInput::PutDown);
             }
         }
         HoldAction::End => {
-            if let Some(run) = hand.running.hold_mut() {
-                run.end(Abort::Person);
+            if let Some(run) = hand.running.hold() {
+                run.input(GraspInput::Abort(Abort::Person));
             }
         }
     }

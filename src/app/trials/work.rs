@@ -2,7 +2,7 @@
 
 use crate::app::connection::Connection;
 use crate::app::env::Ctx;
-use crate::app::env::running::Running;
+use crate::app::hand::motion_task::MotionTask;
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::trials::form::tags;
@@ -23,10 +23,7 @@ use crate::trials::search::{Finding, SettingsSearch};
 use crate::trials::series::SeriesView;
 use crate::trials::session::SessionHead;
 use crate::trials::{EarlyEnd, Stage, TrialPlan, estimate};
-use futures::future::ready;
-use futures::{Stream, StreamExt as _, stream};
 use std::time::Duration;
-use tokio::sync::oneshot;
 
 /// Reason why a series cannot start, apart from its plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,12 +127,6 @@ pub(crate) struct SeriesNews {
     pub(crate) end: Option<NoticeKind>,
 }
 
-/// Ends a program when the window sends a reason; stays pending if the sender is dropped.
-pub(crate) fn ends(ended: oneshot::Receiver<Abort>) -> impl Stream<Item = Abort> {
-    let sent = stream::once(ended).filter_map(|sent| ready(sent.ok()));
-    sent.chain(stream::pending())
-}
-
 impl SeriesRun {
     /// Starts a series; `None` if the plan is invalid.
     pub(crate) fn begin(
@@ -152,7 +143,6 @@ impl SeriesRun {
             connection,
         } = hand;
         let (plan, clock) = (wanted.trials(), ctx.env.clock);
-        let (end, ended) = oneshot::channel();
         let series = wanted.begin(epoch, clock.now())?;
         let armed = Armed {
             epoch,
@@ -160,12 +150,12 @@ impl SeriesRun {
             seen,
             clock,
         };
-        let task = Running::start(ctx.env, |steps| async move {
+        let task = MotionTask::start(ctx.env, |steps, ends| async move {
             let tell = |step| {
                 steps.send(step);
                 true
             };
-            let driven = series::trials(&link, armed, series, ends(ended), tell).await;
+            let driven = series::trials(&link, armed, series, ends, tell).await;
             let search = driven.program.series.settings_search();
             SeriesEnd {
                 aborted: driven.end.err(),
@@ -198,18 +188,14 @@ impl SeriesRun {
             since: ctx.now,
             zero: ctx.now,
             each: whole / u32::try_from(count.max(1)).unwrap_or(u32::MAX),
-            end: Some(end),
-            task: Some(task),
+            task,
         })
     }
 
     /// Applies the steps of the task and returns the changes.
     pub(crate) fn news(&mut self, trials: &mut TrialsState) -> SeriesNews {
         let mut news = SeriesNews::default();
-        let Some(task) = &mut self.task else {
-            return news;
-        };
-        let (steps, end) = task.news();
+        let (steps, end) = self.task.news();
         for (at, step) in steps {
             match step {
                 Progress::Event(SeriesEvent::Search(progress)) => {
@@ -283,8 +269,7 @@ pub struct SeriesRun {
     pub zero: Moment,
     /// Approximate duration of a trial including the rest after it.
     pub(crate) each: Duration,
-    pub(crate) end: Option<oneshot::Sender<Abort>>,
-    pub(crate) task: Option<Running<SeriesProgress, SeriesEnd>>,
+    task: MotionTask<Abort, SeriesProgress, SeriesEnd>,
 }
 
 impl SeriesRun {
@@ -296,10 +281,7 @@ impl SeriesRun {
     }
 
     /// Ends the series early. The caller stops the hand, and the task makes sure of it.
-    pub(crate) fn end(&mut self, why: Abort) {
-        if let Some(end) = self.end.take() {
-            // A finished task no longer listens.
-            let _heard = end.send(why);
-        }
+    pub(crate) fn end(&self, why: Abort) {
+        self.task.input(why);
     }
 }

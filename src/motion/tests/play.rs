@@ -13,6 +13,7 @@ use crate::motion::program::Progress;
 use crate::poses::library::{EntryId, SequenceId};
 use crate::poses::player::{Cue, PlayEnd, PlayMode, PlayPhase, PlayPlan, PlayView};
 use crate::record::{Abort, Disarmed, LinkState};
+use futures::stream::poll_fn;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use tokio::sync::mpsc;
@@ -69,7 +70,8 @@ impl Bench {
             seen: HandSample::default(),
             clock: hand.clock,
         };
-        let (commands, wanted) = mpsc::channel(4);
+        let (commands, mut wanted) = mpsc::channel(4);
+        let wanted = poll_fn(move |context| wanted.poll_recv(context));
         let steps = Arc::new(Mutex::new(Vec::new()));
         let (told, link) = (Arc::clone(&steps), hand.clone());
         let task = tokio::spawn(async move {
