@@ -1,8 +1,8 @@
 //! Check-ups in the window: the running one, its files, and the last result. Measurements and judgements are defined in
 //! [`crate::checkup`]. Draws nothing.
 
+use crate::app::env::motion_task::MotionTask;
 use crate::app::env::{Ctx, Env, day_folder};
-use crate::app::hand::motion_task::MotionTask;
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::trials::work::SeriesHand;

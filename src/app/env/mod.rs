@@ -2,6 +2,7 @@
 //! action on one hand.
 
 pub mod day_folder;
+pub(crate) mod motion_task;
 pub(crate) mod running;
 
 use crate::app::notices::{HandNotices, NoticeKind};

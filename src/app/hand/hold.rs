@@ -1,7 +1,7 @@
 //! A hold between two forces with a hand of the window.
 
 use crate::app::env::Env;
-use crate::app::hand::motion_task::MotionTask;
+use crate::app::env::motion_task::MotionTask;
 use crate::hand::grip::Tightened;
 use crate::hand::hold_forces::HoldForces;
 use crate::hand::{Moment, Setpoints};

@@ -6,7 +6,6 @@ pub mod grasps;
 pub mod grip;
 pub mod hold;
 pub mod list;
-pub(crate) mod motion_task;
 pub mod mover;
 #[cfg(test)]
 mod news_tests;
@@ -23,9 +22,9 @@ use crate::app::controls::{Controls, HoldKey};
 use crate::app::controls::{HeldOtherwise, JointChange};
 use crate::app::env::Ctx;
 use crate::app::env::Env;
+use crate::app::env::motion_task::MotionTask;
 use crate::app::hand::free_force::HandFreeForce;
 use crate::app::hand::grasps::HandGrasps;
-use crate::app::hand::motion_task::MotionTask;
 use crate::app::hand::newtons::HandNewtons;
 use crate::app::hand::running::SequenceRun;
 use crate::app::hand::running::{AskedSeries, MotionRun, RunningMotion};

@@ -1,8 +1,8 @@
 //! The program that moves a hand of the window: at most one.
 
 use crate::app::checkup::CheckupRun;
+use crate::app::env::motion_task::MotionTask;
 use crate::app::hand::hold::{HoldMotion, HoldNews};
-use crate::app::hand::motion_task::MotionTask;
 use crate::app::hand::scale::ScaleMotion;
 use crate::app::inputs::FollowRun;
 use crate::app::trials::{SeriesPlan, SeriesRun};

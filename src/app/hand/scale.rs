@@ -1,7 +1,7 @@
 //! A calibration of the force of one joint with a kitchen scale, with a hand of the window.
 
 use crate::app::env::Env;
-use crate::app::hand::motion_task::MotionTask;
+use crate::app::env::motion_task::MotionTask;
 use crate::hand::newtons::{Contradiction, ScalePoint};
 use crate::hand::{Dof, Force};
 use crate::link::LinkHandle;

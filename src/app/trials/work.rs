@@ -2,7 +2,7 @@
 
 use crate::app::connection::Connection;
 use crate::app::env::Ctx;
-use crate::app::hand::motion_task::MotionTask;
+use crate::app::env::motion_task::MotionTask;
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
 use crate::app::trials::form::tags;

@@ -3,14 +3,16 @@
 use crate::app::hand::Hand;
 use crate::app::settings::PlotKind;
 use crate::app::slot::SlotId;
+use crate::hand::quantity::Quantity;
 use crate::hand::{PerDof, PerFinger};
 use crate::ui::hand::panel::{StillHand, picture};
 use crate::ui::hands::strips::HandWords;
-use crate::ui::kit::{self, Label, Pane};
+use crate::ui::kit::{self, Label, Pane, format};
 use crate::ui::plots::chart::{Chart, ChartCurve, ChartView, height_over_axis};
 use crate::ui::plots::panels::PANELS;
+use crate::ui::text::window;
 use crate::ui::theme;
-use egui::{Align, Layout, ScrollArea, Ui, UiBuilder, Vec2, vec2};
+use egui::{Align, Layout, ScrollArea, StrokeKind, Ui, UiBuilder, Vec2, vec2};
 use std::collections::BTreeMap;
 
 /// Minimum size of a hand's card: the plots need space beside their numbers.
@@ -57,6 +59,11 @@ impl BesideView {
                         let place = UiBuilder::new().max_rect(rect).id_salt(slot).layout(down);
                         let card = self.0.entry(slot).or_default();
                         ui.scope_builder(place, |ui| card.ui(ui, pane, *at, hand));
+                        if slot == hands.shown().label.slot {
+                            let line = (1.0, pane.look.palette.accent);
+                            let inside = StrokeKind::Inside;
+                            ui.painter().rect_stroke(rect, theme::ROUND, line, inside);
+                        }
                     }
                 });
             }
@@ -96,6 +103,7 @@ impl BesideCard {
             ui.horizontal(|ui| {
                 kit::lamp_ui(ui, Some(words.color));
                 Label::new(&words.state, look.palette.text).ui(ui);
+                kit::right_ui(ui, |ui| highest_ui(ui, pane, hand));
             });
             let whole = ui.available_height();
             let plot = (whole * PLOT_PART).max(PLOT_LEAST).floor();
@@ -142,6 +150,27 @@ impl BesideCard {
             };
             chart.ui(ui, &mut self.charts);
         }
+    }
+}
+
+/// Draws the highest temperature, current and force of the six drives, from right to left; "-" for what is not known.
+fn highest_ui(ui: &mut Ui, pane: &Pane<'_>, hand: &Hand) {
+    let look = pane.look;
+    let is_live = hand.connection.is_live();
+    for (quantity, unit, name) in [
+        (Quantity::Temperature, "°C", window::HIGHEST_TEMPERATURE),
+        (Quantity::Current, "mA", window::HIGHEST_CURRENT),
+        (Quantity::Force, "g", window::HIGHEST_FORCE),
+    ] {
+        let known = quantity.documented(&hand.readings.sample);
+        let asked = known.map(|group| group.asked);
+        let value = known.and_then(|group| group.value.iter().filter_map(|(_, one)| *one).max());
+        let text = value.map_or_else(|| format::UNKNOWN.to_owned(), |value| value.to_string());
+        let freshness = hand.readings.freshness(asked, is_live, pane.state.now);
+        let color = look.value(freshness, look.palette.text);
+        let text = format!("{text} {unit}");
+        let label = Label::new(&text, color).number().named(look.tr(name));
+        label.ui(ui).on_hover_text(look.tr(name));
     }
 }
 

@@ -22,7 +22,7 @@ texts! {
     TAKE: "Hold what is held", "保持已抓物体", "Takes over what the hand holds, without opening it.", "不张开手，直接接管已抓住的物体。";
     POWER: "Close all fingers", "五指抓握", "Closes slowly as Power grasp until the object stops the fingers, then holds.", "按强力抓握姿态缓慢闭合，遇物体停止后保持。";
     PINCH: "Close as pinch", "两指捏取", "Closes thumb and index slowly until the object stops them, then holds.", "大拇指与食指缓慢闭合，遇物体停止后保持。";
-    END: "End the hold", "结束保持", "The hand keeps its position, and so what it holds.", "手保持当前位置，物体仍被抓住。";
+    END: "End the hold", "结束保持", "Stops and disarms. The hand does not open.", "停止并取消使能，手不会张开。";
     MOVES: "Hold", "保持";
     MEASURING: "Measuring zero", "正在测量力零点";
     CLOSING: "Closing", "正在闭合";

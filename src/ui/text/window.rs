@@ -47,6 +47,9 @@ texts! {
     REMOVE_HAND: "Remove this hand", "移除此灵巧手", "Stops this hand if it may be moving, disconnects it, and takes it out of the window.", "若此灵巧手可能在运动则先停止，然后断开并从窗口移除。";
     HAND_NAME: "Name of this hand", "灵巧手名称";
     HAND_NAME_SHORT: "Name", "名称";
+    HIGHEST_FORCE: "Highest force of the six drives", "六个驱动器中的最大受力";
+    HIGHEST_CURRENT: "Highest current of the six drives", "六个驱动器中的最大电流";
+    HIGHEST_TEMPERATURE: "Highest temperature of the six drives", "六个驱动器中的最高温度";
     SIDE_RIGHT: "R", "右";
     SIDE_LEFT: "L", "左";
     MOVES: "moves", "运动中";

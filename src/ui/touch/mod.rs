@@ -95,7 +95,7 @@ impl TouchView {
                     self.open(pane, finger);
                 }
             }
-            table::value_ui(ui, pane, finger, &table::NORMAL);
+            table::normal_ui(ui, pane, finger);
         });
     }
 

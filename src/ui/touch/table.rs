@@ -1,8 +1,9 @@
 //! Numbers of the five fingertips in rows: forces, deltas, channels. Draws no picture.
 
 use crate::hand::{Finger, TactileBlock};
-use crate::ui::kit::{Label, Look, Pane, format};
+use crate::ui::kit::{self, Label, Look, Pane, format};
 use crate::ui::text::{Text, panels, words};
+use crate::ui::theme;
 use egui::{Color32, Grid, Ui};
 
 /// One row of the table.
@@ -13,7 +14,7 @@ pub(crate) struct TouchRow {
 }
 
 /// The normal force, also used on its own.
-pub(crate) const NORMAL: TouchRow = TouchRow {
+const NORMAL: TouchRow = TouchRow {
     caption: panels::TOUCH_NORMAL,
     name: panels::TOUCH_NORMAL_NAME,
     value: |block, _| format!("{} N", format::newtons(Some(block.normal_n))),
@@ -69,13 +70,32 @@ fn direction(block: &TactileBlock, look: Look) -> String {
     }
 }
 
+/// Draws the normal force of one fingertip, smaller in a narrow column so that it stands apart from its neighbours.
+pub(crate) fn normal_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger) {
+    let widest = kit::text_width(ui, "00.00 N", theme::number());
+    let font = if ui.available_width() < widest + theme::GAP {
+        theme::small()
+    } else {
+        theme::number()
+    };
+    let (name, text) = named_value(pane, finger, &NORMAL);
+    let color = color(pane, finger);
+    Label::new(&text, color).font(font).named(&name).ui(ui);
+}
+
 /// Draws one number of one fingertip.
-pub(crate) fn value_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, line: &TouchRow) {
+fn value_ui(ui: &mut Ui, pane: &Pane<'_>, finger: Finger, line: &TouchRow) {
+    let (name, text) = named_value(pane, finger, line);
+    number_ui(ui, color(pane, finger), &name, &text);
+}
+
+/// Accessible name of a number, and the number or "-".
+fn named_value(pane: &Pane<'_>, finger: Finger, line: &TouchRow) -> (String, String) {
     let look = pane.look;
     let block = pane.hand().readings.sample.tactile[finger];
     let text = block.map(|block| (line.value)(&block.value, look));
     let name = look.tr_with(words::finger(finger), look.tr(line.name));
-    number_ui(ui, color(pane, finger), &name, text);
+    (name, text.unwrap_or_else(|| format::UNKNOWN.to_owned()))
 }
 
 /// Colour of a fingertip's numbers, by their freshness.
@@ -84,10 +104,9 @@ fn color(pane: &Pane<'_>, finger: Finger) -> Color32 {
     pane.look.value(freshness, pane.look.palette.text)
 }
 
-/// Draws a number or "-", with its accessible name.
-fn number_ui(ui: &mut Ui, color: Color32, name: &str, text: Option<String>) {
-    let text = text.unwrap_or_else(|| format::UNKNOWN.to_owned());
-    Label::new(&text, color).number().named(name).ui(ui);
+/// Draws a number with its accessible name.
+fn number_ui(ui: &mut Ui, color: Color32, name: &str, text: &str) {
+    Label::new(text, color).number().named(name).ui(ui);
 }
 
 /// Draws all values of all fingertips, below their names.
@@ -117,8 +136,9 @@ pub(crate) fn all_ui(ui: &mut Ui, pane: &Pane<'_>) {
             Label::new(&caption, muted).ui(ui);
             for finger in Finger::ALL {
                 let text = channel_text(pane, finger, channel);
+                let text = text.unwrap_or_else(|| format::UNKNOWN.to_owned());
                 let name = look.tr_with(words::finger(finger), &caption);
-                number_ui(ui, color(pane, finger), &name, text);
+                number_ui(ui, color(pane, finger), &name, &text);
             }
             ui.end_row();
         }

@@ -13,6 +13,7 @@ use handscope::app::settings::Settings;
 use handscope::app::slot::SlotId;
 use handscope::app::trials::{SeriesKind, TrialAction};
 use handscope::hand::kinematics::Side;
+use handscope::hand::quantity::Quantity;
 use handscope::hand::{Angle, Dof};
 use handscope::poses::library::{EntryId, PoseId};
 use handscope::poses::starter::starter;
@@ -500,6 +501,27 @@ fn side_by_side_each_hand_has_a_column_and_the_plots_come_back() {
         2,
         "{pictures:?}"
     );
+    let names = ["Highest temperature", "Highest current", "Highest force"];
+    let quantities = [Quantity::Temperature, Quantity::Current, Quantity::Force];
+    for (name, quantity) in names.into_iter().zip(quantities) {
+        let name = format!("{name} of the six drives");
+        let labels = bench.labels_below(0.0).into_iter();
+        let shown: Vec<String> = labels
+            .filter(|(own, _)| *own == name)
+            .map(|(_, text)| text)
+            .collect();
+        let highest = |hand: &&Hand| {
+            let known = quantity.documented(&hand.readings.sample).unwrap();
+            let most = known.value.iter().filter_map(|(_, value)| *value).max();
+            format!(
+                "{} {}",
+                most.unwrap(),
+                quantity.row().unit.replace("C", "°C")
+            )
+        };
+        let wanted: Vec<String> = hands(&bench).iter().map(highest).collect();
+        assert_eq!(shown, wanted, "{name}");
+    }
     bench.click_button("All hands");
     bench.run(100);
     assert!(!bench.is_on("All hands"));
