@@ -6,6 +6,8 @@ use crate::hand::{Dof, Force, Speed};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
+/// Closes on rigid objects from which their highest peak stands for this hand: of fewer, the next one exceeds it too often.
+pub const CLOSES_LEAST: u32 = 3;
 /// Number of stored kinds of closes; beyond it the oldest is dropped.
 pub const KINDS_MAX: usize = 2000;
 /// Possible overshoot of a close, g; no sensor reads beyond this.
@@ -200,8 +202,8 @@ impl OvershootMap {
         }
     }
 
-    /// Expected overshoot of a joint that hits a rigid object at a speed, units of SPEED_SET, with a threshold in g. This hand's closes
-    /// on softer objects can raise the figure, never lower it.
+    /// Expected overshoot of a joint that hits a rigid object at a speed, units of SPEED_SET, with a threshold in g. Fewer than
+    /// [`CLOSES_LEAST`] closes of this hand, and closes on softer objects, can raise the figure, never lower it.
     pub fn expected(&self, dof: Dof, stages: Stages, speed: f64, threshold_g: f64) -> Expected {
         let published = match stages {
             Stages::One => impact::overshoot_g(speed, threshold_g),
@@ -211,7 +213,7 @@ impl OvershootMap {
         let is_rigid = |own: &&MeasuredCloses| own.kind.stiffness == Stiffness::Rigid;
         let rigid = Grown::at(near().filter(is_rigid), speed);
         let own = match rigid {
-            Some(rigid) if rigid.is_within => Some(rigid),
+            Some(rigid) if rigid.is_within && rigid.closes >= CLOSES_LEAST => Some(rigid),
             _ => Grown::at(near(), speed).filter(|any| any.over_g > published),
         };
         match own {
@@ -339,7 +341,9 @@ mod tests {
     fn map(closes: &[(i16, i16, Stiffness, f64)]) -> OvershootMap {
         let mut map = OvershootMap::default();
         for (speed, threshold, stiffness, over) in closes {
-            map.add(kind(*speed, *threshold, *stiffness), *over, "2026-11-20");
+            for _ in 0..CLOSES_LEAST {
+                map.add(kind(*speed, *threshold, *stiffness), *over, "2026-11-20");
+            }
         }
         map
     }
@@ -351,7 +355,8 @@ mod tests {
 
     #[test]
     fn closes_of_a_kind_are_counted_together_with_their_days() {
-        let mut map = map(&[(100, 500, Stiffness::Rigid, 40.0)]);
+        let mut map = OvershootMap::default();
+        map.add(kind(100, 500, Stiffness::Rigid), 40.0, "2026-11-20");
         map.add(kind(100, 500, Stiffness::Rigid), 70.0, "2026-11-26");
         map.add(kind(100, 500, Stiffness::Rigid), 10.0, "2026-11-02");
         map.add(kind(100, 500, Stiffness::Soft), f64::NAN, "2026-11-02");
@@ -403,6 +408,21 @@ mod tests {
         assert_eq!(two.on, MeasuredOn::AnotherHand);
         let thumb = own.expected(Dof::ThumbBend, Stages::One, 25.0, 500.0);
         assert_eq!(thumb.on, MeasuredOn::AnotherHand);
+    }
+
+    #[test]
+    fn too_few_closes_make_a_warning_sharper_and_never_milder() {
+        let published = impact::overshoot_g(250.0, 500.0);
+        let mut map = OvershootMap::default();
+        for _ in 1..CLOSES_LEAST {
+            map.add(kind(250, 500, Stiffness::Rigid), 39.0, "2026-11-30");
+            assert_eq!(expected(&map, 250.0, 500.0), (published, false));
+        }
+        map.add(kind(250, 500, Stiffness::Rigid), 39.0, "2026-11-30");
+        assert_eq!(expected(&map, 250.0, 500.0), (39.0, true));
+        let mut one = OvershootMap::default();
+        one.add(kind(250, 500, Stiffness::Rigid), 1500.0, "2026-11-30");
+        assert_eq!(expected(&one, 250.0, 500.0), (1500.0, true));
     }
 
     #[test]

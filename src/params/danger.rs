@@ -77,7 +77,7 @@ fn joint(params: &Params, dof: Dof, map: &OvershootMap) -> Option<Danger> {
 mod tests {
     use super::*;
     use crate::hand::Speed;
-    use crate::hand::overshoot::{CloseKind, Stiffness};
+    use crate::hand::overshoot::{CLOSES_LEAST, CloseKind, Stiffness};
 
     #[test]
     fn fast_and_strong_defaults_are_told_and_gentle_ones_are_not() {
@@ -140,14 +140,16 @@ mod tests {
             threshold: Force::GENTLE,
             stiffness: Stiffness::Rigid,
         };
-        map.add(kind, 90.0, "2026-11-26");
+        for _ in 0..CLOSES_LEAST {
+            map.add(kind, 90.0, "2026-11-26");
+        }
         assert_eq!(dangers(&params, &map), []);
         map.add(kind, 700.0, "2026-11-26");
         let told = dangers(&params, &map);
         assert_eq!((told[0].expected.over_g, told[0].peak_g()), (700.0, 1200.0));
         assert!(matches!(
             told[0].expected.on,
-            MeasuredOn::ThisHand { closes: 2, .. }
+            MeasuredOn::ThisHand { closes: 4, .. }
         ));
     }
 

@@ -64,11 +64,11 @@ fn what_a_trial_measured_is_kept_for_its_hand_and_its_warnings_go_by_it() {
         "--force",
         "500",
         "--repeat",
-        "2",
+        "3",
     ];
     at_home(home, &trial).ok();
     let kept = told(home, &hand, &[]);
-    assert_eq!(kept["closes"], 2, "{kept}");
+    assert_eq!(kept["closes"], 3, "{kept}");
     let kind = &kept["kinds"][0];
     assert_eq!(
         (&kind["joint"], &kind["stages"]),
@@ -79,13 +79,13 @@ fn what_a_trial_measured_is_kept_for_its_hand_and_its_warnings_go_by_it() {
         (&250.into(), &500.into())
     );
     assert_eq!(kind["stiffness"], "rigid");
-    let told_so = "this finger was measured in 2 closes";
+    let told_so = "this finger was measured in 3 closes";
     assert!(apply().contains(told_so), "{}", apply());
     let table = folder.path().join("table.csv");
     told(home, &hand, &["--out", table.to_str().unwrap(), "--forget"]);
     let table = std::fs::read_to_string(table).unwrap();
     assert_eq!(table.lines().count(), 2, "{table}");
-    assert!(table.contains("\nindex,1,250,500,rigid,2,"));
+    assert!(table.contains("\nindex,1,250,500,rigid,3,"));
     assert_eq!(told(home, &hand, &[])["closes"], 0);
     assert!(apply().contains("of another hand was measured"));
 }

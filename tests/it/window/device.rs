@@ -428,6 +428,8 @@ fn a_save_is_backed_up_confirmed_by_the_hand_and_shown_with_its_date() {
         1
     );
     assert!(bench.shows("Saved: the hand reports its parameters in flash."));
+    let errors = bench.texts_with("Errors ");
+    assert!(errors.is_empty(), "the wire had none: {errors:?}");
     assert_eq!(bench.reading("Index speed last saved"), "100");
     let saved = bench.state().hand().params.known.saved.clone().unwrap();
     let day = saved.at.get(..10).unwrap().to_owned();

@@ -18,11 +18,11 @@ fn measured_on(bench: &Bench) -> MeasuredOn {
     map.expected(Dof::Index, Stages::One, SPEED, THRESHOLD_G).on
 }
 
-/// Two closes on a block.
-fn try_twice(bench: &mut Bench) {
+/// Three closes on a block.
+fn try_three_times(bench: &mut Bench) {
     short(bench);
     enter(bench, "Speeds to try", "250");
-    enter(bench, "times each", "2");
+    enter(bench, "times each", "3");
     arm(bench);
     bench.click("Start trials");
     finish(bench, 60_000);
@@ -37,10 +37,10 @@ fn warnings_go_by_this_hand_once_it_was_tried_and_by_another_once_that_is_forgot
     assert_eq!(measured_on(&bench), MeasuredOn::AnotherHand);
     bench.click("Trials");
     bench.run(60);
-    try_twice(&mut bench);
+    try_three_times(&mut bench);
     assert!(matches!(
         measured_on(&bench),
-        MeasuredOn::ThisHand { closes: 2, .. }
+        MeasuredOn::ThisHand { closes: 3, .. }
     ));
     bench.click("This hand");
     bench.run(60);
@@ -77,7 +77,7 @@ fn the_slanted_part_of_a_track_begins_where_this_hand_was_measured_to_be_rough()
     };
     let before = rough(&bench).map(Speed::get).unwrap();
     bench.click("Trials");
-    try_twice(&mut bench);
+    try_three_times(&mut bench);
     let after = rough(&bench).map(Speed::get).unwrap();
     assert_ne!(
         before, after,
@@ -102,7 +102,7 @@ fn it_is_kept_for_its_place_and_for_no_other() {
     let mut bench = Bench::kept(config, "tcp:127.0.0.1:6000", LARGE);
     bench.wait(2000);
     grid(&mut bench);
-    try_twice(&mut bench);
+    try_three_times(&mut bench);
     let of_here = measured_on(&bench);
     assert!(matches!(of_here, MeasuredOn::ThisHand { .. }));
     let file = |bench: &Bench| {
