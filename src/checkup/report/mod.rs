@@ -70,6 +70,12 @@ impl CheckupReport {
         CheckupReportPage { report: self }.render()
     }
 
+    /// The figures to list: all, or those that a partial check-up measured. The others are only counted.
+    pub fn listed(&self) -> impl Iterator<Item = &Check> {
+        let is_listed = move |own: &&Check| self.aborted.is_none() || own.grade != Grade::Unknown;
+        self.checks.iter().filter(is_listed)
+    }
+
     /// The number of figures with this grade.
     pub fn count(&self, grade: Grade) -> usize {
         self.checks.iter().filter(|own| own.grade == grade).count()
@@ -128,11 +134,12 @@ impl Keeping {
 }
 
 impl<'a> CheckupReportPage<'a> {
-    /// The checks grouped by joint, fingertip and hand, in order.
-    fn groups(&self) -> Vec<(&'static str, &'a [Check])> {
-        let same = |a: &Check, b: &Check| a.measured.of == b.measured.of;
-        let groups = self.report.checks.chunk_by(same);
-        let named = groups.filter_map(|own| Some((own.first()?.measured.of.name(), own)));
+    /// The listed figures grouped by joint, fingertip and hand, in order.
+    fn groups(&self) -> Vec<(&'static str, Vec<&'a Check>)> {
+        let listed: Vec<&Check> = self.report.listed().collect();
+        let same = |a: &&Check, b: &&Check| a.measured.of == b.measured.of;
+        let groups = listed.chunk_by(same);
+        let named = groups.filter_map(|own| Some((own.first()?.measured.of.name(), own.to_vec())));
         named.collect()
     }
 }
@@ -193,7 +200,6 @@ mod tests {
         for wanted in [
             "<td class=\"act\">48 counts</td><td>-8 to 14</td><td>4 counts</td><td>4 counts</td>",
             "<td>inspect the linkage",
-            "<td class=\"unknown\">-</td>",
             "<td class=\"fine\">1000</td><td>985 to 1000</td><td>-</td><td>-</td>",
             "Partial: it ended early, ended by the user",
             "3 figures: 1 as they should be, 0 to watch, 1 to act on, 1 not measured",
@@ -205,6 +211,14 @@ mod tests {
             assert!(page.contains(wanted), "{wanted}\n{page}");
         }
         assert!(!page.contains("<b>"));
+        let missing = "<td class=\"unknown\">-</td>";
+        assert!(!page.contains(missing), "it did not come to it");
+        let whole = CheckupReport {
+            aborted: None,
+            ..report
+        };
+        let page = whole.html().unwrap();
+        assert!(page.contains(missing), "it could not be measured");
     }
 
     #[test]

@@ -9,13 +9,8 @@ use crate::cli::out::notify;
 
 /// Findings with advice, and the summary.
 pub(crate) fn lines(report: &CheckupReport) -> Vec<String> {
-    // Figures missing from a partial check-up are not reported.
-    let is_reported = |check: &&Check| match check.grade {
-        Grade::Fine => check.drift().is_some(),
-        Grade::Unknown => report.aborted.is_none(),
-        Grade::Watch | Grade::Act => true,
-    };
-    let reported = report.checks.iter().filter(is_reported);
+    let is_reported = |check: &&Check| check.grade != Grade::Fine || check.drift().is_some();
+    let reported = report.listed().filter(is_reported);
     let mut lines: Vec<String> = reported.map(line).collect();
     lines.extend(report.remarks());
     lines.push(report.usage_words());

@@ -220,14 +220,19 @@ impl Rs485 {
         }
     }
 
+    /// Counts a reply that answers no request of ours. The result of a save or of a calibration is none: the hand sends it by itself.
     fn foreign_reply(&mut self, reply: &Rs485Reply) {
-        if reply.id() == self.id.get()
-            && let Some(result) = reply.save_result()
-        {
-            // The oldest results suffice.
-            let _more = self.save_results.try_push(result);
+        if reply.id() == self.id.get() {
+            if let Some(result) = reply.save_result() {
+                // The oldest results suffice.
+                let _more = self.save_results.try_push(result);
+                return;
+            }
+            if reply.is_calibration_end() {
+                self.is_calibrated = true;
+                return;
+            }
         }
-        self.is_calibrated |= reply.id() == self.id.get() && reply.is_calibration_end();
         self.foreign += 1;
         if let Rs485Reply::Read { address, bytes, .. } = reply
             && let Ok(len) = u16::try_from(bytes.len())

@@ -30,13 +30,15 @@ pub(super) const fn color(pane: &Pane<'_>, grade: Grade) -> Color32 {
     }
 }
 
-/// Draws the values, or only those that are not fine.
+/// Draws the values, or only those that are not fine. What a partial check-up did not come to is counted above, not listed.
 pub(super) fn ui(ui: &mut Ui, pane: &Pane<'_>, report: &CheckupReport, only: bool) {
     let look = pane.look;
     let is_told = |own: &&Check| !only || own.grade != Grade::Fine || own.drift().is_some();
-    let shown: Vec<&Check> = report.checks.iter().filter(is_told).collect();
+    let shown: Vec<&Check> = report.listed().filter(is_told).collect();
     if shown.is_empty() {
-        kit::small_text_ui(ui, look.tr(checkup::ALL_FINE), look.palette.ok);
+        if report.aborted.is_none() {
+            kit::small_text_ui(ui, look.tr(checkup::ALL_FINE), look.palette.ok);
+        }
         return;
     }
     let heads = [

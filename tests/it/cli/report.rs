@@ -1,5 +1,6 @@
 //! The file for support: what is in it, and whom it does not name.
 
+use crate::setup::busy::unless_busy;
 use crate::setup::process::{Ended, handscope, listen, sim_on_link, start};
 use crate::setup::recorded::three;
 use handscope::record::export::{Destination, ExportSource, cut};
@@ -84,6 +85,10 @@ fn holds(bytes: &[u8], word: &str) -> bool {
 
 #[test]
 fn a_report_holds_what_it_lists_and_names_neither_home_nor_user() {
+    unless_busy(report_of_a_user);
+}
+
+fn report_of_a_user() {
     let user = User::new();
     let home = user.home.to_str().unwrap();
     let (_sim, hand) = sim_on_link(&user.home.join("hand"), &["--scenario", "faults"]);

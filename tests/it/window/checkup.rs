@@ -140,6 +140,13 @@ fn any_key_ends_it_with_a_held_hand_and_a_partial_report() {
     assert_eq!(shown.report.aborted, Some(Abort::Person));
     assert_eq!(shown.report.keeping, Keeping::Partial);
     said(&bench, "Partial, it ended early: Ended by the user.");
+    let figures = bench.labels_below(0.0).into_iter();
+    let figures: Vec<_> = figures
+        .filter(|(name, _)| name.ends_with(" measured"))
+        .collect();
+    assert!(!figures.is_empty(), "what was measured is listed");
+    let missing = figures.iter().filter(|(_, figure)| figure == "-");
+    assert_eq!(missing.count(), 0, "{figures:?}");
     let page = std::fs::read_to_string(shown.page.unwrap()).unwrap();
     assert!(page.contains("Partial: it ended early, ended by the user"));
 }
