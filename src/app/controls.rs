@@ -2,6 +2,7 @@
 //! long as the user holds it; it counts as released when the window loses focus or hangs. Knows no link and no clock.
 
 use crate::hand::hold_forces::HoldForces;
+use crate::hand::newtons::ForceUnit;
 use crate::hand::{
     Angle, AngleReading, ArmEpoch, Dof, Force, Gesture, Group, HandSample, Moment, PerDof,
     Setpoints, Speed, Target,
@@ -58,8 +59,11 @@ pub struct Controls {
     pub joints: PerDof<JointControl>,
     /// The stored gesture that was started last, unless it failed.
     pub gesture: Option<Gesture>,
-    /// Forces of a hold, if the user set any.
+    /// Forces of a hold, if the user set any: in g of this hand, and in g of a scale for those in newtons. Neither follows from the other.
     hold_forces: Option<HoldForces>,
+    hold_scale_forces: Option<HoldForces>,
+    /// Unit in which the user sets them.
+    hold_unit: ForceUnit,
     /// Hold-to-run key.
     pub(crate) held: HeldKey,
     /// Sliders that show the commanded target; the others show the actual angle.
@@ -71,16 +75,38 @@ pub struct Controls {
 }
 
 impl Controls {
-    /// Forces of the next hold.
+    /// Forces of the next hold, g of this hand.
     pub fn hold_forces(&self) -> HoldForces {
-        let [least, most] = [HOLD_AT_LEAST, HOLD_AT_MOST].map(Force::nearest);
-        let usual = HoldForces::nearest(least, most);
-        self.hold_forces.unwrap_or(usual)
+        self.hold_forces_in(ForceUnit::Grams)
     }
 
-    /// Sets the forces of the next hold.
-    pub(crate) const fn set_hold_forces(&mut self, forces: HoldForces) {
-        self.hold_forces = Some(forces);
+    /// Forces of the next hold if they are set in this unit.
+    pub fn hold_forces_in(&self, unit: ForceUnit) -> HoldForces {
+        let [least, most] = [HOLD_AT_LEAST, HOLD_AT_MOST].map(Force::nearest);
+        let own = match unit {
+            ForceUnit::Grams => self.hold_forces,
+            ForceUnit::Newtons => self.hold_scale_forces,
+        };
+        own.unwrap_or(HoldForces::nearest(least, most))
+    }
+
+    /// Sets the forces of the next hold in a unit.
+    pub(crate) const fn set_hold_forces(&mut self, unit: ForceUnit, forces: HoldForces) {
+        match unit {
+            ForceUnit::Grams => self.hold_forces = Some(forces),
+            ForceUnit::Newtons => self.hold_scale_forces = Some(forces),
+        }
+    }
+
+    /// Unit in which the user sets them; grams if the newtons of a finger are missing.
+    pub fn hold_unit(&self, newtons: &PerDof<Option<f64>>) -> ForceUnit {
+        let is_possible = |unit: &ForceUnit| unit.reading_per_g(newtons).is_some();
+        Some(self.hold_unit).filter(is_possible).unwrap_or_default()
+    }
+
+    /// Chooses the unit.
+    pub(crate) const fn set_hold_unit(&mut self, unit: ForceUnit) {
+        self.hold_unit = unit;
     }
 
     /// Settings for the next connection with this hand: no key is held, and no slider was moved.
@@ -88,6 +114,8 @@ impl Controls {
         Self {
             joints: self.joints,
             hold_forces: self.hold_forces,
+            hold_scale_forces: self.hold_scale_forces,
+            hold_unit: self.hold_unit,
             ..Self::default()
         }
     }

@@ -133,7 +133,7 @@ impl Action {
             | Self::Force(..)
             | Self::Speed(..)
             | Self::Lock(..)
-            | Self::Hold(HoldAction::Forces(_))
+            | Self::Hold(HoldAction::Forces(..) | HoldAction::Unit(_))
             | Self::Input(InputAction::Limit(_))
             | Self::ClearErrors => ActionEffect::Adjustment,
             Self::Param(

@@ -6,7 +6,7 @@
 //! last load.
 
 use crate::hand::statistics::median;
-use crate::hand::{Dof, Force, PerDof};
+use crate::hand::{Dof, Finger, Force, PerDof};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -37,6 +37,40 @@ pub const N_PER_G: f64 = 0.009_806_65;
 /// A force in newtons, at these newtons for a gram; rounded to millinewtons.
 pub fn newtons(force_g: f64, per_g: f64) -> f64 {
     (force_g * per_g * 1000.0).round() / 1000.0
+}
+
+/// Unit in which the forces of a hold are set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum ForceUnit {
+    /// Grams of each finger as this hand reads them.
+    #[default]
+    Grams,
+    /// Newtons; the two forces are then grams of a scale.
+    Newtons,
+}
+
+impl ForceUnit {
+    /// Value in this unit of one gram of the two forces.
+    pub const fn per_g(self) -> f64 {
+        match self {
+            Self::Grams => 1.0,
+            Self::Newtons => N_PER_G,
+        }
+    }
+
+    /// Reading of each joint for one gram of the two forces; `None` if the newtons of a finger are missing. The rotation of the thumb
+    /// presses on nothing, and needs none.
+    pub fn reading_per_g(self, newtons: &PerDof<Option<f64>>) -> Option<PerDof<f64>> {
+        let is_known = Finger::ALL.map(Finger::bend).into_iter();
+        let is_known = is_known.map(|dof| newtons[dof]).all(|own| own.is_some());
+        match self {
+            Self::Grams => Some(PerDof::splat(1.0)),
+            Self::Newtons if is_known => {
+                Some(newtons.map(|own| own.map_or(1.0, |own| N_PER_G / own)))
+            }
+            Self::Newtons => None,
+        }
+    }
 }
 
 /// Expected noise of the force reading, g: the noisiest of the known sensors.
@@ -425,5 +459,23 @@ mod tests {
         let fit = ForceScale::fit(&untouched).unwrap();
         assert_eq!(fit.tip_deviation, None);
         assert!(!fit.tip_deviates());
+    }
+
+    #[test]
+    fn forces_in_newtons_need_those_of_all_fingers_and_no_rotation() {
+        let of_fingers = |missing: Option<Dof>| {
+            PerDof::from_fn(|dof| {
+                let is_known = dof != Dof::ThumbRotate && Some(dof) != missing;
+                is_known.then_some(2.0 * N_PER_G)
+            })
+        };
+        let reading = |unit: ForceUnit, missing| unit.reading_per_g(&of_fingers(missing));
+        let half = reading(ForceUnit::Newtons, None).unwrap();
+        assert_eq!(half[Dof::Index], 0.5, "2 g of a scale are one of the hand");
+        for finger in Finger::ALL {
+            let missing = Some(finger.bend());
+            assert_eq!(reading(ForceUnit::Newtons, missing), None, "{finger:?}");
+            assert_eq!(reading(ForceUnit::Grams, missing), Some(PerDof::splat(1.0)));
+        }
     }
 }

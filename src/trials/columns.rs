@@ -46,17 +46,19 @@ pub struct TrialColumn {
 }
 
 const MS_PER_S: f64 = 1000.0;
+const GRAMS: &str = "g";
+const NEWTON_DECIMALS: usize = 1;
 
 /// All columns, in the order in which tables show them.
 pub static COLUMNS: [TrialColumn; 12] = [
     column(Metric::Overshoot, "Overshoot", |own| own.overshoot_g)
-        .unit("g", 0)
+        .unit(GRAMS, 0)
         .word("overshoot"),
     column(Metric::Peak, "Peak", |own| own.peak_force_g)
-        .unit("g", 0)
+        .unit(GRAMS, 0)
         .word("peak"),
     column(Metric::Steady, "Steady", |own| own.steady_force_g)
-        .unit("g", 0)
+        .unit(GRAMS, 0)
         .word("steady"),
     column(Metric::Contact, "To contact", |own| own.time_to_contact_s)
         .unit("s", 3)
@@ -68,7 +70,7 @@ pub static COLUMNS: [TrialColumn; 12] = [
     })
     .unit("ms", 0)
     .word("dead time"),
-    column(Metric::Relaxation, "Relaxes", |own| own.relaxation_g).unit("g", 0),
+    column(Metric::Relaxation, "Relaxes", |own| own.relaxation_g).unit(GRAMS, 0),
     column(Metric::Slips, "Slips", |own| {
         let count = own.slip_count.and_then(|count| u32::try_from(count).ok());
         count.map(f64::from)
@@ -119,7 +121,21 @@ impl TrialColumn {
 
     /// The value, or "-"; with a trailing "+" if the peak may have been higher than any reading.
     pub fn text(&self, joint: &JointMetrics) -> String {
-        let text = number((self.value)(joint), self.decimals);
+        self.doubted(joint, number((self.value)(joint), self.decimals))
+    }
+
+    /// A force in newtons, at these newtons for a gram; `None` if it is no force, or unknown.
+    pub fn newtons(&self, joint: &JointMetrics, per_g: Option<f64>) -> Option<f64> {
+        let grams = (self.value)(joint).filter(|_| self.unit == GRAMS)?;
+        Some(grams * per_g?)
+    }
+
+    /// The same as text, as [`text`](Self::text).
+    pub fn newtons_text(&self, joint: &JointMetrics, per_g: Option<f64>) -> String {
+        self.doubted(joint, number(self.newtons(joint, per_g), NEWTON_DECIMALS))
+    }
+
+    fn doubted(&self, joint: &JointMetrics, text: String) -> String {
         let is_of_peak = matches!(self.metric, Metric::Peak | Metric::Overshoot);
         if is_of_peak && joint.peak_doubt.is_some() {
             return format!("{text}+");

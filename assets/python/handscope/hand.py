@@ -351,14 +351,14 @@ class Hand:
     def trial(self, joint: Union[str, Sequence[str]], **options: Any) -> list[Trial]:
         """Closes joints on an object and measures each grasp, as `handscope trial` does, with its options:
         `hand.trial("index", speed=[25, 250], force=500)`. Gives the trials."""
-        told, why = self._command("trial", joint=joint, **options)
+        told, why = self._command("trial", joint=joint, known_as=self.url, **options)
         if why:
             raise HandscopeError(why)
         return [one["trial"] for one in told if "trial" in one]
 
     def tune(self, joint: Union[str, Sequence[str]], limit: int, **options: Any) -> Tune:
         """Finds the fastest close that stays under a force, as `handscope tune` does. Without a result, `why` says why."""
-        return _last(Tune, "tune", *self._command("tune", joint=joint, limit=limit, **options))
+        return _last(Tune, "tune", *self._command("tune", joint=joint, limit=limit, known_as=self.url, **options))
 
     def check(self, **options: Any) -> Check:
         """Checks an empty hand for wear, as `handscope check` does. It is not kept with the hand's earlier ones."""

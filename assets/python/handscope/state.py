@@ -164,7 +164,8 @@ TrialJoint = TypedDict("TrialJoint", {
     "peak_doubt": Words, "peak_missed_g": Figure, "overshoot_g": Figure, "steady_force_g": Figure, "rest_force_g": float,
     "relaxation_g": Figure, "noise_g": float, "dead_time_s": Figure, "time_to_touch_s": Figure, "time_to_contact_s": Figure,
     "time_to_stop_s": Figure, "settle_time_s": Figure, "slip_count": Whole, "peak_current_ma": float, "rate_hz": float,
-    "temperature_rise_c": float, "longest_gap_s": float, "end_status": str})  # fmt: skip
+    "temperature_rise_c": float, "longest_gap_s": float, "end_status": str,
+    "peak_force_n": Figure, "steady_force_n": Figure})  # fmt: skip
 Trial = TypedDict("Trial", {
     "number": int, "kind": str, "repeat": Whole, "speed": int, "force_threshold_g": int, "aborted": Words, "stall_s": Figure,
     "samples": Words, "rows": int, "rows_lost": int, "joints": List[TrialJoint]})  # fmt: skip

@@ -407,6 +407,7 @@ class Moves(unittest.TestCase):
             done = again(trials)
             self.assertEqual(len(done), 1)
             self.assertGreater(done[0]["joints"][0]["peak_force_g"], 200)
+            self.assertIsNone(done[0]["joints"][0]["peak_force_n"], "it was measured on no scale")
 
     def test_after_a_command_that_ended_early_the_hand_is_not_armed(self):
         with handscope.open("sim:") as hand, hand.armed():

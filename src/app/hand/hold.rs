@@ -4,6 +4,7 @@ use crate::app::env::Env;
 use crate::app::env::motion_task::MotionTask;
 use crate::hand::grip::Tightened;
 use crate::hand::hold_forces::HoldForces;
+use crate::hand::newtons::ForceUnit;
 use crate::hand::{Moment, Setpoints};
 use crate::link::LinkHandle;
 use crate::motion::drive::{Armed, drive};
@@ -21,8 +22,10 @@ use crate::record::Abort;
 /// A user action on a hold.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HoldAction {
-    /// Set its forces. Nothing is sent.
-    Forces(HoldForces),
+    /// Set its forces in a unit. Nothing is sent.
+    Forces(ForceUnit, HoldForces),
+    /// Choose the unit in which they are set. Nothing is sent.
+    Unit(ForceUnit),
     /// Start it. Needs arming.
     Start(HoldClose),
     /// Hold as the grasp of this name. Needs arming.
@@ -54,6 +57,8 @@ pub struct HoldMotion {
     pub confirming: Option<Confirming>,
     /// Its end; `None` while it runs.
     pub end: Option<HoldEnded>,
+    /// Unit of its forces.
+    pub unit: ForceUnit,
     /// The grasp that it repeats.
     pub(crate) repeats: Option<Grasp>,
     task: MotionTask<GraspInput, Progress<GraspView, Tightened>, (HoldEnded, HoldDone)>,
@@ -85,7 +90,7 @@ impl HoldMotion {
     pub(crate) fn begin(
         link: LinkHandle,
         armed: Armed,
-        start: GraspStart,
+        (start, unit): (GraspStart, ForceUnit),
         repeats: Option<Grasp>,
         env: &Env,
     ) -> Self {
@@ -104,6 +109,7 @@ impl HoldMotion {
         Self {
             view,
             confirming: None,
+            unit,
             repeats,
             done: None,
             end: None,

@@ -8,6 +8,7 @@ use crate::app::hand::hold::{HoldAction, HoldMotion};
 use crate::app::hand::running::MotionRun;
 use crate::app::notices::NoticeKind;
 use crate::app::settings::Settings;
+use crate::hand::newtons::ForceUnit;
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::{Angle, PerDof};
 use crate::motion::grasp::run::{GraspInput, GraspStart};
@@ -24,7 +25,8 @@ const PINCH: &str = "Pinch";
 /// Carries out an action on a hold.
 pub(super) fn hold(hand: &mut Hand, action: HoldAction, settings: &Settings, ctx: &mut Ctx<'_>) {
     match action {
-        HoldAction::Forces(forces) => hand.controls.set_hold_forces(forces),
+        HoldAction::Forces(unit, forces) => hand.controls.set_hold_forces(unit, forces),
+        HoldAction::Unit(unit) => hand.controls.set_hold_unit(unit),
         HoldAction::Start(close) => start(hand, (close, None), settings, ctx),
         HoldAction::Repeat(name) => repeat(hand, &name, settings, ctx),
         HoldAction::Save => save(hand, ctx),
@@ -106,7 +108,16 @@ fn start(
     // The user's own speeds and thresholds are restored when the user moves a joint next.
     hand.controls
         .override_limits(&PerDof::splat(Some(Angle::MAX)));
-    let own = (hand.controls.hold_forces(), PerDof::splat(1.0));
+    let newtons = hand.newtons.all_per_g();
+    let unit = match repeated {
+        // The forces of a grasp are g of the hand that made it.
+        Some(_) => ForceUnit::Grams,
+        None => hand.controls.hold_unit(&newtons),
+    };
+    let Some(reading_per_g) = unit.reading_per_g(&newtons) else {
+        return;
+    };
+    let own = (hand.controls.hold_forces_in(unit), reading_per_g);
     let (forces, reading_per_g) = repeated.as_ref().map_or(own, |repeated| {
         (repeated.grasp.forces, repeated.reading_per_g)
     });
@@ -124,7 +135,7 @@ fn start(
         (Some(repeated.grasp), repeated.unconfirmed)
     });
     let start = GraspStart { hold, unconfirmed };
-    let run = HoldMotion::begin(link, armed, start, grasp, ctx.env);
+    let run = HoldMotion::begin(link, armed, (start, unit), grasp, ctx.env);
     hand.running.0 = Some(MotionRun::Hold(Box::new(run)));
     hand.record_play(&RecordedPlay::hold(), ctx.now);
 }

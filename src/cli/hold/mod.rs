@@ -17,7 +17,7 @@ use crate::cli::trial::drive::{ArmedHand, by_user};
 use crate::hand::gap::Gap;
 use crate::hand::grip::Tightened;
 use crate::hand::hold_forces::HoldForces;
-use crate::hand::newtons::N_PER_G;
+use crate::hand::newtons::ForceUnit;
 use crate::hand::overshoot::{OvershootMap, Stiffness};
 use crate::hand::statistics::mean;
 use crate::hand::{Finger, Force, Moment, PerDof, Speed};
@@ -117,6 +117,13 @@ pub(crate) struct HoldArgs {
 }
 
 impl HoldArgs {
+    const fn unit(&self) -> ForceUnit {
+        match self.newtons {
+            true => ForceUnit::Newtons,
+            false => ForceUnit::Grams,
+        }
+    }
+
     /// The hand whose measurements and confirmations apply.
     fn own_hand(&self) -> &Endpoint {
         self.known_as.as_ref().unwrap_or(&self.hand)
@@ -473,11 +480,8 @@ fn object_words(object: &HeldObject) -> String {
 }
 
 fn forces(args: &HoldArgs) -> anyhow::Result<HoldForces> {
-    let (unit, per_g) = if args.newtons {
-        ("N", N_PER_G)
-    } else {
-        ("g", 1.0)
-    };
+    let unit = if args.newtons { "N" } else { "g" };
+    let per_g = args.unit().per_g();
     let grams = |option: &str, value: f64| {
         #[expect(clippy::cast_possible_truncation, reason = "the range is checked next")]
         let whole = (value / per_g).round() as i64;
@@ -535,21 +539,17 @@ fn newtons(hand: &Endpoint) -> anyhow::Result<PerDof<Option<f64>>> {
 }
 
 fn reading_per_g(args: &HoldArgs, newtons: &PerDof<Option<f64>>) -> anyhow::Result<PerDof<f64>> {
-    if !args.newtons {
-        return Ok(PerDof::splat(1.0));
+    if let Some(reading_per_g) = args.unit().reading_per_g(newtons) {
+        return Ok(reading_per_g);
     }
     let unknown = Finger::ALL
         .map(Finger::bend)
         .into_iter()
         .find(|dof| newtons[*dof].is_none());
-    if let Some(dof) = unknown {
-        bail!(
-            "nothing was moved: the newtons of {} of this hand are not known; 'handscope scale --joint {}' measures them",
-            dof.name(),
-            dof.name()
-        );
-    }
-    Ok(newtons.map(|newtons| newtons.map_or(1.0, |newtons| N_PER_G / newtons)))
+    let name = unknown.map_or("a finger", Dof::name);
+    bail!(
+        "nothing was moved: the newtons of {name} of this hand are not known; 'handscope scale --joint {name}' measures them"
+    );
 }
 
 /// Overshoot measured on this hand. An unreadable file counts as missing.

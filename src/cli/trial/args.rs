@@ -45,12 +45,20 @@ pub(crate) struct SeriesArgs {
     /// A tag to find them by; may be repeated
     #[arg(long = "tag", value_name = "WORD")]
     pub(crate) tags: Vec<String>,
+    /// The hand that is reached by way of --hand, where that is shared: what is known of it applies
+    #[arg(long, value_name = "URL", value_parser = crate::cli::parse::hand, hide = true)]
+    known_as: Option<Endpoint>,
     /// Print one JSON object per trial, and a last one for the result
     #[arg(long)]
     pub(crate) json: bool,
 }
 
 impl SeriesArgs {
+    /// The hand whose measurements apply, and to which the results belong.
+    pub(crate) fn own_hand(&self) -> &Endpoint {
+        self.known_as.as_ref().unwrap_or(&self.hand)
+    }
+
     /// Joints that close.
     pub(crate) fn joints(&self) -> &[Dof] {
         &self.joint

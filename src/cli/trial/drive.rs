@@ -34,7 +34,7 @@ pub(crate) async fn drive(
     plan: &TrialPlan,
 ) -> anyhow::Result<SeriesResult> {
     let wanted = ResultsRequest {
-        hand: &args.series.hand,
+        hand: args.series.own_hand(),
         json: args.series.json,
         folder: args.series.out.as_deref(),
         criterion: args.criterion(),

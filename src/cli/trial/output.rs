@@ -171,9 +171,8 @@ fn disturbed(trial: &TrialSummary) -> Option<String> {
 fn joint_words(joint: &JointMetrics, per_g: Option<f64>) -> String {
     let values = COLUMNS.iter().filter_map(|column| {
         let word = column.word?;
-        let grams = (column.value)(joint).filter(|_| column.unit == "g");
-        let in_newtons = grams.zip(per_g);
-        let in_newtons = in_newtons.map(|(grams, per_g)| format!(" ({:.1} N)", grams * per_g));
+        let in_newtons = column.newtons(joint, per_g);
+        let in_newtons = in_newtons.map(|newtons| format!(" ({newtons:.1} N)"));
         Some(format!(
             "{word} {} {}{}",
             column.text(joint),

@@ -49,7 +49,7 @@ async fn run_search(
 ) -> anyhow::Result<SearchReport> {
     let plan = search.plan();
     let wanted = ResultsRequest {
-        hand: &args.series.hand,
+        hand: args.series.own_hand(),
         json: args.series.json,
         folder: args.series.out.as_deref(),
         criterion: None,
@@ -64,7 +64,7 @@ async fn run_search(
         series: ended,
         finding: search.and_then(SettingsSearch::finding),
         tried: search.map(|own| own.tried().to_vec()).unwrap_or_default(),
-        newtons_per_g: session::newtons_per_g(&args.series.hand),
+        newtons_per_g: session::newtons_per_g(args.series.own_hand()),
     };
     let note = output::table(args, &report);
     results.close(ended, Some(("tune", note)))?;

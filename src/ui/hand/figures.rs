@@ -305,7 +305,9 @@ fn notes(pane: &Pane<'_>) -> [String; 2] {
             // Before it holds, the word says it all.
             let state = match run.view.phase {
                 HoldPhase::Measuring | HoldPhase::Closing => String::new(),
-                HoldPhase::Holding | HoldPhase::CannotHold => hold::state(look, &run.view),
+                HoldPhase::Holding | HoldPhase::CannotHold => {
+                    hold::state(look, &run.view, run.unit)
+                }
             };
             [state, object.unwrap_or_default()]
         }

@@ -5,12 +5,13 @@ use crate::app::hand::grasps::GraspState;
 use crate::app::hand::hold::{HoldAction, HoldMotion};
 use crate::hand::gap::Gap;
 use crate::hand::hold_forces::HoldForces;
+use crate::hand::newtons::ForceUnit;
 use crate::hand::{Finger, Force};
 use crate::motion::hold::{HoldClose, HoldPhase};
 use crate::poses::starter::starter;
 use crate::ui::hand::figures;
 use crate::ui::kit::{self, Button, Label, Look, NumberField, Pane, Weight};
-use crate::ui::text::{hold, words};
+use crate::ui::text::{Text, hold, words};
 use crate::ui::theme;
 use egui::{CornerRadius, Id, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
 
@@ -20,6 +21,8 @@ const POPUP: f32 = 420.0;
 const SLIDER_MOST: f32 = 1000.0;
 /// Height of the list of grasps; it scrolls beyond.
 const GRASPS: f32 = 120.0;
+/// Decimals of a force in newtons.
+const NEWTON_DECIMALS: usize = 1;
 /// Radius of a handle.
 const HANDLE: f32 = 8.0;
 /// The shipped pose to which all fingers close.
@@ -49,37 +52,84 @@ pub(crate) fn drawer_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
 
 /// Draws both forces: one slider with two handles, and a field for each.
 fn forces_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
-    let (look, forces) = (pane.look, pane.hand().controls.hold_forces());
-    let [least, most] = [forces.at_least(), forces.at_most()].map(|force| f32::from(force.get()));
+    let (look, controls) = (pane.look, &pane.hand().controls);
+    let unit = controls.hold_unit(&pane.hand().newtons.all_per_g());
+    let forces = controls.hold_forces_in(unit);
+    let both = [forces.at_least(), forces.at_most()].map(|force| f32::from(force.get()));
     let running = pane.hand().running.holds();
-    let moved = ui
-        .add_enabled_ui(!running, |ui| slider_ui(ui, look, [least, most]))
-        .inner;
-    let mut wanted = moved;
+    let slider = |ui: &mut Ui| slider_ui(ui, look, unit, both);
+    let mut wanted = ui.add_enabled_ui(!running, slider).inner;
     ui.horizontal(|ui| {
-        let both = [(hold::AT_LEAST, least), (hold::AT_MOST, most)];
-        for (nth, (text, now)) in both.into_iter().enumerate() {
+        for (nth, (text, now)) in titles(unit).into_iter().zip(both).enumerate() {
             Label::muted(look, text).ui(ui);
-            let range = f64::from(HoldForces::LEAST)..=f64::from(HoldForces::MOST);
-            let field = NumberField::new(look.tr(text), look.tip(text), range).needs_enter();
-            let refused = running.then(|| look.tr(hold::MOVES));
-            let typed = field.disabled(refused).ui(ui, pane, Some(now.into()));
-            #[expect(clippy::cast_possible_truncation, reason = "a force of at most 2000 g")]
+            let typed = field_ui(ui, pane, (text, unit), now);
             if let Some(typed) = typed {
-                let mut both = [least, most];
+                let mut both = both;
                 if let Some(own) = both.get_mut(nth) {
-                    *own = typed as f32;
+                    *own = typed;
                 }
                 wanted = Some(both);
             }
         }
+        unit_ui(ui, pane, unit);
     });
-    newtons_ui(ui, pane, [least, most]);
-    if let Some([least, most]) = wanted {
+    if unit == ForceUnit::Grams {
+        newtons_ui(ui, pane, both);
+    }
+    if let Some(both) = wanted {
         #[expect(clippy::cast_possible_truncation, reason = "a force of at most 2000 g")]
-        let [least, most] = [least, most].map(|g| Force::nearest(g.round() as i64));
+        let [least, most] = both.map(|g| Force::nearest(g.round() as i64));
         let forces = HoldForces::nearest(least, most);
-        pane.actions.push(Action::Hold(HoldAction::Forces(forces)));
+        let action = HoldAction::Forces(unit, forces);
+        pane.actions.push(Action::Hold(action));
+    }
+}
+
+/// Names of the two forces.
+const fn titles(unit: ForceUnit) -> [Text; 2] {
+    match unit {
+        ForceUnit::Grams => [hold::AT_LEAST, hold::AT_MOST],
+        ForceUnit::Newtons => [hold::AT_LEAST_N, hold::AT_MOST_N],
+    }
+}
+
+/// Draws the field of a force in g; returns the force that was typed.
+fn field_ui(
+    ui: &mut Ui,
+    pane: &mut Pane<'_>,
+    (text, unit): (Text, ForceUnit),
+    now: f32,
+) -> Option<f32> {
+    let look = pane.look;
+    let range = [HoldForces::LEAST, HoldForces::MOST].map(|g| f64::from(g) * unit.per_g());
+    let field = NumberField::new(look.tr(text), look.tip(text), range[0]..=range[1]).needs_enter();
+    let field = field.decimals(match unit {
+        ForceUnit::Grams => 0,
+        ForceUnit::Newtons => NEWTON_DECIMALS,
+    });
+    let running = pane.hand().running.holds();
+    let refused = running.then(|| look.tr(hold::MOVES));
+    let shown = f64::from(now) * unit.per_g();
+    let typed = field.disabled(refused).ui(ui, pane, Some(shown))?;
+    #[expect(clippy::cast_possible_truncation, reason = "a force of at most 2000 g")]
+    let grams = (typed / unit.per_g()) as f32;
+    Some(grams)
+}
+
+/// Draws the choice of the unit, of a hand whose fingers were all measured.
+fn unit_ui(ui: &mut Ui, pane: &mut Pane<'_>, unit: ForceUnit) {
+    let look = pane.look;
+    let newtons = pane.hand().newtons.all_per_g();
+    let is_known = ForceUnit::Newtons.reading_per_g(&newtons).is_some();
+    let running = pane.hand().running.holds().then(|| look.tr(hold::MOVES));
+    for (own, text) in [
+        (ForceUnit::Grams, hold::UNIT_G),
+        (ForceUnit::Newtons, hold::UNIT_N),
+    ] {
+        let unknown = (!is_known).then(|| look.tr(hold::UNIT_UNKNOWN));
+        let button = Button::text(look, text).choice(own == unit);
+        let button = button.disabled(running.or(unknown));
+        button.on_click(ui, pane, Action::Hold(HoldAction::Unit(own)));
     }
 }
 
@@ -109,7 +159,12 @@ fn newtons_ui(ui: &mut Ui, pane: &Pane<'_>, both: [f32; 2]) {
 }
 
 /// A slider with two handles; returns both forces if one was dragged.
-fn slider_ui(ui: &mut Ui, look: Look, [least, most]: [f32; 2]) -> Option<[f32; 2]> {
+fn slider_ui(
+    ui: &mut Ui,
+    look: Look,
+    unit: ForceUnit,
+    [least, most]: [f32; 2],
+) -> Option<[f32; 2]> {
     let size = vec2(ui.available_width(), 2.0 * HANDLE + 4.0);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let track = rect.shrink2(vec2(HANDLE, 0.0));
@@ -123,8 +178,8 @@ fn slider_ui(ui: &mut Ui, look: Look, [least, most]: [f32; 2]) -> Option<[f32; 2
     painter.rect_filled(line(track.left(), track.right()), round, palette.control);
     painter.rect_filled(line(x(least), x(most)), round, palette.accent);
     let mut moved = None;
-    let both = [(hold::AT_LEAST, least), (hold::AT_MOST, most)];
-    for (nth, (text, now)) in both.into_iter().enumerate() {
+    let both = titles(unit).into_iter().zip([least, most]);
+    for (nth, (text, now)) in both.enumerate() {
         let center = pos2(x(now), rect.center().y);
         let place = Rect::from_center_size(center, vec2(2.0 * HANDLE, rect.height()));
         let id = Id::unique(("hold force", nth));
@@ -140,7 +195,8 @@ fn slider_ui(ui: &mut Ui, look: Look, [least, most]: [f32; 2]) -> Option<[f32; 2
         painter.circle_filled(center, HANDLE, fill);
         if let Some(pointer) = handle.interact_pointer_pos().filter(|_| handle.dragged()) {
             let share = (pointer.x - track.left()) / track.width();
-            let g = (share.clamp(0.0, 1.0) * SLIDER_MOST / 10.0).round() * 10.0;
+            let step = step_g(unit);
+            let g = (share.clamp(0.0, 1.0) * SLIDER_MOST / step).round() * step;
             let room = f32::from(HoldForces::ROOM);
             moved = Some(match nth {
                 0 => [g.min(most - room), most],
@@ -150,6 +206,15 @@ fn slider_ui(ui: &mut Ui, look: Look, [least, most]: [f32; 2]) -> Option<[f32; 2
         handle.on_hover_text(look.tip(text));
     }
     moved
+}
+
+/// Step of the slider, g: round numbers of its unit.
+const fn step_g(unit: ForceUnit) -> f32 {
+    match unit {
+        ForceUnit::Grams => 10.0,
+        // 0.1 N
+        ForceUnit::Newtons => 10.197_162,
+    }
 }
 
 /// Draws the ways in which a hold begins.
@@ -197,9 +262,9 @@ fn state_ui(ui: &mut Ui, pane: &Pane<'_>) {
         Some(Ok(Ok(end))) => (hold::end(look, Ok(end)), palette.muted),
         Some(Err(why)) => (hold::end(look, Err(why)), palette.muted),
         None if run.view.phase == HoldPhase::CannotHold => {
-            (hold::state(look, &run.view), palette.warn)
+            (hold::state(look, &run.view, run.unit), palette.warn)
         }
-        None => (hold::state(look, &run.view), palette.text),
+        None => (hold::state(look, &run.view, run.unit), palette.text),
     };
     if let Some(confirming) = run.confirming {
         let words = hold::confirming(look, confirming);

@@ -3,6 +3,7 @@
 use crate::app::action::Action;
 use crate::hand::PerDof;
 use crate::hand::gap::Gap;
+use crate::hand::newtons::ForceUnit;
 use crate::poses::Play;
 use crate::poses::edit::{LibraryEdit, SequenceEdit};
 use crate::poses::library::{EntryId, NAME_CHARS_MAX, PoseId, Sequence, SequenceId};
@@ -228,7 +229,7 @@ fn state_text(pane: &Pane<'_>, sequence: &Sequence, dry: Option<usize>) -> (Stri
         words = format!("{words} {}", run.view.at + 1);
     }
     if let Some(view) = run.hold.as_ref().filter(|_| run.holds()) {
-        words = format!("{words} · {}", hold::state(look, view));
+        words = format!("{words} · {}", hold::state(look, view, ForceUnit::Grams));
     }
     if run.view.late > 0 {
         words = format!("{words} · {} {}", look.tr(poses::SAY_LATE), run.view.late);

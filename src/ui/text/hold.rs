@@ -1,6 +1,8 @@
 //! Sentences of a hold between two forces.
 
+use crate::hand::Force;
 use crate::hand::grip::{TightenCause, Tightened};
+use crate::hand::newtons::ForceUnit;
 use crate::hand::overshoot::Stiffness;
 use crate::motion::grasp::doubt::GraspDoubt;
 use crate::motion::grasp::run::{ConfirmStep, Confirming};
@@ -16,6 +18,11 @@ use crate::ui::text::{Text, tune, words};
 texts! {
     HOLD: "Hold", "保持", "Holds an object with the least force that holds it, between two limits.", "在两个限值之间，用能保持住物体的最小力保持物体。";
     AT_LEAST: "At least, g", "最小力 g", "Each finger presses with this force or more.", "每根手指的力不小于此值。";
+    AT_LEAST_N: "At least, N", "最小力 N", "Each finger presses with this force or more.", "每根手指的力不小于此值。";
+    AT_MOST_N: "At most, N", "最大力 N", "No finger presses harder. The hand itself keeps to it by its force threshold.", "每根手指的力不大于此值，由手自身的力阈值保证。";
+    UNIT_G: "g", "g", "The forces as this hand reads them.", "按此手读数的力。";
+    UNIT_N: "N", "N", "The forces in newtons, as measured with a scale. Both units have forces of their own: nothing is converted.", "以牛顿计的力（已用秤标定）。两种单位各有设定，互不换算。";
+    UNIT_UNKNOWN: "Measure the newtons of all fingers first: Hand > Check-up.", "请先测量所有手指的牛顿值：手 > 体检。";
     AT_MOST: "At most, g", "最大力 g", "No finger presses harder. The hand itself keeps to it by its force threshold.", "每根手指的力不大于此值，由手自身的力阈值保证。";
     IN_NEWTONS: "At least {}, at most {}, as measured for: {}", "按已标定手指：最小 {}，最大 {}（{}）";
     FROM_TO_N: "{} to {} N", "{} 至 {} N";
@@ -29,7 +36,7 @@ texts! {
     HOLDING: "Holding with {} g, margin {}", "保持力 {} g，裕量 {}";
     HELD: "Holding", "正在保持";
     TOO_WEAK: "Cannot hold", "无法保持";
-    CANNOT_HOLD: "Cannot hold within {} g, margin {}", "{} g 以内无法保持，裕量 {}";
+    CANNOT_HOLD: "Cannot hold within {}, margin {}", "{} 以内无法保持，裕量 {}";
     CANNOT_HOLD_NOTICE: "The hold needs more force than allowed: raise At most, or support the object.", "所需的力超过最大力：请提高最大力或托住物体。";
     TIGHTENED: "tightened {} times, last: {}", "加力 {} 次，最近：{}";
     WARM: "a drive is warm", "驱动器温度偏高";
@@ -117,8 +124,8 @@ pub(crate) const fn phase(phase: HoldPhase) -> Text {
     }
 }
 
-/// A running hold in one line.
-pub(crate) fn state(look: Look, view: &HoldView) -> String {
+/// A running hold in one line; its two forces are in this unit.
+pub(crate) fn state(look: Look, view: &HoldView, unit: ForceUnit) -> String {
     let margin = view.margin_percent;
     let margin = margin.map_or("-".into(), |percent| format!("{percent} %"));
     let main = match view.phase {
@@ -128,7 +135,10 @@ pub(crate) fn state(look: Look, view: &HoldView) -> String {
             let force = view.mean_g().map_or("-".into(), |g| g.to_string());
             look.fill(HOLDING, &[&force, &margin])
         }
-        HoldPhase::CannotHold => look.fill(CANNOT_HOLD, &[&view.forces.at_most().get(), &margin]),
+        HoldPhase::CannotHold => look.fill(
+            CANNOT_HOLD,
+            &[&force_in(unit, view.forces.at_most()), &margin],
+        ),
     };
     let last = view
         .last
@@ -136,6 +146,15 @@ pub(crate) fn state(look: Look, view: &HoldView) -> String {
     let warm = view.is_warm.then(|| look.tr(WARM).to_owned());
     let all: Vec<String> = std::iter::once(main).chain(last).chain(warm).collect();
     look.list(&all)
+}
+
+/// One of the two forces of a hold with its unit.
+fn force_in(unit: ForceUnit, force: Force) -> String {
+    let value = f64::from(force.get()) * unit.per_g();
+    match unit {
+        ForceUnit::Grams => format!("{value:.0} g"),
+        ForceUnit::Newtons => format!("{value:.1} N"),
+    }
 }
 
 /// What is in the hand, in one line.

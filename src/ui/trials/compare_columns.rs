@@ -3,7 +3,7 @@
 use crate::hand::Status;
 use crate::trials::TrialSetting;
 use crate::trials::columns::{COLUMNS, Metric, TrialColumn};
-use crate::trials::measure::metrics::DEAD_DRIVE;
+use crate::trials::measure::metrics::{DEAD_DRIVE, JointMetrics};
 use crate::ui::kit::{Look, format};
 use crate::ui::text::{Text, tune, words};
 use std::cmp::Ordering;
@@ -25,10 +25,68 @@ const fn title(metric: Metric) -> Option<Text> {
     }
 }
 
-/// Columns shown in the window, with their headings.
-pub(crate) fn shown() -> impl Iterator<Item = (&'static TrialColumn, Text)> {
-    let titled = |column: &'static TrialColumn| Some((column, title(column.metric)?));
-    COLUMNS.iter().filter_map(titled)
+/// Heading of the column with the same in newtons; `None` if there is none.
+const fn newtons_title(metric: Metric) -> Option<Text> {
+    match metric {
+        Metric::Peak => Some(tune::COLUMN_PEAK_N),
+        Metric::Steady => Some(tune::COLUMN_STEADY_N),
+        _ => None,
+    }
+}
+
+/// Unit of a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum ColumnUnit {
+    /// That of the quantity.
+    #[default]
+    Own,
+    /// Newtons, of a force.
+    Newtons,
+}
+
+/// A column shown in the window, with its heading.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ShownColumn {
+    pub(crate) column: &'static TrialColumn,
+    pub(crate) unit: ColumnUnit,
+    pub(crate) title: Text,
+}
+
+impl ShownColumn {
+    /// The value of a joint with these newtons for a gram.
+    pub(crate) fn value(&self, joint: &JointMetrics, per_g: Option<f64>) -> Option<f64> {
+        match self.unit {
+            ColumnUnit::Own => (self.column.value)(joint),
+            ColumnUnit::Newtons => self.column.newtons(joint, per_g),
+        }
+    }
+
+    /// The same as text.
+    pub(crate) fn text(&self, joint: &JointMetrics, per_g: Option<f64>) -> String {
+        match self.unit {
+            ColumnUnit::Own => self.column.text(joint),
+            ColumnUnit::Newtons => self.column.newtons_text(joint, per_g),
+        }
+    }
+}
+
+/// Columns shown in the window. Those in newtons are for hands that were measured on a scale.
+pub(crate) fn shown() -> impl Iterator<Item = ShownColumn> {
+    let titled = |column: &'static TrialColumn| {
+        let units = [
+            (ColumnUnit::Own, title(column.metric)),
+            (ColumnUnit::Newtons, newtons_title(column.metric)),
+        ];
+        units.into_iter().filter_map(move |(unit, title)| {
+            let title = title?;
+            Some(ShownColumn {
+                column,
+                unit,
+                title,
+            })
+        })
+    };
+    COLUMNS.iter().flat_map(titled)
 }
 
 /// Orders numbers; unknown values go last.

@@ -3,13 +3,16 @@
 use crate::app::recordings::RecordingAction;
 use crate::app::settings::Language;
 use crate::app::trials::{ComparedRow, Comparison, RowKey};
-use crate::trials::columns::{COLUMNS, Metric, TrialColumn};
+use crate::hand::PerDof;
+use crate::trials::columns::Metric;
 use crate::ui::kit::{self, Label, Pane, dash};
 use crate::ui::recordings::stretch::ReplayedStretch;
 use crate::ui::text::{Text, tune, words};
 use crate::ui::theme;
 use crate::ui::trials::compare_choice::TrialKey;
-use crate::ui::trials::compare_columns::{end_words, order, setting_words, shown};
+use crate::ui::trials::compare_columns::{
+    ColumnUnit, ShownColumn, end_words, order, setting_words, shown,
+};
 use crate::ui::trials::compare_curves::color;
 use crate::ui::trials::compare_list;
 use egui::{Color32, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
@@ -32,7 +35,7 @@ pub(crate) fn height(rows: usize) -> f32 {
 enum By {
     #[default]
     Trial,
-    Number(Metric),
+    Number(Metric, ColumnUnit),
     End,
 }
 
@@ -63,8 +66,10 @@ struct Pressed<'a> {
 struct TrialSheet<'a, 'b> {
     pane: &'a Pane<'b>,
     comparison: &'a Comparison,
-    /// Number of value columns that fit.
-    columns: usize,
+    /// Newtons of a gram of each joint of the hand that is open.
+    newtons: PerDof<Option<f64>>,
+    /// The value columns that fit.
+    columns: Vec<ShownColumn>,
 }
 
 impl TableView {
@@ -87,11 +92,16 @@ impl TableView {
         let fits = |columns: &usize| {
             first + END + number * f32::from(u8::try_from(*columns).unwrap_or(u8::MAX)) <= width
         };
-        let sheet = TrialSheet {
+        let mut sheet = TrialSheet {
             pane,
             comparison,
-            columns: (1..=shown().count()).rfind(fits).unwrap_or(1),
+            newtons: pane.hand().newtons.all_per_g(),
+            columns: Vec::new(),
         };
+        sheet.columns = sheet.all_columns();
+        let count = (1..=sheet.columns.len()).rfind(fits).unwrap_or(1);
+        sheet.columns.truncate(count);
+        let sheet = sheet;
         let is_pointed = ui.rect_contains_pointer(ui.available_rect_before_wrap());
         self.sort(&sheet, is_pointed);
         let order = self.laid.as_ref().map_or(&[][..], |(.., order)| order);
@@ -153,6 +163,22 @@ impl<'a> TrialSheet<'a, '_> {
         self.comparison.sessions().len() > 1
     }
 
+    /// Newtons of a gram of the joint of a row; `None` where they are unknown, as those of any other hand.
+    fn per_g(&self, seen: ComparedRow<'_>) -> Option<f64> {
+        let is_own = seen.session.head.hand == self.pane.hand().connection.name();
+        self.newtons[seen.joint.dof].filter(|_| is_own)
+    }
+
+    /// All columns; those in newtons only if a joint that was tried has newtons.
+    fn all_columns(&self) -> Vec<ShownColumn> {
+        let rows = self.comparison.rows.iter();
+        let mut seen = rows.filter_map(|key| self.seen(*key));
+        let has_newtons = self.newtons.iter().any(|(_, per_g)| per_g.is_some())
+            && seen.any(|seen| self.per_g(seen).is_some());
+        let columns = shown().filter(|own| has_newtons || own.unit == ColumnUnit::Own);
+        columns.collect()
+    }
+
     fn seen(&self, place: RowKey) -> Option<ComparedRow<'a>> {
         self.comparison.row(&self.pane.state.trials, place)
     }
@@ -164,10 +190,14 @@ impl<'a> TrialSheet<'a, '_> {
             match sorting.by {
                 By::Trial => (u32::try_from(key.trial).ok().map(f64::from), None),
                 By::End => (None, seen.map(|seen| self.end(seen))),
-                By::Number(metric) => {
-                    let own = COLUMNS.iter().find(|column| column.metric == metric);
-                    let cell = own.zip(seen);
-                    (cell.and_then(|(own, seen)| (own.value)(seen.joint)), None)
+                By::Number(metric, unit) => {
+                    let is_own =
+                        |own: &ShownColumn| (own.column.metric, own.unit) == (metric, unit);
+                    let cell = shown().find(is_own).zip(seen);
+                    let value = |(own, seen): (ShownColumn, ComparedRow<'_>)| {
+                        own.value(seen.joint, self.per_g(seen))
+                    };
+                    (cell.and_then(value), None)
                 }
             }
         };
@@ -194,15 +224,23 @@ impl<'a> TrialSheet<'a, '_> {
 
     /// All values of a row, including those without a column.
     fn figures(&self, seen: ComparedRow<'_>) -> String {
-        let figure = |(column, title): (&TrialColumn, Text)| {
-            format!("{}: {}", self.pane.look.tr(title), column.text(seen.joint))
+        let figure = |own: ShownColumn| {
+            let in_newtons = own.column.newtons(seen.joint, self.per_g(seen));
+            let in_newtons = in_newtons.map(|newtons| format!(" ({newtons:.1} N)"));
+            format!(
+                "{}: {}{}",
+                self.pane.look.tr(own.title),
+                own.column.text(seen.joint),
+                in_newtons.unwrap_or_default()
+            )
         };
-        shown().map(figure).collect::<Vec<_>>().join("\n")
+        let figures = shown().filter(|own| own.unit == ColumnUnit::Own);
+        figures.map(figure).collect::<Vec<_>>().join("\n")
     }
 
     fn head_ui(&self, row: &mut TableRow<'_, '_>, sorting: &mut Sorting) {
-        let numbers = shown().take(self.columns);
-        let numbers = numbers.map(|(column, title)| (By::Number(column.metric), title));
+        let by = |own: &ShownColumn| By::Number(own.column.metric, own.unit);
+        let numbers = self.columns.iter().map(|own| (by(own), own.title));
         let heads = [(By::Trial, tune::COLUMN_TRIAL)].into_iter().chain(numbers);
         for (by, title) in heads.chain([(By::End, tune::COLUMN_END)]) {
             row.col(|ui| self.head_cell_ui(ui, by, title, sorting));
@@ -274,9 +312,10 @@ impl<'a> TrialSheet<'a, '_> {
             let label = Label::new(&whole, text).small().ui(ui);
             label.on_hover_text(self.figures(seen));
         });
-        for (column, title) in shown().take(self.columns) {
-            let label = format!("{short} {}", look.tr(title));
-            row.col(|ui| number_ui(ui, &label, &column.text(seen.joint), text));
+        for own in &self.columns {
+            let label = format!("{short} {}", look.tr(own.title));
+            let value = own.text(seen.joint, self.per_g(seen));
+            row.col(|ui| number_ui(ui, &label, &value, text));
         }
         row.col(|ui| {
             ui.add_space(theme::GAP);

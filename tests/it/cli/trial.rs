@@ -2,8 +2,12 @@
 
 use crate::cli::refuses_unarmed;
 use crate::setup::busy::unless_busy;
-use crate::setup::process::{Running, run, sim_on_all, sim_on_tcp, start, take_pipe};
+use crate::setup::grasp;
+use crate::setup::process::{
+    Running, handscope, listen, run, sim_on_all, sim_on_tcp, start, take_pipe,
+};
 use handscope::hand::Dof;
+use handscope::hand::newtons::N_PER_G;
 use handscope::sim::serve::modbus_tcp;
 use handscope::sim::{SharedHand, SimConfig, SimHand};
 use nix::sys::signal::Signal;
@@ -59,6 +63,29 @@ fn without_a_persons_word_nothing_moves() {
         let (_sim, hand) = rigid();
         refuses_unarmed(&hand, &trial(&hand, &[]));
         assert_eq!(index_angle(&hand), 1000);
+    });
+}
+
+/// As a script does that reaches its hand over a shared one.
+#[test]
+fn forces_are_in_newtons_of_the_hand_that_is_reached_by_way_of_a_shared_one() {
+    unless_busy(|| {
+        let home = tempfile::tempdir().unwrap();
+        let settings = home.path().join(".config/handscope/settings.toml");
+        grasp::store(&settings, "tcp:10.0.0.9", "ball");
+        let (_sim, hand) = rigid();
+        let peaks = |more: &[&str]| {
+            let mut command = handscope();
+            command.env("HOME", home.path());
+            command.args(trial(&hand, &[&["--arm"], more].concat()));
+            let lines = listen(command).end().ok().lines();
+            let joint = &lines[0]["trial"]["joints"][0];
+            let value = |name: &str| joint[name].as_f64();
+            [value("peak_force_g"), value("peak_force_n")]
+        };
+        let [grams, newtons] = peaks(&["--known-as", "tcp:10.0.0.9"]).map(Option::unwrap);
+        assert!((newtons - N_PER_G * grams).abs() < 0.002, "{grams} g");
+        assert_eq!(peaks(&[])[1], None, "nothing is known of the shared one");
     });
 }
 

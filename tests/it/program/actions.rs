@@ -26,6 +26,7 @@ use handscope::exhibit::stage::ExhibitWish;
 use handscope::hand::gap::Gap;
 use handscope::hand::hold_forces::HoldForces;
 use handscope::hand::kinematics::Side;
+use handscope::hand::newtons::ForceUnit;
 use handscope::hand::register::{Persistence, by_address};
 use handscope::hand::{Angle, Dof, Fault, Force, Gesture, GestureRoute, Moment, Speed};
 use handscope::history::{Mark, MarkKind};
@@ -217,10 +218,11 @@ fn all(things: Things) -> Vec<Action> {
         Action::Lock(Dof::Ring, true),
         Action::Preset(Preset::Close),
         Action::Pinch(Gap::MAX),
-        Action::Hold(HoldAction::Forces(HoldForces::nearest(
-            Force::MIN,
-            Force::RATED,
-        ))),
+        Action::Hold(HoldAction::Forces(
+            ForceUnit::Grams,
+            HoldForces::nearest(Force::MIN, Force::RATED),
+        )),
+        Action::Hold(HoldAction::Unit(ForceUnit::Newtons)),
         Action::Hold(HoldAction::Start(HoldClose::Pinch(Gap::MIN))),
         Action::Hold(HoldAction::Repeat("egg".into())),
         Action::Hold(HoldAction::Save),

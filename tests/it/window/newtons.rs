@@ -1,10 +1,11 @@
 //! The calibration of a finger's force with a kitchen scale, in the window: what is asked and typed, what is stored, and how it ends.
 
 use crate::setup::grasp;
-use crate::setup::window::{Bench, LARGE};
+use crate::setup::window::{Bench, LARGE, Role};
+use crate::window::tune::{arm, enter, finish, grid, short};
 use egui::Key;
 use handscope::app::action::Action;
-use handscope::hand::newtons::{LOADS, N_PER_G};
+use handscope::hand::newtons::{ForceUnit, LOADS, N_PER_G};
 use handscope::hand::{Dof, Finger, PerDof};
 use handscope::poses::Preset;
 use handscope::sim::object::{Object, Obstacle};
@@ -117,6 +118,15 @@ fn accepted_readings_remain_when_it_ends_early() {
     assert_eq!(bench.state().hand().newtons.per_g(Dof::Index), None);
 }
 
+/// Connects again, with all fingers measured: the hand reads true grams.
+fn measure(bench: &mut Bench, hand: &str) {
+    grasp::store(&bench.folder().join("kept/settings.toml"), hand, "Ball");
+    bench.act(Action::Disconnect);
+    bench.wait(500);
+    bench.act(Action::Connect(hand.parse().unwrap()));
+    bench.wait(1500);
+}
+
 #[test]
 fn the_forces_of_a_hold_stand_in_newtons_of_the_fingers_that_were_measured() {
     let hand = "tcp:10.0.0.1";
@@ -126,14 +136,78 @@ fn the_forces_of_a_hold_stand_in_newtons_of_the_fingers_that_were_measured() {
     bench.run(100);
     assert!(bench.texts_with("as measured for").is_empty());
     bench.click("Hold");
-    grasp::store(&bench.folder().join("kept/settings.toml"), hand, "Ball");
-    bench.act(Action::Disconnect);
-    bench.wait(500);
-    bench.act(Action::Connect(hand.parse().unwrap()));
-    bench.wait(1500);
+    measure(&mut bench, hand);
     bench.click("Hold");
     bench.run(100);
     // 150 and 400 g.
     let shown = bench.texts_with("At least 1.5 N, at most 3.9 N, as measured for");
     assert_eq!(shown.len(), 1, "{:?}", bench.texts());
+}
+
+#[test]
+fn a_hold_is_set_in_newtons_once_all_fingers_were_measured_and_nothing_is_converted() {
+    let hand = "tcp:10.0.0.1";
+    let mut bench = Bench::kept(SimConfig::default(), hand, LARGE);
+    bench.wait(1000);
+    bench.click("Hold");
+    bench.run(100);
+    assert!(bench.is_disabled(Role::Button, "N"));
+    bench.click("Hold");
+    measure(&mut bench, hand);
+    bench.click("Hold");
+    bench.run(100);
+    enter(&mut bench, "At most, g", "500");
+    bench.click_button("N");
+    bench.run(100);
+    assert_eq!(bench.reading("At least, N"), "1.5");
+    enter(&mut bench, "At most, N", "3");
+    let grams = |bench: &Bench, unit: ForceUnit| {
+        let forces = bench.state().hand().controls.hold_forces_in(unit);
+        (forces.at_least().get(), forces.at_most().get())
+    };
+    assert_eq!(grams(&bench, ForceUnit::Newtons), (150, 306));
+    assert_eq!(grams(&bench, ForceUnit::Grams), (150, 500));
+    bench.act(Action::Arm);
+    bench.run(300);
+    bench.click("Close all fingers");
+    bench.run(100);
+    let run = bench.state().hand().running.hold().unwrap();
+    assert_eq!(run.unit, ForceUnit::Newtons);
+    assert_eq!(run.view.forces.at_most().get(), 306);
+    bench.click("End the hold");
+    bench.run(300);
+    bench.click_button("g");
+    bench.run(100);
+    assert_eq!(bench.reading("At most, g"), "500");
+}
+
+#[test]
+fn the_table_of_trials_shows_newtons_beside_grams_of_the_hand_that_was_measured() {
+    let hand = "tcp:10.0.0.1";
+    let config = SimConfig {
+        scenario: Scenario::Rigid,
+        ..SimConfig::default()
+    };
+    let mut bench = Bench::kept(config, hand, LARGE);
+    bench.wait(1000);
+    grid(&mut bench);
+    short(&mut bench);
+    arm(&mut bench);
+    bench.click("Start trials");
+    finish(&mut bench, 60_000);
+    bench.show(View::Compare);
+    let grams: f64 = bench.reading("1 Peak, g").parse().unwrap();
+    assert!(bench.texts_with("Peak, N").is_empty());
+    measure(&mut bench, hand);
+    bench.show(View::Compare);
+    bench.run(100);
+    let newtons: f64 = bench.reading("1 Peak, N").parse().unwrap();
+    assert!((newtons - N_PER_G * grams).abs() < 0.06, "{grams} g");
+    assert_eq!(bench.reading("1 Peak, g").parse::<f64>().unwrap(), grams);
+    // A session of another hand has none.
+    bench.act(Action::Connect("tcp:10.0.0.2".parse().unwrap()));
+    bench.wait(1500);
+    bench.show(View::Compare);
+    bench.run(100);
+    assert!(bench.texts_with("Peak, N").is_empty());
 }

@@ -137,9 +137,11 @@ texts! {
     COLUMN_DEAD: "Dead, ms", "延迟 ms", "From the command to the first motion.", "从指令到开始运动的时间。";
     COLUMN_CONTACT: "Contact, s", "接触 s", "From the command to the contact, by force.", "从指令到力显示接触的时间。";
     COLUMN_PEAK: "Peak, g", "峰值 g", "Highest force above the reading at rest.", "相对静止读数的最大力。";
+    COLUMN_PEAK_N: "Peak, N", "峰值 N", "The same in newtons, of the joints that were measured on a scale.", "同一力以牛顿计，仅限用秤测量过的自由度。";
     COLUMN_OVER: "Over, g", "超出 g", "Overshoot: highest force above the threshold.", "超调：最大力超出力阈值的部分。";
     COLUMN_SETTLE: "Settle, s", "稳定 s", "From the contact until the force stays steady.", "从接触到力稳定的时间。";
     COLUMN_STEADY: "Steady, g", "稳态 g", "Force at the end of the hold.", "保持末尾的力。";
+    COLUMN_STEADY_N: "Steady, N", "稳态 N", "The same in newtons, of the joints that were measured on a scale.", "同一力以牛顿计，仅限用秤测量过的自由度。";
     COLUMN_RELAX: "Relax, g", "松弛 g", "Force lost between peak and end of the hold.", "从峰值到保持末尾损失的力。";
     COLUMN_SLIPS: "Slips", "滑动", "Sudden losses of force while it held.", "保持期间力突然下降的次数。";
     COLUMN_CURRENT: "Peak, mA", "峰值 mA", "Highest current of the drive.", "驱动器的最大电流。";
