@@ -390,7 +390,7 @@ impl Player {
     /// from before the step does not count.
     fn has_grasped(&self, since: Moment, grasp: &GripEstimate) -> bool {
         let is_new = grasp.since >= since.plus(REACTION_TIME);
-        let is_held = grasp.state == GripState::Holding && is_new;
+        let is_held = grasp.state.is_still() && is_new;
         let closes = |part: &WayPart| part.is_pinching || self.parts.len() == 1;
         is_held && self.until().is_some() && self.parts.front().is_some_and(closes)
     }
@@ -440,7 +440,7 @@ impl Player {
             return;
         };
         let is_empty = grasp.state == GripState::Empty && now.since(grasp.since) >= EMPTY_DURATION;
-        if grasp.state == GripState::Holding {
+        if grasp.state.is_still() {
             self.arrive(now);
         } else if is_empty && self.view.retries < until.retries.get() {
             self.view.retries += 1;

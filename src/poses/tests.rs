@@ -225,7 +225,7 @@ fn waiting_cue() -> Cue {
 }
 
 #[test]
-fn only_holding_ends_a_wait_and_what_is_there_instead_is_told() {
+fn only_an_object_at_rest_ends_a_wait_and_what_is_there_instead_is_told() {
     for state in GripState::ALL {
         let mut player = Player::start(vec![waiting_cue()], false, PlayMode::Through, ms(0));
         let mut seen = |millis| {
@@ -238,7 +238,7 @@ fn only_holding_ends_a_wait_and_what_is_there_instead_is_told() {
         seen(400);
         let end = seen(1010);
         match state {
-            GripState::Holding => {
+            GripState::Holding | GripState::Touching => {
                 assert!(matches!(at_once, (false, PlayPhase::Dwelling { .. })));
                 assert_eq!(end.1, PlayPhase::Ended(Ok(PlayEnd::Finished)));
             }

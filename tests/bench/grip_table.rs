@@ -399,7 +399,7 @@ impl Truth {
     }
 
     fn of_grasp(&self) -> Option<GripState> {
-        use GripState::{Empty, Holding, Lost, Moving, Open, Slipping, TooHard};
+        use GripState::{Empty, Holding, Lost, Moving, Open, Slipping, TooHard, Touching};
         let states: Option<Vec<GripState>> = self
             .fingers
             .as_array()
@@ -407,10 +407,14 @@ impl Truth {
             .map(|finger| finger.state)
             .collect();
         let states = states?;
-        let holds = states.contains(&Holding);
-        [Slipping, TooHard, Lost, Moving, Holding, Empty, Open]
+        let holding = states.iter().filter(|state| **state == Holding).count();
+        let first = [Slipping, TooHard, Lost, Moving, Holding, Empty, Open]
             .into_iter()
-            .find(|state| states.contains(state) && !(*state == Lost && holds))
+            .find(|state| states.contains(state) && !(*state == Lost && holding > 0));
+        match first {
+            Some(Holding) if holding == 1 => Some(Touching),
+            other => other,
+        }
     }
 }
 

@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Literal, Mapping, Optional, Tuple, TypedDict
 
 Joint = Literal["little", "ring", "middle", "index", "thumb_bend", "thumb_rotate"]
 Finger = Literal["little", "ring", "middle", "index", "thumb"]
-GripState = Literal["unknown", "open", "moving", "empty", "holding", "slipping", "lost", "too_hard"]
+GripState = Literal["unknown", "open", "moving", "empty", "holding", "slipping", "lost", "too_hard", "touching"]
 MoveEnd = Literal["reached", "stopped", "late"]
 
 JOINTS: Tuple[Joint, ...] = ("little", "ring", "middle", "index", "thumb_bend", "thumb_rotate")

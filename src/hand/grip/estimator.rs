@@ -158,12 +158,14 @@ impl GripEstimator {
             states.filter(|of_finger| *of_finger == state).count()
         };
         let has = |state| count(state) > 0;
-        let holds = count(GripState::Holding) >= usize::from(self.thresholds.least_fingers);
+        let holding = count(GripState::Holding);
+        let holds = holding >= usize::from(self.thresholds.least_fingers);
         match () {
             () if has(GripState::Slipping) => GripState::Slipping,
             () if has(GripState::TooHard) => GripState::TooHard,
             () if has(GripState::Lost) && !holds => GripState::Lost,
             () if has(GripState::Moving) => GripState::Moving,
+            () if holds && holding == 1 => GripState::Touching,
             () if holds => GripState::Holding,
             () if has(GripState::Unknown) => GripState::Unknown,
             () if has(GripState::Empty) || has(GripState::Holding) => GripState::Empty,
@@ -437,11 +439,13 @@ mod tests {
     }
 
     #[test]
-    fn a_pinch_holds_with_two_fingers_only() {
+    fn one_finger_alone_touches_and_a_pinch_holds_with_two_fingers_only() {
         let mut hand = Reading::new(Some(5.0));
         (hand.angle, hand.status) = (400, Status::ForceReached);
         assert_eq!(hand.after(300), GripState::Holding);
-        assert_eq!(hand.estimator.grip().grasp.state, GripState::Holding);
+        let touching = hand.estimator.grip().grasp.state;
+        assert_eq!(touching, GripState::Touching);
+        assert!(touching.is_still() && touching.is_held());
         let pinch = GripThresholds {
             least_fingers: 2,
             ..GripThresholds::default()

@@ -18,7 +18,7 @@ pub enum GripState {
     Moving,
     /// At rest and closed, with nothing in the way.
     Empty,
-    /// At rest, pressing on something that does not move.
+    /// At rest, pressing on something that does not move; of the grasp: with two fingers or more.
     Holding,
     /// Pressing on something that slides or is about to slide.
     Slipping,
@@ -26,11 +26,13 @@ pub enum GripState {
     Lost,
     /// Pressing harder than the threshold allows.
     TooHard,
+    /// Of the grasp only: one finger alone holds. It may press on anything, as a palm that supports an object is not read.
+    Touching,
 }
 
 impl GripState {
     /// All states, in the order of [`Self::number`].
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Unknown,
         Self::Open,
         Self::Moving,
@@ -39,14 +41,20 @@ impl GripState {
         Self::Slipping,
         Self::Lost,
         Self::TooHard,
+        Self::Touching,
     ];
 
     /// True for the states in which an object is pressed at rest.
     pub const fn is_held(self) -> bool {
-        matches!(self, Self::Holding | Self::Slipping | Self::TooHard)
+        self.is_still() || matches!(self, Self::Slipping | Self::TooHard)
     }
 
-    /// Stable number for numeric tables: 0 (unknown) to 7 (too hard), in the order of [`Self::ALL`].
+    /// True while an object is pressed at rest and nothing else is to be said of it: what a step *until holding* waits for.
+    pub const fn is_still(self) -> bool {
+        matches!(self, Self::Holding | Self::Touching)
+    }
+
+    /// Stable number for numeric tables: 0 (unknown) to 8 (touching), in the order of [`Self::ALL`].
     pub const fn number(self) -> u8 {
         self as u8
     }
@@ -62,6 +70,7 @@ impl GripState {
             Self::Slipping => "slipping",
             Self::Lost => "lost",
             Self::TooHard => "too_hard",
+            Self::Touching => "touching",
         }
     }
 }

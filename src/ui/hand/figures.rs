@@ -331,9 +331,6 @@ fn grip_word(pane: &Pane<'_>) -> (String, Color32) {
         };
         return (look.tr(hold::phase(run.view.phase)).to_owned(), color);
     }
-    if state == GripState::Holding && holding(pane) < 2 {
-        return (look.tr(panels::TOUCHING).to_owned(), look.palette.muted);
-    }
     let word = look.tr(panels::grip(state));
     let words = match state {
         GripState::Unknown => look.pair(look.tr(panels::GRIP), word),
@@ -344,13 +341,6 @@ fn grip_word(pane: &Pane<'_>) -> (String, Color32) {
         _ => word.to_owned(),
     };
     (words, color)
-}
-
-/// Number of fingers that hold something: one alone only touches it.
-fn holding(pane: &Pane<'_>) -> usize {
-    let fingers = grip(pane).fingers;
-    let holds = |(_, finger): &(Finger, &GripEstimate)| finger.state == GripState::Holding;
-    fingers.iter().filter(holds).count()
 }
 
 /// Height below the picture: the word, and as many of the two small lines as there is space for.
@@ -364,9 +354,11 @@ fn below(place: Rect) -> f32 {
 fn grip_color(pane: &Pane<'_>, state: GripState) -> Color32 {
     let palette = pane.look.palette;
     match state {
-        GripState::Unknown | GripState::Open | GripState::Moving | GripState::Empty => {
-            palette.muted
-        }
+        GripState::Unknown
+        | GripState::Open
+        | GripState::Moving
+        | GripState::Empty
+        | GripState::Touching => palette.muted,
         GripState::Holding => palette.ok,
         GripState::Slipping | GripState::TooHard => palette.warn,
         GripState::Lost => palette.bad,

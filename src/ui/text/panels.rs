@@ -69,7 +69,6 @@ texts! {
 
     DRAG_FINGER: "drag to move it", "拖动即可移动";
     FINGER_FORCE: "force at the drawn finger", "图旁受力";
-    TOUCHING: "Touching", "接触";
     FINGER_GRIP: "grip at the drawn finger", "图旁抓握";
     GRIP: "Grip", "抓握", "State of the grip, inferred from angles, forces, fingertips, current and status. Slipping: the force along a fingertip rises or turns. Lost: the contact is gone, and the finger did not open. Unknown: a reading is missing or old.", "根据角度、受力、指尖、电流和状态判断手对物体的抓握情况。打滑：指尖切向力上升或转向。丢失：手指未张开而接触消失。未知：读数缺失或过期。";
     GRIP_NOTES: "Grip details", "抓握详情";
@@ -258,6 +257,7 @@ texts! {
         GripState::Slipping => "Slipping", "打滑";
         GripState::Lost => "Lost", "丢失";
         GripState::TooHard => "Too hard", "过紧";
+        GripState::Touching => "Touching", "接触";
     }
 
     /// Firmness of a fingertip's hold.

@@ -136,7 +136,7 @@ pub struct TouchMessage {
     pub raw: Vec<u8>,
 }
 
-/// State of the grip: unknown, open, moving, empty, holding, slipping, lost or too_hard.
+/// State of the grip: unknown, open, moving, empty, holding, slipping, lost, too_hard or touching.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct GripMessage {
     /// Time of this message.

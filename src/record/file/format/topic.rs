@@ -193,8 +193,8 @@ const GRIP: Schema = Schema {
     id: 9,
     name: "handscope_msgs/msg/Grip",
     text: with_time!(
-"# What is gripped: unknown, open, moving, empty, holding, slipping, lost or too_hard. Told when a state changes, and once a
-# second. Each state has the time of its begin, and when the oldest reading that it rests on was asked for: 0 if there is none.
+"# What is gripped: unknown, open, moving, empty, holding, slipping, lost, too_hard or touching. Told when a state changes, and once
+# a second. Each state has the time of its begin, and when the oldest reading that it rests on was asked for: 0 if there is none.
 builtin_interfaces/Time at
 # Of the whole grasp.
 string state
