@@ -1,6 +1,6 @@
 //! The seams between what moves a hand and what happens meanwhile: one table, every cell tried over the wires, or a word why it
 //! cannot be; one test an event. The hand's own journal and joints judge. `HANDSCOPE_SEAMS=whole` tries every cell on every wire; any
-//! other text tries the cells in whose names it is found, on every wire.
+//! other text tries the cells in whose names it is found, on every wire, with every mover of the row; `HANDSCOPE_SEAMS_MOVER` names one.
 
 mod event;
 mod hand;
@@ -50,25 +50,25 @@ impl Try {
     }
 
     /// Every way in which this row moves a hand.
-    fn movers(&self) -> &'static [Start] {
+    fn movers(&self) -> &'static [(&'static str, Start)] {
         match self.row {
-            Row::Slider => &[Start::Window(Window::slider)],
+            Row::Slider => &[("slider", Start::Window(Window::slider))],
             Row::Pose => &[
-                Start::Window(Window::pose),
-                Start::Window(Window::sequence),
-                Start::Window(Window::held_step),
+                ("pose", Start::Window(Window::pose)),
+                ("sequence", Start::Window(Window::sequence)),
+                ("held_step", Start::Window(Window::held_step)),
             ],
             Row::Series => &[
-                Start::Window(Window::series),
-                Start::Window(Window::armed_series),
-                Start::Window(Window::search),
-                Start::Window(Window::checkup),
-                Start::Window(Window::hold),
-                Start::Window(Window::scale),
+                ("series", Start::Window(Window::series)),
+                ("armed_series", Start::Window(Window::armed_series)),
+                ("search", Start::Window(Window::search)),
+                ("checkup", Start::Window(Window::checkup)),
+                ("hold", Start::Window(Window::hold)),
+                ("scale", Start::Window(Window::scale)),
             ],
-            Row::Exhibition => &[Start::Window(Window::exhibition)],
-            Row::Calibration => &[Start::Window(Window::calibration)],
-            Row::Gamepad => &[Start::Window(Window::gamepad)],
+            Row::Exhibition => &[("exhibition", Start::Window(Window::exhibition))],
+            Row::Calibration => &[("calibration", Start::Window(Window::calibration))],
+            Row::Gamepad => &[("gamepad", Start::Window(Window::gamepad))],
             Row::Leading => match self.column {
                 Column::Signal
                 | Column::Killed
@@ -77,7 +77,7 @@ impl Try {
                 | Column::HolderKilled
                 | Column::HolderFrozen
                 | Column::Busy
-                | Column::NoDescriptors => &[Start::Process(Place::led)],
+                | Column::NoDescriptors => &[("led", Start::Process(Place::led))],
                 Column::Panic
                 | Column::Frozen
                 | Column::DisplayLost
@@ -97,34 +97,34 @@ impl Try {
                 | Column::JointFrozen
                 | Column::OddStop
                 | Column::GrantedAgain
-                | Column::FaultOrHeat => &[Start::Window(Window::led)],
+                | Column::FaultOrHeat => &[("led", Start::Window(Window::led))],
             },
             // The index of a grip has no farther to go than a drive may rest beside its target: it may have arrived.
             Row::Trial if self.column == Column::JointFrozen => &[
-                Start::Process(Place::trial),
-                Start::Process(Place::tune),
-                Start::Process(Place::hold),
-                Start::Process(Place::scale),
+                ("trial", Start::Process(Place::trial)),
+                ("tune", Start::Process(Place::tune)),
+                ("hold", Start::Process(Place::hold)),
+                ("scale", Start::Process(Place::scale)),
             ],
             Row::Trial => &[
-                Start::Process(Place::trial),
-                Start::Process(Place::tune),
-                Start::Process(Place::grip),
-                Start::Process(Place::hold),
-                Start::Process(Place::scale),
+                ("trial", Start::Process(Place::trial)),
+                ("tune", Start::Process(Place::tune)),
+                ("grip", Start::Process(Place::grip)),
+                ("hold", Start::Process(Place::hold)),
+                ("scale", Start::Process(Place::scale)),
             ],
             Row::Stdio => &[
-                Start::Process(Place::stdio_move),
-                Start::Process(Place::stdio_follow),
+                ("stdio_move", Start::Process(Place::stdio_move)),
+                ("stdio_follow", Start::Process(Place::stdio_follow)),
             ],
             Row::Follow => &[
-                Start::Process(Place::follow_udp),
-                Start::Process(Place::follow_tcp),
-                Start::Process(Place::follow_hold),
+                ("follow_udp", Start::Process(Place::follow_udp)),
+                ("follow_tcp", Start::Process(Place::follow_tcp)),
+                ("follow_hold", Start::Process(Place::follow_hold)),
             ],
-            Row::FollowDds => &[Start::Process(Place::follow_dds)],
-            Row::Share => &[Start::Process(Place::share)],
-            Row::Params => &[Start::Process(Place::params)],
+            Row::FollowDds => &[("follow_dds", Start::Process(Place::follow_dds))],
+            Row::Share => &[("share", Start::Process(Place::share))],
+            Row::Params => &[("params", Start::Process(Place::params))],
         }
     }
 
@@ -155,11 +155,13 @@ impl Try {
         let all = self.movers();
         // One way suffices in an ordinary run; which one differs from cell to cell.
         let one = &all[self.number % all.len()..][..1];
-        for start in if whole { all } else { one } {
+        let wanted = std::env::var("HANDSCOPE_SEAMS_MOVER").unwrap_or_default();
+        let starts = if whole { all } else { one }.iter();
+        for (name, start) in starts.filter(|(name, _)| name.contains(&wanted)) {
             told(|| {
                 let seen = begun(|| self.see(*start));
                 let judged = seen.judge(verdict, words);
-                judged.unwrap_or_else(|why| panic!("{why}\n    {}", seen.summary()));
+                judged.unwrap_or_else(|why| panic!("{name}: {why}\n    {}", seen.summary()));
             })?;
         }
         Ok(())
