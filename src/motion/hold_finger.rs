@@ -12,15 +12,17 @@ const HARD_G: f64 = 60.0;
 /// Possible stiffness of a contact, g per unit of angle.
 const STIFFNESS_G: std::ops::RangeInclusive<f64> = 1.0..=120.0;
 /// Ratio of tangential to normal force that is expected to hold on any object, before this one has shown more or less.
-const USUAL_FRICTION: f64 = 0.45;
+const USUAL_FRICTION: f64 = 0.35;
 /// Share of the friction that is kept in reserve.
-const MARGIN: f64 = 0.2;
+const MARGIN: f64 = 0.15;
 /// The same while the load rises.
-const MOVING_MARGIN: f64 = 0.44;
+const MOVING_MARGIN: f64 = 0.34;
 /// Share of the ratio at which an object slid that still holds it.
 const BELOW_SLIP: f64 = 0.85;
 /// The wanted force changes only if the need differs by this factor.
-const HYSTERESIS: f64 = 1.08;
+const HYSTERESIS: f64 = 1.05;
+/// *At most* does not suffice for a load that needs more than this multiple of it.
+const SHORT_FACTOR: f64 = 1.08;
 /// A finger is no longer short once the load needs less than this share of *at most*.
 const NO_LONGER_SHORT: f64 = 0.95;
 /// Increase of the force after a slip, at least.
@@ -38,18 +40,19 @@ const NEAR_MOST: f64 = 0.7;
 const NEAR_SLOWER: f64 = 5.0;
 /// A rising load is extrapolated over this time: until a step acts.
 const AHEAD_S: f64 = 0.2;
-/// Time without a disturbance after which the force is reduced, and the time between two reductions.
-const QUIET: Duration = Duration::from_millis(700);
-const RELAX_INTERVAL: Duration = Duration::from_secs(1);
-/// A reduction that had to be taken back is not tried again for this time.
+/// Time without a disturbance after which the force is reduced, and the time between two reductions of the wanted force.
+const QUIET: Duration = Duration::from_millis(350);
+const RELAX_INTERVAL: Duration = Duration::from_millis(400);
+/// Longest such time: it grows with the surges of the load, each of which counts for about this time, s.
+const QUIET_LONGEST: Duration = Duration::from_secs(3);
+const SURGE_S: f64 = 3.0;
+/// A reduction that had to be taken back is not tried again for this time, or until the load changes.
 const RELAX_PAUSE: Duration = Duration::from_secs(60);
 /// Share of the expected rise of the force below which a step had no effect, and the time after which it is tried again.
 const BLOCKED_SHARE: f64 = 0.3;
 const BLOCKED_PAUSE: Duration = Duration::from_secs(2);
 /// Time after which a blocked drive is opened again.
 const OPEN_PAUSE: Duration = Duration::from_secs(20);
-/// Reduction of the wanted force per second while it is quiet, as a share of it.
-const RELAX_SHARE: f64 = 0.6;
 /// Share of what a finger presses too hard that one reduction takes away.
 const RELAX_PART: f64 = 0.8;
 /// Readings of this time make a settled force: their mean is free of noise.
@@ -62,6 +65,8 @@ const LEARN: f64 = 0.8;
 /// Dead band of a settled force: twice the noise of the mean of the fewest readings, as a share of that of one, and at least this, g.
 const SETTLED_NOISE: f64 = 0.9;
 const SETTLED_DEAD_G: f64 = 4.0;
+/// Factor of the dead band for a force that has settled too low: the zero drifts, and a reduction is not taken back for that.
+const LOW_DEAD: f64 = 1.5;
 /// Share of the wanted force that is corrected at once.
 const URGENT: f64 = 0.3;
 /// Change of the tangential force that is a disturbance: as a share of the normal force, and at least this, g.
@@ -84,6 +89,8 @@ const FOLLOW: f64 = 40.0;
 const NEARLY_BLOCKED: f64 = 0.9;
 /// Largest single step, units of angle.
 const STEP_MAX: f64 = 40.0;
+/// The same of a reduction: what is soft presses too hard by many units.
+const RELAX_MAX: f64 = 120.0;
 /// Travel of the contact on the fingertip that is a slip, mm, and the time in which it must happen.
 const SLIDE_MM: f64 = 0.7;
 const SLIDE_WITHIN_S: f64 = 0.25;
@@ -168,6 +175,9 @@ pub(crate) struct FingerHold {
     slid_ratio: Option<f64>,
     underway: Option<Underway>,
     quiet_since: Moment,
+    /// Recent surges of the load, and the time of the last.
+    surges: (f64, Moment),
+    is_warm: bool,
     relaxed: Option<Moment>,
     /// The last settled force, and its angle.
     settled: Option<(f64, i16)>,
@@ -202,6 +212,8 @@ impl FingerHold {
             slid_ratio: None,
             underway: None,
             quiet_since: now,
+            surges: (0.0, now),
+            is_warm: false,
             relaxed: None,
             settled: None,
             acted: None,
@@ -262,7 +274,20 @@ impl FingerHold {
 
     /// True if no load changed for a while.
     pub(crate) fn is_quiet(&self, now: Moment) -> bool {
-        now.since(self.quiet_since) >= QUIET
+        // A warm drive rests as soon as it can.
+        let surges = if self.is_warm {
+            0.0
+        } else {
+            self.surges_at(now)
+        };
+        let quiet = QUIET.mul_f64(surges.max(1.0)).min(QUIET_LONGEST);
+        now.since(self.quiet_since) >= quiet
+    }
+
+    /// Number of recent surges of the load, of which old ones count less and less.
+    fn surges_at(&self, now: Moment) -> f64 {
+        let (count, at) = self.surges;
+        count * (-now.since(at).as_secs_f64() / SURGE_S).exp()
     }
 
     /// Ratio of tangential to normal force up to which the object is expected to hold.
@@ -296,7 +321,11 @@ impl FingerHold {
         let is_jump = jump.abs() > (JUMP_SHARE * tip.normal_g).max(JUMP_LEAST_G);
         self.base_g = Some(base + jump * if is_jump { 0.3 } else { 0.1 });
         if is_jump {
+            if jump > 0.0 && tip.at.since(self.quiet_since) >= QUIET {
+                self.surges = (self.surges_at(tip.at) + 1.0, tip.at);
+            }
             self.quiet_since = tip.at;
+            self.relaxes_from = self.relaxes_from.min(tip.at);
         }
         if self.slides() {
             let slid = self.slid_ratio.map_or(ratio, |before| before.min(ratio));
@@ -343,7 +372,7 @@ impl FingerHold {
     }
 
     fn want(&mut self, force_g: f64, cause: TightenCause) {
-        self.is_short |= force_g > self.range.most_g * HYSTERESIS;
+        self.is_short |= force_g > self.range.most_g * SHORT_FACTOR;
         let force_g = force_g.clamp(self.range.least_g, self.range.most_g);
         if force_g > self.wanted_g {
             (self.wanted_g, self.cause) = (force_g, cause);
@@ -390,6 +419,7 @@ impl FingerHold {
             self.learn_gain(settled_g);
             self.learn_settled(settled_g, reading.angle);
         }
+        self.is_warm = reading.is_warm;
         let is_quiet = self.is_quiet(reading.at);
         if is_quiet {
             self.relax_wish(reading);
@@ -479,13 +509,8 @@ impl FingerHold {
             return;
         }
         self.relaxed = Some(reading.at);
-        let share = if reading.is_warm {
-            3.0 * RELAX_SHARE
-        } else {
-            RELAX_SHARE
-        };
         let least = (self.steady_g() * HYSTERESIS).max(self.range.least_g);
-        self.wanted_g = (self.wanted_g * (1.0 - share)).max(least.min(self.wanted_g));
+        self.wanted_g = self.wanted_g.min(least);
     }
 
     fn tighten(&mut self, seen: HoldNow) -> Option<HoldStep> {
@@ -537,7 +562,8 @@ impl FingerHold {
         let noise = (2.0 * self.noise_g).max(6.0);
         let at_once = Some(missing).filter(|missing| is_urgent && *missing > noise);
         let settled = seen.settled_g.map(|settled| self.wanted_g - settled);
-        at_once.or(settled.filter(|missing| *missing > self.settled_dead_g()))
+        let dead = LOW_DEAD * self.settled_dead_g();
+        at_once.or(settled.filter(|missing| *missing > dead))
     }
 
     fn relax(&mut self, seen: HoldNow, is_quiet: bool) -> Option<HoldStep> {
@@ -550,7 +576,7 @@ impl FingerHold {
         let spare = seen.settled_g? - self.wanted_g - self.settled_dead_g();
         let steps = (spare / (self.stiffness * self.stiffer))
             .floor()
-            .min(STEP_MAX);
+            .min(RELAX_MAX);
         let steps = if steps > 2.0 {
             (steps * RELAX_PART).floor()
         } else {

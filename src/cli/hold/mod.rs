@@ -20,7 +20,7 @@ use crate::hand::hold_forces::HoldForces;
 use crate::hand::newtons::ForceUnit;
 use crate::hand::overshoot::{OvershootMap, Stiffness};
 use crate::hand::statistics::mean;
-use crate::hand::{Finger, Force, Moment, PerDof, Speed};
+use crate::hand::{Dof, Finger, Force, Moment, PerDof, Speed};
 use crate::link::ArmRequest;
 use crate::motion::drive::{drive, stop_words};
 use crate::motion::grasp::doubt::GraspDoubt;

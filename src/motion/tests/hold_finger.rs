@@ -29,6 +29,7 @@ struct Bench {
     /// Reading of the force sensor for a gram.
     reading_per_g: f64,
     load_g: f64,
+    is_warm: bool,
     steps: Vec<HoldStep>,
 }
 
@@ -50,6 +51,7 @@ impl Bench {
             orders: VecDeque::new(),
             reading_per_g: 1.0,
             load_g: 0.0,
+            is_warm: false,
             steps: Vec::new(),
         }
     }
@@ -78,7 +80,7 @@ impl Bench {
                 at: self.now,
                 force_g: force_g * self.reading_per_g + noise_g,
                 angle: self.hand_angle(),
-                is_warm: false,
+                is_warm: self.is_warm,
             });
             if let Some(step) = step {
                 let speed = f64::from(step.speed.get()) * 3.04 / 2.0;
@@ -172,4 +174,52 @@ fn a_load_that_rises_is_answered_at_once_and_only_by_pressing_harder() {
         );
         assert!(bench.force_g() > 450.0, "{}", bench.force_g());
     }
+}
+
+/// Reductions of the force in the pauses of a load that comes and goes `times` times, for half of `period` each.
+fn reductions(times: u32, period: Duration, is_warm: bool) -> usize {
+    let mut bench = Bench::pressing(200.0, 10.0);
+    bench.is_warm = is_warm;
+    bench.run(Duration::from_secs(1));
+    let mut reduced = 0;
+    for _ in 0..times {
+        bench.load_g = 120.0;
+        bench.run(period / 2);
+        bench.load_g = 10.0;
+        let before = bench.steps.len();
+        bench.run(period / 2);
+        let steps = bench.steps.iter().skip(before);
+        reduced += steps.filter(|step| step.cause.is_none()).count();
+    }
+    reduced
+}
+
+#[test]
+fn the_oftener_the_load_comes_the_longer_a_finger_waits_before_it_presses_less() {
+    let rare = reductions(4, Duration::from_secs(12), false);
+    assert!(rare >= 4, "{rare}");
+    let often = reductions(12, Duration::from_millis(2400), false);
+    assert!(often <= 3, "{often}");
+    let warm = reductions(12, Duration::from_millis(2400), true);
+    assert!(warm >= 6, "a warm drive rests: {warm}");
+}
+
+#[test]
+fn a_reduction_that_was_taken_back_is_tried_again_once_the_load_has_changed() {
+    let mut bench = Bench::pressing(400.0, 10.0);
+    bench.run(Duration::from_secs(5));
+    // The object gives way: the finger presses harder again without a new load.
+    bench.touched -= 6.0;
+    bench.run(Duration::from_secs(3));
+    assert!(
+        bench.causes().iter().any(Option::is_some),
+        "{:?}",
+        bench.steps
+    );
+    bench.load_g = 100.0;
+    bench.run(Duration::from_secs(2));
+    bench.load_g = 10.0;
+    let pressed_g = bench.force_g();
+    bench.run(Duration::from_secs(10));
+    assert!(bench.force_g() < 0.7 * pressed_g, "{} g", bench.force_g());
 }

@@ -3,7 +3,7 @@
 use crate::app::hand::grip;
 use crate::app::readings::Freshness;
 use crate::hand::gap::HeldSize;
-use crate::hand::grip::{Grip, GripEstimate, GripState};
+use crate::hand::grip::{Grip, GripState};
 use crate::hand::heat::WARM;
 use crate::hand::kinematics::Side;
 use crate::hand::{Dof, Finger, PerFinger, Quantity};

@@ -4,6 +4,7 @@ use crate::app::action::Action;
 use crate::app::inputs::InputAction;
 use crate::app::slot::SlotId;
 use crate::app::state::State;
+use crate::hand::newtons::ForceUnit;
 use crate::link::Owner;
 use crate::motion::follow::step::{FollowLimits, FollowPhase};
 use crate::ui::kit::{self, Button, Label, NumberField, Pane, Weight, format};
@@ -34,7 +35,8 @@ pub(crate) fn owner_ui(ui: &mut Ui, pane: &mut Pane<'_>) {
                 Label::new(&words, look.palette.muted).small().ui(ui);
                 if let Some(hold) = view.hold {
                     let ended = hold.end.map(|end| hold_text::end(look, Ok(end)));
-                    let words = ended.unwrap_or_else(|| hold_text::state(look, &hold.view));
+                    let words = ended
+                        .unwrap_or_else(|| hold_text::state(look, &hold.view, ForceUnit::Grams));
                     Label::new(&words, look.palette.text).small().ui(ui);
                 }
             }

@@ -120,7 +120,7 @@ impl TableView {
                 .min_scrolled_height(0.0)
                 .auto_shrink(false)
                 .column(Column::exact(first))
-                .columns(Column::exact(number), sheet.columns)
+                .columns(Column::exact(number), sheet.columns.len())
                 .column(Column::remainder().at_least(END).clip(true))
                 .header(HEADS, |mut row| sheet.head_ui(&mut row, sorting));
             table.body(|body| {

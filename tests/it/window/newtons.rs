@@ -159,7 +159,7 @@ fn a_hold_is_set_in_newtons_once_all_fingers_were_measured_and_nothing_is_conver
     enter(&mut bench, "At most, g", "500");
     bench.click_button("N");
     bench.run(100);
-    assert_eq!(bench.reading("At least, N"), "1.5");
+    assert_eq!(bench.typed("At least, N"), "1.5");
     enter(&mut bench, "At most, N", "3");
     let grams = |bench: &Bench, unit: ForceUnit| {
         let forces = bench.state().hand().controls.hold_forces_in(unit);
@@ -178,7 +178,7 @@ fn a_hold_is_set_in_newtons_once_all_fingers_were_measured_and_nothing_is_conver
     bench.run(300);
     bench.click_button("g");
     bench.run(100);
-    assert_eq!(bench.reading("At most, g"), "500");
+    assert_eq!(bench.typed("At most, g"), "500");
 }
 
 #[test]
