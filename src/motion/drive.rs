@@ -18,6 +18,10 @@ const TICK: Duration = Duration::from_millis(5);
 const IDLE_TICK: Duration = Duration::from_millis(50);
 /// A turn of the loop that exceeds its tick by this much is a stall.
 const STALL_MARGIN: Duration = Duration::from_millis(45);
+/// After a stall of this length the computer may have slept: the session decides that first, within the grace. A program would take
+/// its own time limits for exceeded.
+const SLEEP_LEAST: Duration = Duration::from_secs(1);
+const SLEEP_GRACE: Duration = Duration::from_millis(100);
 
 /// An arming by the user, and the newest readings.
 #[derive(Debug, Clone, Copy)]
@@ -172,7 +176,8 @@ pub async fn drive<P: Program>(
             program.abort(at.cause(&status, clock.now()), clock.now());
             // A program that continues has no control until control is granted again.
             at.lease = None;
-        } else if program.ended().is_none() && sent.is_none() {
+        } else if program.ended().is_none() && sent.is_none() && !at.turns.may_have_slept(seen.now)
+        {
             order = program.tick(&seen);
             sent = order.and_then(|order| at.execute(order, &status));
         }
@@ -373,6 +378,11 @@ impl Turns {
             last: now,
             stall: None,
         }
+    }
+
+    fn may_have_slept(&self, now: Moment) -> bool {
+        let long = self.stall.filter(|stall| stall.lasted >= SLEEP_LEAST);
+        long.is_some_and(|stall| now.since(stall.ended) < SLEEP_GRACE)
     }
 
     /// Counts a turn that was due after `tick`; returns the stall before it, if there was one.

@@ -12,7 +12,7 @@ use futures::stream::pending;
 use std::convert::Infallible;
 use std::time::Duration;
 use tokio::task::JoinHandle;
-use tokio::time::sleep;
+use tokio::time::{advance, sleep};
 
 const EPOCH: ArmEpoch = ArmEpoch(1);
 /// What another controller wrote.
@@ -175,6 +175,34 @@ async fn a_hand_that_another_controller_was_granted_is_left_to_it() {
     let end = task.await.unwrap();
     assert_eq!((end.aborted, end.stop), (Some(Abort::TakenOver), None));
     assert_eq!(hand.asked(), []);
+}
+
+/// A program would take its own time limits for exceeded, and end with the wrong reason.
+#[tokio::test(start_paused = true)]
+async fn after_a_stall_the_link_decides_first_whether_the_computer_slept() {
+    let hand = FakeHand::new();
+    let task = start(&hand, false, usize::MAX);
+    let moves = |hand: &FakeHand| {
+        let asked = hand.asked();
+        asked.iter().any(|one| matches!(one, Asked::Move(_)))
+    };
+    sleep(Duration::from_millis(30)).await;
+    assert!(moves(&hand));
+    advance(Duration::from_secs(10)).await;
+    moves(&hand);
+    sleep(Duration::from_millis(60)).await;
+    assert!(!moves(&hand), "nothing is decided yet");
+    sleep(Duration::from_millis(100)).await;
+    assert!(moves(&hand), "it did not sleep");
+    advance(Duration::from_millis(500)).await;
+    moves(&hand);
+    sleep(Duration::from_millis(30)).await;
+    assert!(moves(&hand), "nobody takes half a second for sleep");
+    advance(Duration::from_secs(10)).await;
+    hand.disarm_for(Disarmed::Resume);
+    let end = task.await.unwrap();
+    let why = Some(Disarmed::Resume);
+    assert_eq!(end.aborted, Some(Abort::Disarmed { why }));
 }
 
 #[tokio::test(start_paused = true)]
