@@ -12,9 +12,9 @@ const HARD_G: f64 = 60.0;
 /// Possible stiffness of a contact, g per unit of angle.
 const STIFFNESS_G: std::ops::RangeInclusive<f64> = 1.0..=120.0;
 /// Ratio of tangential to normal force that is expected to hold on any object, before this one has shown more or less.
-const USUAL_FRICTION: f64 = 0.35;
+pub(crate) const USUAL_FRICTION: f64 = 0.35;
 /// Share of the friction that is kept in reserve.
-const MARGIN: f64 = 0.15;
+pub(crate) const MARGIN: f64 = 0.15;
 /// The same while the load rises.
 const MOVING_MARGIN: f64 = 0.34;
 /// Share of the ratio at which an object slid that still holds it.
@@ -372,7 +372,12 @@ impl FingerHold {
     }
 
     fn want(&mut self, force_g: f64, cause: TightenCause) {
-        self.is_short |= force_g > self.range.most_g * SHORT_FACTOR;
+        // What is pressed beforehand, because the load may rise on, is not needed yet.
+        let needed_g = match cause {
+            TightenCause::Load => self.steady_g(),
+            _ => force_g,
+        };
+        self.is_short |= needed_g > self.range.most_g * SHORT_FACTOR;
         let force_g = force_g.clamp(self.range.least_g, self.range.most_g);
         if force_g > self.wanted_g {
             (self.wanted_g, self.cause) = (force_g, cause);

@@ -2,7 +2,9 @@
 
 use crate::hand::Moment;
 use crate::hand::grip::TightenCause;
-use crate::motion::hold_finger::{FingerHold, FingerReading, ForceRange, HoldStep, TipForces};
+use crate::motion::hold_finger::{
+    FingerHold, FingerReading, ForceRange, HoldStep, MARGIN, TipForces, USUAL_FRICTION,
+};
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -10,6 +12,7 @@ const READING: Duration = Duration::from_millis(10);
 const READINGS_PER_TIP: u64 = 3;
 const LATENCY: Duration = Duration::from_millis(70);
 const NOISE_G: f64 = 5.0;
+const BEFORE_IT_RELAXES: Duration = Duration::from_millis(300);
 const RANGE: ForceRange = ForceRange {
     least_g: 150.0,
     most_g: 600.0,
@@ -150,11 +153,14 @@ fn a_hand_that_reads_less_than_the_fingertip_feels_presses_as_hard_as_the_load_n
     for reading_per_g in [0.6, 1.0, 1.5] {
         let mut bench = Bench::pressing(250.0 / reading_per_g, 10.0 / reading_per_g);
         bench.reading_per_g = reading_per_g;
-        bench.run(Duration::from_millis(500));
+        bench.run(BEFORE_IT_RELAXES);
         bench.load_g = 80.0;
+        // It holds at the ratio at which the load meets it, and so that is known.
+        let shown = bench.load_g / bench.force_g();
+        let most = shown.max(USUAL_FRICTION) * (1.0 - MARGIN);
         bench.run(Duration::from_secs(8));
         let ratio = bench.load_g / bench.force_g();
-        assert!((0.2..=0.36).contains(&ratio), "{reading_per_g}: {ratio}");
+        assert!((0.2..=most).contains(&ratio), "{reading_per_g}: {ratio}");
     }
 }
 
@@ -162,7 +168,7 @@ fn a_hand_that_reads_less_than_the_fingertip_feels_presses_as_hard_as_the_load_n
 fn a_load_that_rises_is_answered_at_once_and_only_by_pressing_harder() {
     for stiffness in [4.0, 40.0] {
         let mut bench = Bench::pressing(200.0, stiffness);
-        bench.run(Duration::from_millis(500));
+        bench.run(BEFORE_IT_RELAXES);
         bench.load_g = 180.0;
         bench.run(READING * 4);
         assert_eq!(bench.causes().first(), Some(&Some(TightenCause::Load)));
@@ -198,10 +204,10 @@ fn reductions(times: u32, period: Duration, is_warm: bool) -> usize {
 fn the_oftener_the_load_comes_the_longer_a_finger_waits_before_it_presses_less() {
     let rare = reductions(4, Duration::from_secs(12), false);
     assert!(rare >= 4, "{rare}");
-    let often = reductions(12, Duration::from_millis(2400), false);
-    assert!(often <= 3, "{often}");
-    let warm = reductions(12, Duration::from_millis(2400), true);
-    assert!(warm >= 6, "a warm drive rests: {warm}");
+    let often = reductions(12, Duration::from_millis(1600), false);
+    assert!(often <= 4, "{often}");
+    let warm = reductions(12, Duration::from_millis(1600), true);
+    assert!(warm >= 8, "a warm drive rests: {warm}");
 }
 
 #[test]
