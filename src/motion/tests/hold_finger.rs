@@ -204,9 +204,9 @@ fn reductions(times: u32, period: Duration, is_warm: bool) -> usize {
 fn the_oftener_the_load_comes_the_longer_a_finger_waits_before_it_presses_less() {
     let rare = reductions(4, Duration::from_secs(12), false);
     assert!(rare >= 4, "{rare}");
-    let often = reductions(12, Duration::from_millis(1600), false);
+    let often = reductions(12, Duration::from_millis(1300), false);
     assert!(often <= 4, "{often}");
-    let warm = reductions(12, Duration::from_millis(1600), true);
+    let warm = reductions(12, Duration::from_millis(1300), true);
     assert!(warm >= 8, "a warm drive rests: {warm}");
 }
 
