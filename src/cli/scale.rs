@@ -6,6 +6,7 @@ use crate::checkup::newtons_file;
 use crate::cli::out::failure::FailureKind;
 use crate::cli::out::{Out, WrongUsage, notify};
 use crate::cli::parse::{dof, hand, number};
+use crate::cli::session;
 use crate::cli::trial::drive::{ArmedHand, by_user};
 use crate::hand::newtons::{
     Contradiction, ForceScale, JointPoints, LEAST_LIMIT_G, LOADS, MOST_LIMIT_G, NewtonsMap,
@@ -208,8 +209,10 @@ async fn measure(
         "stop": measured.stop,
     }});
     let lines = scale.ok().map(|own| result_lines(joint, &own));
-    out.result(args.json, &object, lines.unwrap_or_default())?;
-    out.flush()?;
+    let shown = out
+        .result(args.json, &object, lines.unwrap_or_default())
+        .and_then(|()| out.flush());
+    session::printed(shown, measured.end, measured.stop)?;
     match failure(measured.end, measured.points.len()) {
         None => Ok(()),
         Some(why) => bail!("{why}{}", stop_words(measured.stop)),

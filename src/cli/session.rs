@@ -4,7 +4,7 @@ use crate::app::connect::SimDial;
 use crate::app::files::settings_file;
 use crate::checkup::{free_file, newtons_file};
 use crate::cli::out::failure::FailureKind;
-use crate::cli::out::notify;
+use crate::cli::out::{AlreadyReported, ReaderGone, notify};
 use crate::hand::PerDof;
 use crate::hand::gap::SizeBlocks;
 use crate::hand::grip::GripEstimator;
@@ -13,7 +13,8 @@ use crate::link::{
     self, Clock, LinkConfig, LinkHandle, LinkObserver, LinkStatus, LinkTrouble, PollRates, Records,
     Stop,
 };
-use crate::motion::drive::STOP_LOST;
+use crate::motion::drive::{STOP_LOST, stop_words};
+use crate::motion::program::Ended;
 use crate::record::{Abort, Disarmed, LinkState};
 use crate::transport::Endpoint;
 use anyhow::bail;
@@ -216,6 +217,28 @@ pub(crate) fn unanswered(endpoint: &Endpoint) -> String {
 /// The trouble of a link that is not live.
 pub(crate) fn trouble(status: &LinkStatus) -> Option<&LinkTrouble> {
     status.trouble.as_ref().filter(|_| !status.state.is_live())
+}
+
+/// Reports that the hand was stopped because its output is no longer read, unlike that of a command that only reads. Other errors
+/// stay as they are.
+pub(crate) fn unread(error: anyhow::Error, stop: Option<Stop>) -> anyhow::Error {
+    if !error.is::<ReaderGone>() {
+        return error;
+    }
+    notify(&format!("the output is no longer read{}", stop_words(stop)));
+    AlreadyReported.into()
+}
+
+/// Passes on whether the result of a program was printed, or that the hand was stopped because it could not be.
+pub(crate) fn printed<O>(
+    printed: anyhow::Result<()>,
+    end: Ended<O>,
+    stop: Option<Stop>,
+) -> anyhow::Result<()> {
+    match end {
+        Err(Abort::NotKept) => printed.map_err(|error| unread(error, stop)),
+        _ => printed,
+    }
 }
 
 #[cfg(test)]

@@ -1,9 +1,11 @@
 //! The README and the manual: short, without dead links, and shown by `handscope help`.
 
+use crate::setup::process::take_pipe;
 use crate::setup::skipped::skipped;
 use handscope::exhibit::file::ExhibitFile;
 use handscope::manual::TOPICS;
 use std::fs;
+use std::io::Read as _;
 use std::path::Path;
 use std::process::Command;
 
@@ -82,6 +84,19 @@ fn every_page_is_a_topic_and_fits_a_terminal() {
                 topic.name
             );
         }
+    }
+}
+
+#[test]
+fn help_that_is_not_read_to_its_end_is_no_failure() {
+    for topic in ["sim", "window"] {
+        let (mut child, out) = take_pipe(&["help", topic]);
+        drop(out);
+        assert_eq!(child.wait().unwrap().code(), Some(0));
+        let mut said = String::new();
+        let mut messages = child.stderr.take().unwrap();
+        messages.read_to_string(&mut said).unwrap();
+        assert_eq!(said, "", "{topic}");
     }
 }
 

@@ -1,9 +1,10 @@
 //! `help`: the help of a command as clap writes it, or a page of the manual as plain text.
 
-use crate::cli::out::{Out, WrongUsage};
+use crate::cli::out::{Out, ReaderGone, WrongUsage};
 use crate::cli::parse;
 use crate::manual::{self, HelpTopic, TOPICS};
 use clap::{Args, Command};
+use std::io::ErrorKind;
 
 #[derive(Debug, Args)]
 pub(crate) struct HelpArgs {
@@ -34,7 +35,10 @@ pub(crate) fn run(out: &mut Out, args: &HelpArgs, program: Command) -> anyhow::R
         .chain(words.iter().map(String::as_str));
     match program.try_get_matches_from(line.chain(["--help"])) {
         // Clap returns its help as an error; printing it through clap preserves colours and width.
-        Err(help) if help.exit_code() == 0 => Ok(help.print()?),
+        Err(help) if help.exit_code() == 0 => match help.print() {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Err(ReaderGone.into()),
+            printed => Ok(printed?),
+        },
         Err(wrong) => wrong.exit(),
         Ok(_) => Ok(()),
     }

@@ -3,6 +3,7 @@
 
 use crate::app::files::settings_file;
 use crate::cli::consent::{self, ConsentFrom, NoConsent};
+use crate::cli::out::failure::FailureKind;
 use crate::cli::out::file::nothing_at;
 use crate::cli::out::{WrongUsage, notify};
 use crate::hand::PerDof;
@@ -31,10 +32,13 @@ pub(crate) enum GraspPlace {
 
 /// Parses a place: what ends as a grasp file is one, everything else is a name.
 pub(crate) fn grasp_place(text: &str) -> Result<GraspPlace, String> {
-    if text.ends_with(EXTENSION) {
+    let is_file = text.ends_with(EXTENSION);
+    let named = Path::new(text).file_name();
+    let has_name = named.is_some_and(|name| name != EXTENSION);
+    if is_file && has_name {
         return Ok(GraspPlace::File(text.into()));
     }
-    if text.is_empty() || clean(text) != text || text.contains(['/', '\\']) {
+    if is_file || text.is_empty() || clean(text) != text || text.contains(['/', '\\']) {
         return Err(format!(
             "write a name of 1 to {NAME_CHARS_MAX} characters for the pose library, or a file that ends in {EXTENSION}"
         ));
@@ -81,6 +85,15 @@ impl GraspPlace {
     pub(crate) fn free(&self) -> anyhow::Result<PathBuf> {
         let path = self.path()?;
         nothing_at(&path, "--save")?;
+        let folder = path.parent().filter(|own| *own != Path::new(""));
+        if let (Self::File(_), Some(folder)) = (self, folder)
+            && !folder.is_dir()
+        {
+            let (path, folder) = (path.display(), folder.display());
+            return Err(FailureKind::File.error(format!(
+                "cannot save {path}: {folder} is not a folder; create it first"
+            )));
+        }
         Ok(path)
     }
 }
@@ -117,6 +130,11 @@ impl ChosenGrasp {
         newtons: PerDof<Option<f64>>,
     ) -> anyhow::Result<Self> {
         let path = place.path()?;
+        if let (GraspPlace::Library(name), false) = (place, path.exists()) {
+            return Err(WrongUsage::error(format!(
+                "there is no grasp '{name}' in the pose library: 'handscope hold --save NAME' stores one"
+            )));
+        }
         let grasp = file::read_file(&path)
             .map_err(|error| anyhow!("the grasp {} cannot be used: {error}", path.display()))?;
         let (trust, reading_per_g) = if grasp.is_of(hand) {

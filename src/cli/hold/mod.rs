@@ -82,8 +82,8 @@ pub(crate) struct HoldArgs {
         allow_negative_numbers = true
     )]
     pub(crate) at_most: f64,
-    /// The forces are newtons, as measured with 'handscope scale'
-    #[arg(long)]
+    /// The forces are newtons, as measured with 'handscope scale'; needs both
+    #[arg(long, requires_all = ["at_least", "at_most"])]
     pub(crate) newtons: bool,
     /// Seconds to hold; without it, until Ctrl-C
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
@@ -221,11 +221,16 @@ pub(crate) async fn run(out: &mut Out, args: &HoldArgs) -> anyhow::Result<()> {
         "not_saved": saved.as_ref().err().map(|why| format!("{why:#}")),
     }});
     let words = done.as_ref().ok().filter(|words| !words.is_empty());
-    out.result(args.json, &object, words)?;
-    if let (Ok(Some(path)), false) = (&saved, args.json) {
-        out.line(&format!("saved in {}", path.display()))?;
-    }
-    out.flush()?;
+    let path = saved.as_ref().ok().and_then(Option::as_ref);
+    let line = path.map(|path| format!("saved in {}", path.display()));
+    let lines = words
+        .into_iter()
+        .map(|words| (*words).to_owned())
+        .chain(line);
+    let shown = out
+        .result(args.json, &object, lines)
+        .and_then(|()| out.flush());
+    session::printed(shown, driven.end, driven.stop)?;
     match (done, saved) {
         (Ok(_words), Ok(_path)) => Ok(()),
         (Ok(_words), Err(why)) => bail!("the grasp is not saved: {why:#}"),

@@ -2,14 +2,14 @@
 //! delay the hand's feedback.
 
 use crate::app::files::settings_file;
-use crate::cli::out::{AlreadyReported, Out, ReaderGone, notify};
+use crate::cli::out::{Out, notify};
 use crate::cli::session;
 use crate::cli::trial::output::{trial_json, trial_lines};
 use crate::hand::PerDof;
 use crate::hand::overshoot::OvershootMap;
 use crate::link::LinkHandle;
 use crate::link::quirks::book;
-use crate::motion::drive::{EndReport, stop_words};
+use crate::motion::drive::EndReport;
 use crate::motion::program::Progress;
 use crate::motion::series::{SeriesEvent, SeriesProgress};
 use crate::store::calendar::{day, since_1970};
@@ -168,12 +168,7 @@ impl<'a> TrialResults<'a> {
             finished.context("cannot write the trials")
         });
         match self.error {
-            Some(error) if error.is::<ReaderGone>() => {
-                let stop = stop_words(report.stop);
-                notify(&format!("the output is no longer read{stop}"));
-                Err(AlreadyReported.into())
-            }
-            Some(error) => Err(error),
+            Some(error) => Err(session::unread(error, report.stop)),
             None => written.map(|()| self.trials),
         }
     }

@@ -3,10 +3,10 @@
 use crate::cli::refuses_unarmed;
 use crate::setup::busy::unless_busy;
 use crate::setup::grasp;
-use crate::setup::process::{Running, handscope, listen, run, sim_on_tcp, start};
+use crate::setup::process::{Running, handscope, listen, run, sim_on_tcp, start, take_pipe};
 use nix::sys::signal::Signal;
 use serde_json::Value;
-use std::io::Write as _;
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::Path;
 use std::process::Stdio;
 
@@ -46,6 +46,8 @@ fn forces_and_poses_that_make_no_sense_are_wrong_usage() {
         ),
         (&["--at-most", "-5"], "'-5' is not a force"),
         (&["--at-least", "nan"], "'nan' is not a force"),
+        (&["--newtons"], "--at-least <FORCE>"),
+        (&["--newtons", "--at-least", "2"], "--at-most <FORCE>"),
         (&["--pose", "Handshake"], "there is no pose 'Handshake'"),
         (&["--gap", "2"], "a pinch opens from 3 to 120 mm, not 2"),
         (&["--pose", "Fist", "--gap", "30"], "cannot be used with"),
@@ -66,6 +68,26 @@ fn newtons_of_a_hand_that_was_not_measured_move_nothing() {
     assert_eq!(ended.code, Some(1), "{}", ended.err);
     assert!(ended.err.contains("nothing was moved"), "{}", ended.err);
     assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+}
+
+#[test]
+fn a_hold_whose_output_is_closed_stops_the_hand_and_fails() {
+    unless_busy(|| {
+        let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
+        for more in [&[][..], &["--json"]] {
+            let hold = ["hold", "--hand", &hand, "--pose", "Fist", "--arm"];
+            let (mut child, out) = take_pipe(&[&hold[..], more].concat());
+            let mut lines = BufReader::new(out).lines();
+            lines.next().unwrap().unwrap();
+            drop(lines);
+            assert_eq!(child.wait().unwrap().code(), Some(1));
+            let mut said = String::new();
+            let mut messages = child.stderr.take().unwrap();
+            messages.read_to_string(&mut said).unwrap();
+            let words = "the output is no longer read; stopped: feedback shows rest";
+            assert!(said.contains(words), "{said}");
+        }
+    });
 }
 
 #[test]
@@ -188,7 +210,22 @@ fn a_wrong_grasp_moves_nothing() {
     let path = path.to_str().unwrap();
     for (more, code, words) in [
         (&["--grasp", path][..], 1, "`name`: it is missing: add it"),
-        (&["--grasp", "none"], 1, "no such file"),
+        (
+            &["--grasp", "none"],
+            2,
+            "there is no grasp 'none' in the pose library",
+        ),
+        (&["--grasp", "none.grasp.toml"], 1, "no such file"),
+        (
+            &["--save", "/nowhere/egg.grasp.toml"],
+            1,
+            "/nowhere is not a folder",
+        ),
+        (
+            &["--save", ".grasp.toml"],
+            2,
+            "a name of 1 to 32 characters",
+        ),
         (&["--grasp", "a/b"], 2, "a name of 1 to 32 characters"),
         (&["--grasp", path, "--gap", "30"], 2, "cannot be used with"),
         (&["--note", "red"], 2, "--save"),
