@@ -149,8 +149,11 @@ impl<'a> WatchRun<'a> {
 
     /// Without a time limit, ends the wait for a hand that has never answered.
     fn give_up(&mut self, why: &str) -> anyhow::Result<()> {
-        if self.args.length.is_some() {
-            notify(&format!("{why}; trying again"));
+        if let Some(length) = self.args.length {
+            // Once the time is over, the end reports it.
+            if self.elapsed() < length {
+                notify(&format!("{why}; trying again"));
+            }
             return Ok(());
         }
         self.statistics()?;
