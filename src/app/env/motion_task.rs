@@ -26,11 +26,11 @@ impl<I: Send + 'static, S: Clone + Send + 'static, E: Send + 'static> MotionTask
     where
         F: Future<Output = E> + Send + 'static,
     {
-        let (inputs, mut typed) = mpsc::channel(INPUTS_MAX);
-        let typed = poll_fn(move |context| typed.poll_recv(context)).boxed();
+        let (inputs, mut received) = mpsc::channel(INPUTS_MAX);
+        let received = poll_fn(move |context| received.poll_recv(context)).boxed();
         Self {
             inputs: Some(inputs),
-            running: Running::start(env, |steps| task(steps, typed)),
+            running: Running::start(env, |steps| task(steps, received)),
         }
     }
 

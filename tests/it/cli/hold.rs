@@ -1,12 +1,12 @@
 //! `hold` at a terminal: only with `--arm`, refused where it makes no sense, and its outcome.
 
-use crate::cli::refuses_unarmed;
+use crate::cli::{refuses_unarmed, stops_unread};
 use crate::setup::busy::unless_busy;
 use crate::setup::grasp;
-use crate::setup::process::{Running, handscope, listen, run, sim_on_tcp, start, take_pipe};
+use crate::setup::process::{Running, handscope, listen, run, sim_on_tcp, start};
 use nix::sys::signal::Signal;
 use serde_json::Value;
-use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::io::Write as _;
 use std::path::Path;
 use std::process::Stdio;
 
@@ -76,16 +76,7 @@ fn a_hold_whose_output_is_closed_stops_the_hand_and_fails() {
         let (_sim, hand) = sim_on_tcp(&["--scenario", "free"]);
         for more in [&[][..], &["--json"]] {
             let hold = ["hold", "--hand", &hand, "--pose", "Fist", "--arm"];
-            let (mut child, out) = take_pipe(&[&hold[..], more].concat());
-            let mut lines = BufReader::new(out).lines();
-            lines.next().unwrap().unwrap();
-            drop(lines);
-            assert_eq!(child.wait().unwrap().code(), Some(1));
-            let mut said = String::new();
-            let mut messages = child.stderr.take().unwrap();
-            messages.read_to_string(&mut said).unwrap();
-            let words = "the output is no longer read; stopped: feedback shows rest";
-            assert!(said.contains(words), "{said}");
+            stops_unread(&[&hold[..], more].concat());
         }
     });
 }

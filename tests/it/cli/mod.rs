@@ -73,3 +73,20 @@ fn refuses_unarmed(hand: &str, args: &[&str]) {
     let watched = run(&["watch", "--hand", hand, "--json", "--for", "0.2"]).ok();
     assert_eq!(watched.lines().last().unwrap()["stats"]["writes"], 0);
 }
+
+/// A command that moves a hand, whose output is closed after its first line: it stops the hand, says why, and fails.
+#[cfg(unix)]
+fn stops_unread(args: &[&str]) {
+    use crate::setup::process::take_pipe;
+    use std::io::{BufRead as _, BufReader, Read as _};
+    let (mut child, out) = take_pipe(args);
+    let mut lines = BufReader::new(out).lines();
+    lines.next().unwrap().unwrap();
+    drop(lines);
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    let mut said = String::new();
+    let mut messages = child.stderr.take().unwrap();
+    messages.read_to_string(&mut said).unwrap();
+    let words = "the output is no longer read; stopped: feedback shows rest";
+    assert!(said.contains(words), "{said}");
+}

@@ -1,18 +1,15 @@
 //! Grasp trials by script, on hands in other processes: over every wire, and what ends them.
 
-use crate::cli::refuses_unarmed;
+use crate::cli::{refuses_unarmed, stops_unread};
 use crate::setup::busy::unless_busy;
 use crate::setup::grasp;
-use crate::setup::process::{
-    Running, handscope, listen, run, sim_on_all, sim_on_tcp, start, take_pipe,
-};
+use crate::setup::process::{Running, handscope, listen, run, sim_on_all, sim_on_tcp, start};
 use handscope::hand::Dof;
 use handscope::hand::newtons::N_PER_G;
 use handscope::sim::serve::modbus_tcp;
 use handscope::sim::{SharedHand, SimConfig, SimHand};
 use nix::sys::signal::Signal;
 use serde_json::Value;
-use std::io::{BufRead as _, BufReader, Read as _};
 use std::path::Path;
 use std::time::Duration;
 use tokio::net::TcpListener;
@@ -352,16 +349,7 @@ fn a_hand_that_is_not_there_leaves_no_folder() {
 fn a_series_whose_output_is_closed_stops_the_hand_and_says_so() {
     let (_sim, hand) = sim_on_tcp(&["--scenario", "rigid"]);
     let series = ["trial", "--hand", &hand, "--arm", "--json", "--repeat", "4"];
-    let (mut child, out) = take_pipe(&[&series[..], &SHORT].concat());
-    let mut lines = BufReader::new(out).lines();
-    lines.next().unwrap().unwrap();
-    drop(lines);
-    assert_eq!(child.wait().unwrap().code(), Some(1));
-    let mut said = String::new();
-    let mut messages = child.stderr.take().unwrap();
-    messages.read_to_string(&mut said).unwrap();
-    let words = "the output is no longer read; stopped: feedback shows rest";
-    assert!(said.contains(words), "{said}");
+    stops_unread(&[&series[..], &SHORT].concat());
 }
 
 #[test]
