@@ -16,7 +16,7 @@ mod tuning;
 
 use crate::setup::hand;
 use crate::setup::line::{Dialled, Line, Trouble};
-use crate::setup::link::to_hand;
+use crate::setup::link::to_hand_at_pace;
 use crate::setup::program::{env, start};
 use handscope::app::action::Action;
 use handscope::app::env::Env;
@@ -61,7 +61,7 @@ impl Bench {
     /// With a hand that has nothing in its reach, live since a second.
     async fn live() -> Self {
         let hand = hand::begin(hand::free(SimConfig::default()));
-        Self::on(to_hand(hand.clone()), hand, "rs485:x").await
+        Self::on(to_hand_at_pace(hand.clone()), hand, "rs485:x").await
     }
 
     async fn on(dial: Arc<dyn Dial>, hand: SharedHand, endpoint: &str) -> Self {

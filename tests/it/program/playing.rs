@@ -403,10 +403,11 @@ async fn between_poses_whose_straight_way_crosses_the_thumb_goes_out_first_and_b
     bench.act(Action::Recall(shipped("Pinch")));
     bench.run(300).await;
     bench.act(Action::Stop);
-    bench.run(300).await;
+    bench.run(1000).await;
     bench.forget();
     bench.run(8000).await;
-    assert!(angles_told(&bench).is_empty(), "nothing after a stop");
+    let told = angles_told(&bench);
+    assert!(told.is_empty(), "nothing after a stop: {told:?}");
 }
 
 #[tokio::test(start_paused = true)]

@@ -1,12 +1,13 @@
 //! Simulated hands, and their servers behind a wire in memory.
 
 use futures::FutureExt as _;
+use futures::future::BoxFuture;
 use handscope::hand::Dof;
 use handscope::sim::serve::{can, modbus_rtu, modbus_tcp, rs485, slcan, usbcan};
 use handscope::sim::{Object, Personality, SharedHand, SimConfig, SimHand, SimHands};
-use handscope::transport::{Endpoint, Wire};
+use handscope::transport::{Endpoint, LinePace, Wire, paced};
 use tokio::task::JoinHandle;
-use tokio::time::Instant;
+use tokio::time::{Duration, Instant};
 
 /// The default hand, whose time begins now.
 pub(crate) fn plain() -> SharedHand {
@@ -54,19 +55,40 @@ pub(crate) fn like(personality: Personality) -> SimConfig {
     }
 }
 
+/// As fast as the hand's own serial line (manual 2.2). A wire in memory is read five times as often, which takes five times the
+/// computing.
+const LINE: LinePace = LinePace {
+    baud: 115_200,
+    turnaround: Duration::from_millis(1),
+};
+
 /// Serves hands at the far end of a wire, in what the endpoint speaks.
 pub(crate) fn serve(
     hands: impl Into<SimHands>,
     endpoint: &Endpoint,
     far: impl Wire,
 ) -> JoinHandle<()> {
-    let hands: SimHands = hands.into();
+    tokio::spawn(served(hands.into(), endpoint, far))
+}
+
+/// The same at the speed of the hand's own line.
+pub(crate) fn serve_at_pace(
+    hands: impl Into<SimHands>,
+    endpoint: &Endpoint,
+    far: impl Wire,
+) -> JoinHandle<()> {
+    let (hands, endpoint) = (hands.into(), endpoint.clone());
+    let device = move |wire| served(hands, &endpoint, wire);
+    tokio::spawn(paced(far, LINE, device))
+}
+
+fn served(hands: SimHands, endpoint: &Endpoint, far: impl Wire) -> BoxFuture<'static, ()> {
     match endpoint {
-        Endpoint::Rtu(_) => tokio::spawn(modbus_rtu::serve(hands, far)),
-        Endpoint::Tcp { .. } => tokio::spawn(modbus_tcp::serve_client(hands, far)),
-        Endpoint::Can { .. } => tokio::spawn(can::serve(hands, far).map(drop)),
-        Endpoint::Slcan { .. } => tokio::spawn(slcan::serve(hands, far)),
-        Endpoint::UsbCan { .. } => tokio::spawn(usbcan::serve(hands, far)),
-        _ => tokio::spawn(rs485::serve(hands, far)),
+        Endpoint::Rtu(_) => modbus_rtu::serve(hands, far).boxed(),
+        Endpoint::Tcp { .. } => modbus_tcp::serve_client(hands, far).boxed(),
+        Endpoint::Can { .. } => can::serve(hands, far).map(drop).boxed(),
+        Endpoint::Slcan { .. } => slcan::serve(hands, far).boxed(),
+        Endpoint::UsbCan { .. } => usbcan::serve(hands, far).boxed(),
+        _ => rs485::serve(hands, far).boxed(),
     }
 }

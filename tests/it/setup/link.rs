@@ -65,6 +65,12 @@ pub(crate) fn to_hand(hands: impl Into<SimHands>) -> Arc<dyn Dial> {
     behind(move |endpoint, far| drop(hand::serve(hands.clone(), endpoint, far)))
 }
 
+/// The same at the speed of the hand's own line.
+pub(crate) fn to_hand_at_pace(hands: impl Into<SimHands>) -> Arc<dyn Dial> {
+    let hands: SimHands = hands.into();
+    behind(move |endpoint, far| drop(hand::serve_at_pace(hands.clone(), endpoint, far)))
+}
+
 /// A link as the program opens it. Its time begins now.
 pub(crate) fn config(endpoint: &str, dial: Arc<dyn Dial>) -> LinkConfig {
     LinkConfig {
