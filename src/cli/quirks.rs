@@ -1,7 +1,7 @@
 //! `quirks`: differences of a hand from others, printed or written to a file. Only reads from the hand.
 
 use crate::cli::out::Out;
-use crate::cli::out::file::{nothing_at, write_file};
+use crate::cli::out::file::{check_new_file, write_file};
 use crate::cli::session::{self, ONLY_WHAT_IS_ASKED};
 use crate::link::quirks::baud_of_code;
 use crate::link::quirks::book::{self, QuirkBook};
@@ -27,7 +27,7 @@ pub(crate) struct QuirksArgs {
 /// Identifies the hand and prints its quirks.
 pub(crate) async fn run(out: &mut Out, args: &QuirksArgs) -> anyhow::Result<()> {
     if let Some(path) = &args.out {
-        nothing_at(path, "--out")?;
+        check_new_file(path, "--out")?;
     }
     let link = session::reach(&args.hand, ONLY_WHAT_IS_ASKED).await?;
     let quirks = link.status().quirks;

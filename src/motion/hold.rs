@@ -186,7 +186,7 @@ impl Zero {
     /// Amplitude of the noise, g.
     fn noise_g(&self) -> f64 {
         let variance = spread(&self.readings) / (count(&self.readings) - 1.0).max(1.0);
-        (2.0 * variance.sqrt()).clamp(2.0, 30.0)
+        (2.0 * variance.sqrt()).clamp(2.0, 100.0)
     }
 }
 
@@ -651,9 +651,9 @@ impl HoldRun {
             let force = self.force_g(seen.sample, dof);
             if let Some(((began, began_g), force)) = self.touched[finger].zip(force) {
                 let way = f64::from(began) - f64::from(at.get());
-                // Angles are whole units: the stiffer of the two possible values.
+                // Angles are whole units and forces have noise: the stiffest of the possible values.
                 if way >= 2.0 && force > began_g {
-                    hold.know_stiffness((force - began_g) / (way - 1.0));
+                    hold.know_stiffness((force - began_g + zero.noise_g()) / (way - 1.0));
                 }
             }
             self.fingers[finger] = Some(hold);
@@ -743,7 +743,15 @@ impl HoldRun {
     fn watch_loss(&mut self, seen: &Seen<'_>, finger: Finger, force_g: f64) {
         let tip_n = seen.sample.tactile[finger].and_then(|tip| tip.value.normal());
         let least = GONE_SHARE * self.range(finger.bend()).least_g;
-        let is_gone = force_g < least && tip_n.is_none_or(|n| n < TOUCH_N);
+        let has_felt = self.fingers[finger]
+            .as_ref()
+            .is_some_and(FingerHold::has_felt);
+        // The zero of a drive drifts: a fingertip that felt the object and feels nothing any more is believed.
+        let is_gone = match tip_n {
+            Some(n) if n >= TOUCH_N => false,
+            Some(_) if has_felt => true,
+            _ => force_g < least,
+        };
         let since = &mut self.gone_since[finger];
         *since = is_gone.then(|| since.unwrap_or(seen.now));
     }

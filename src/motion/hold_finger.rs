@@ -83,6 +83,8 @@ const RATIO_FROM_G: f64 = 30.0;
 const STIFFER_UNKNOWN: f64 = 2.0;
 const STIFFER_SHOWN: f64 = 1.35;
 const STIFFER_SETTLED: f64 = 1.15;
+/// Share of the stiffness that a step showed that is still believed after the next one.
+const SHOWN_KEPT: f64 = 0.9;
 /// Units of angle by which a finger follows an object beyond what its force explains.
 const FOLLOW: f64 = 40.0;
 /// A finger is still blocked at this share of the force at which steps had no effect.
@@ -146,8 +148,9 @@ struct Underway {
     /// Force and angle before the step.
     from_g: f64,
     from_angle: i16,
-    /// Force that it should lead to, g.
+    /// Force that it should lead to, and the highest to which it may, g.
     aim_g: f64,
+    highest_g: f64,
 }
 
 /// One finger that holds an object.
@@ -161,14 +164,16 @@ pub(crate) struct FingerHold {
     stiffness: f64,
     /// Factor by which the contact may be stiffer.
     stiffer: f64,
+    /// Stiffness that single steps showed, at least, g per unit of angle: of an object that gives way slowly, settled forces show less.
+    shown: f64,
     wanted_g: f64,
     cause: TightenCause,
     forces: VecDeque<(Moment, f64)>,
     tips: VecDeque<TipForces>,
-    /// Force of the drive for each gram on the fingertip; `None` before both were read.
+    /// Force of the drive for each gram on the fingertip; `None` before the fingertip felt the object.
     gain: Option<f64>,
-    /// Tangential force while nothing happens, g.
-    base_g: Option<f64>,
+    /// Tangential and normal force while nothing happens, g.
+    base_g: Option<(f64, f64)>,
     /// Largest ratio of tangential to normal force at which the object did not slide.
     held_ratio: f64,
     /// Smallest ratio at which it slid.
@@ -202,6 +207,7 @@ impl FingerHold {
             target: angle.into(),
             stiffness: HARD_G,
             stiffer: STIFFER_UNKNOWN,
+            shown: 0.0,
             wanted_g: range.least_g,
             cause: TightenCause::TooLittle,
             forces: VecDeque::new(),
@@ -231,6 +237,11 @@ impl FingerHold {
         self.stiffer = self.stiffer.min(STIFFER_SHOWN);
     }
 
+    /// Largest stiffness that the contact may have, g per unit of angle.
+    fn stiffest(&self) -> f64 {
+        (self.stiffness * self.stiffer).max(self.shown)
+    }
+
     /// Force that it presses with, g; `None` before the first reading.
     pub(crate) fn force_g(&self) -> Option<f64> {
         let recent = self.forces.iter().rev().take(FORCES);
@@ -246,6 +257,11 @@ impl FingerHold {
     /// Stiffness of the contact, g per unit of angle; `None` before the close or a step showed it.
     pub(crate) fn measured_stiffness(&self) -> Option<f64> {
         (self.stiffer < STIFFER_UNKNOWN).then_some(self.stiffness)
+    }
+
+    /// True once its fingertip felt the object.
+    pub(crate) const fn has_felt(&self) -> bool {
+        self.gain.is_some()
     }
 
     /// The last force at rest, g, and its angle.
@@ -316,10 +332,20 @@ impl FingerHold {
         let Some(ratio) = ratio(&tip) else {
             return;
         };
-        let base = *self.base_g.get_or_insert(tip.tangential_g);
-        let jump = tip.tangential_g - base;
+        let forces = (tip.tangential_g, tip.normal_g);
+        let (base, base_normal) = *self.base_g.get_or_insert(forces);
+        // A finger that presses harder also drags more: that is no load.
+        let explained = base * (tip.normal_g / base_normal).max(1.0);
+        let jump = match tip.tangential_g > base {
+            true => (tip.tangential_g - explained).max(0.0),
+            false => tip.tangential_g - base,
+        };
         let is_jump = jump.abs() > (JUMP_SHARE * tip.normal_g).max(JUMP_LEAST_G);
-        self.base_g = Some(base + jump * if is_jump { 0.3 } else { 0.1 });
+        let share = if is_jump { 0.3 } else { 0.1 };
+        self.base_g = Some((
+            base + (tip.tangential_g - base) * share,
+            base_normal + (tip.normal_g - base_normal) * share,
+        ));
         if is_jump {
             if jump > 0.0 && tip.at.since(self.quiet_since) >= QUIET {
                 self.surges = (self.surges_at(tip.at) + 1.0, tip.at);
@@ -410,10 +436,11 @@ impl FingerHold {
         if let Some(step) = self.underway.take_if(|step| !is_acting(step)) {
             self.learn(step, force_g, reading.angle);
         }
-        let expected_g = self.underway.map_or(force_g, |step| step.aim_g);
+        let under_way = self.underway;
         let seen = HoldNow {
             force_g,
-            expected_g,
+            expected_g: under_way.map_or(force_g, |step| step.aim_g),
+            highest_g: under_way.map_or(force_g, |step| step.highest_g.max(force_g)),
             settled_g: self.settled_g(reading.at),
             reading,
         };
@@ -479,7 +506,8 @@ impl FingerHold {
             // Angles are whole units: the farther, the truer.
             let weight = LEARN * (1.0 - 1.0 / way.abs());
             self.know_stiffness(self.stiffness + (change / way - self.stiffness) * weight);
-            self.stiffer = STIFFER_SETTLED;
+            let unsure = 1.0 + self.settled_dead_g() / change.abs();
+            self.stiffer = unsure.clamp(STIFFER_SETTLED, STIFFER_UNKNOWN);
         }
     }
 
@@ -493,6 +521,10 @@ impl FingerHold {
         self.opens_first = is_blocked && self.opened.is_none_or(may_open);
         let way = f64::from(step.from_angle) - f64::from(angle);
         let change = force_g - step.from_g;
+        if way.abs() >= 1.0 && change * way > 0.0 {
+            let surely = (change.abs() - self.noise_g) / (way.abs() + 1.0);
+            self.shown = (self.shown * SHOWN_KEPT).max(surely.min(HARD_G));
+        }
         if way.abs() >= 1.0 && change > self.stiffness * way && way > 0.0 {
             // A force that is still rising shows a lower bound.
             self.know_stiffness(self.stiffness + (change / way - self.stiffness) * 0.4);
@@ -532,12 +564,12 @@ impl FingerHold {
         if self.blocked.is_some_and(is_blocked) {
             return None;
         }
-        let room = self.range.most_g - seen.expected_g;
+        let room = self.range.most_g - seen.highest_g;
         let steps = (missing / self.stiffness).round().max(1.0);
-        let allowed = (room / (self.stiffness * self.stiffer)).floor();
+        let allowed = (room / self.stiffest()).floor();
         // Rather one step that the threshold of the drive may have to end than an object that drops.
         let is_needed = self.is_short || missing >= self.stiffness;
-        let least = if is_needed && room >= self.stiffness {
+        let least = if is_needed && room >= self.stiffness.max(self.shown) {
             1.0
         } else {
             0.0
@@ -579,9 +611,7 @@ impl FingerHold {
             return self.step(seen, (over / self.stiffness).ceil().min(STEP_MAX), None);
         }
         let spare = seen.settled_g? - self.wanted_g - self.settled_dead_g();
-        let steps = (spare / (self.stiffness * self.stiffer))
-            .floor()
-            .min(RELAX_MAX);
+        let steps = (spare / self.stiffest()).floor().min(RELAX_MAX);
         let steps = if steps > 2.0 {
             (steps * RELAX_PART).floor()
         } else {
@@ -603,6 +633,9 @@ impl FingerHold {
         self.target = (from + by).clamp(0.0, 1000.0);
         let counts = (self.target - f64::from(seen.reading.angle)).abs() * 2.0;
         let aim_g = seen.expected_g - by * self.stiffness;
+        // Halfway to the stiffest, or what a slip needs would have to wait for the effect of its first step.
+        let likely = f64::midpoint(self.stiffness, self.stiffest());
+        let highest_g = seen.highest_g - by.min(0.0) * likely;
         let is_near = aim_g > NEAR_MOST * self.range.most_g;
         let fastest = SPEED_BY_STIFFNESS / self.stiffness / if is_near { NEAR_SLOWER } else { 1.0 };
         let speed = (counts / STEP_S / COUNTS_PER_SPEED).min(fastest.clamp(25.0, 1000.0));
@@ -616,6 +649,7 @@ impl FingerHold {
             from_g: begun.map_or(seen.force_g, |step| step.from_g),
             from_angle: begun.map_or(seen.reading.angle, |step| step.from_angle),
             aim_g,
+            highest_g,
         });
         Some(HoldStep {
             to: nearest_angle(self.target),
@@ -630,6 +664,8 @@ struct HoldNow {
     force_g: f64,
     /// Force once the step under way has acted.
     expected_g: f64,
+    /// The highest that it may be then.
+    highest_g: f64,
     /// Mean force since the last step acted; `None` if it has not settled.
     settled_g: Option<f64>,
     reading: FingerReading,

@@ -4,7 +4,7 @@
 use crate::app::files::settings_file;
 use crate::cli::consent::{self, ConsentFrom, NoConsent};
 use crate::cli::out::failure::FailureKind;
-use crate::cli::out::file::nothing_at;
+use crate::cli::out::file::{check_new_file, taken};
 use crate::cli::out::{WrongUsage, notify};
 use crate::hand::PerDof;
 use crate::motion::grasp::confirm::Agreement;
@@ -81,10 +81,10 @@ impl GraspPlace {
         }
     }
 
-    /// Checks that nothing is overwritten, before the hand moves.
+    /// Checks that it can be saved and overwrites nothing, before the hand moves.
     pub(crate) fn free(&self) -> anyhow::Result<PathBuf> {
         let path = self.path()?;
-        nothing_at(&path, "--save")?;
+        check_new_file(&path, "--save")?;
         let folder = path.parent().filter(|own| *own != Path::new(""));
         if let (Self::File(_), Some(folder)) = (self, folder)
             && !folder.is_dir()
@@ -239,7 +239,7 @@ fn trust(hand: &Endpoint, grasp: &Grasp) -> anyhow::Result<Trust> {
 /// Writes a grasp to a new file.
 pub(crate) fn save(path: &Path, grasp: &Grasp) -> anyhow::Result<()> {
     match file::save(path, grasp) {
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => nothing_at(path, "--save"),
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(taken(path, "--save")),
         written => written.with_context(|| format!("cannot write {}", path.display())),
     }
 }

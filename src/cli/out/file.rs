@@ -6,13 +6,24 @@ use anyhow::Context as _;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Checks that nothing exists at a path before a long operation on the hand. `option` is the option that names it.
+/// Checks that a new file can be written at a path, before a long operation on the hand. `option` is the option that names it.
 ///
 /// # Errors
-/// The path exists.
-pub(crate) fn nothing_at(path: &Path, option: &str) -> anyhow::Result<()> {
-    if path.symlink_metadata().is_ok() {
-        return Err(taken(path, option));
+/// The path exists, or the I/O error of the system.
+pub(crate) fn check_new_file(path: &Path, option: &str) -> anyhow::Result<()> {
+    let cannot = |error: std::io::Error| {
+        FailureKind::File.error(format!("cannot write {}: {error}", path.display()))
+    };
+    match path.symlink_metadata() {
+        Ok(_) => return Err(taken(path, option)),
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        Err(error) => return Err(cannot(error)),
+    }
+    let folder = path.parent().filter(|own| *own != Path::new(""));
+    let folder = folder.unwrap_or(Path::new("."));
+    // A folder that is missing is created later, where a command does so.
+    if folder.is_dir() {
+        tempfile::tempfile_in(folder).map_err(cannot)?;
     }
     Ok(())
 }
@@ -32,7 +43,8 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     Err(error).with_context(|| format!("cannot write {}", path.display()))
 }
 
-fn taken(path: &Path, option: &str) -> anyhow::Error {
+/// A file that is not overwritten.
+pub(crate) fn taken(path: &Path, option: &str) -> anyhow::Error {
     let path = path.display();
     FailureKind::File.error(format!(
         "{path} already exists and is not overwritten; name another file with {option}"

@@ -1,6 +1,6 @@
 //! The parameter commands that only read: `params dump`, `params diff` and `params backups`.
 
-use crate::cli::out::file::{nothing_at, write_file};
+use crate::cli::out::file::{check_new_file, write_file};
 use crate::cli::out::{Out, end, notify};
 use crate::cli::params::args::{Common, DiffArgs, DumpArgs};
 use crate::cli::params::reach;
@@ -21,7 +21,7 @@ pub(crate) async fn dump(out: &mut Out, args: &DumpArgs) -> anyhow::Result<()> {
     let common = &args.common;
     let files = common.backups()?;
     if let Some(path) = &args.out {
-        nothing_at(path, "--out")?;
+        check_new_file(path, "--out")?;
     }
     let (params, troubles) = read_rows(&common.hand).await?;
     let file = files.file(&params, "dump", since_1970());

@@ -3,7 +3,7 @@
 
 use crate::app::env::day_folder;
 use crate::cli::out::failure::FailureKind;
-use crate::cli::out::file::nothing_at;
+use crate::cli::out::file::check_new_file;
 use crate::cli::out::{Out, notify};
 use crate::cli::parse::seconds;
 use crate::cli::recordings::recording_file::add_files;
@@ -122,7 +122,7 @@ pub(crate) async fn run(out: &mut Out, args: &RecordArgs) -> anyhow::Result<()> 
 /// Path of the new file.
 fn path(args: &RecordArgs, opening: &Opening) -> anyhow::Result<PathBuf> {
     if let Some(path) = &args.out {
-        nothing_at(path, "--out")?;
+        check_new_file(path, "--out")?;
         return Ok(path.clone());
     }
     let documents = day_folder::documents().context(

@@ -6,7 +6,7 @@ mod redaction;
 
 use crate::cli::out::Out;
 use crate::cli::out::failure::FailureKind;
-use crate::cli::out::file::{nothing_at, write_file};
+use crate::cli::out::file::{check_new_file, write_file};
 use crate::cli::parse::seconds;
 use crate::cli::report::contents::Contents;
 use crate::cli::report::redaction::{COMPUTER, HOME, USER};
@@ -62,7 +62,7 @@ pub(crate) async fn run(out: &mut Out, args: &ReportArgs) -> anyhow::Result<()> 
 
 /// Fails if the file cannot be created, before the hand is examined.
 fn may_be_written(path: &Path) -> anyhow::Result<()> {
-    nothing_at(path, "--out")?;
+    check_new_file(path, "--out")?;
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());

@@ -6,8 +6,8 @@ use crate::hand::hold_forces::{HoldForces, NoRoom};
 use crate::hand::overshoot::OvershootMap;
 use crate::hand::register::{ANGLE_SET, FORCE_SET, SPEED_SET};
 use crate::hand::{
-    Angle, ArmEpoch, Dof, Finger, Force, Group, Groups, HandCommand, HandSample, Moment, PerDof,
-    PerFinger, Reply, Setpoints, Target,
+    Angle, ArmEpoch, Dof, Finger, Force, ForceReading, Group, Groups, HandCommand, HandSample,
+    Moment, PerDof, PerFinger, Reply, Setpoints, Target,
 };
 use crate::link::LinkStatus;
 use crate::motion::hold::{HoldClose, HoldEnd, HoldPhase, HoldRun, HoldStart};
@@ -130,6 +130,8 @@ struct Bench {
     status: LinkStatus,
     sent: Vec<Sent>,
     peak_g: f64,
+    /// What the force sensors read too much.
+    drift_g: i16,
 }
 
 impl Bench {
@@ -144,6 +146,7 @@ impl Bench {
             },
             sent: Vec::new(),
             peak_g: 0.0,
+            drift_g: 0,
         }
     }
 
@@ -157,9 +160,9 @@ impl Bench {
     }
 
     fn step(&mut self) {
-        let program = &mut self.program;
+        let (program, drift_g) = (&mut self.program, self.drift_g);
         self.hand
-            .step(|sample, fresh, now| program.read(sample, fresh, now));
+            .step(|sample, fresh, now| program.read(&drifted(sample, drift_g), fresh, now));
         let forces = self.hand.sim.held().fingers.map(|finger| finger.normal_g);
         self.peak_g = forces
             .as_array()
@@ -168,7 +171,7 @@ impl Bench {
             .fold(self.peak_g, f64::max);
         let seen = Seen {
             status: &self.status,
-            sample: &self.hand.sample,
+            sample: &drifted(&self.hand.sample, drift_g),
             stall: None,
             now: self.hand.now,
         };
@@ -236,6 +239,16 @@ impl Bench {
             })
             .collect()
     }
+}
+
+fn drifted(sample: &HandSample, by_g: i16) -> HandSample {
+    let mut sample = *sample;
+    if let Some(forces) = &mut sample.force {
+        forces.value = forces
+            .value
+            .map(|force| ForceReading::new(force.raw() + by_g));
+    }
+    sample
 }
 
 pub(super) fn forces() -> HoldForces {
@@ -502,6 +515,16 @@ fn an_object_that_is_taken_away_is_lost_and_stops_the_hand() {
     let waited = bench.hand.now.since(taken);
     assert!(waited < Duration::from_secs(1), "{waited:?}");
     assert_eq!(bench.sent.last().unwrap().order, Order::Stop);
+}
+
+#[test]
+fn an_object_that_leaves_the_fingertips_is_lost_whatever_the_drives_read() {
+    let mut object = ball(10.0);
+    object.loads.taken_away_at_s = Some(3.0);
+    let mut bench = Bench::closing_on(object);
+    bench.run_until(|own| own.hand.sim.held().lost.is_some());
+    bench.drift_g = AT_LEAST_G;
+    assert_eq!(bench.run_to_end(), Ok(HoldEnd::Lost));
 }
 
 #[test]

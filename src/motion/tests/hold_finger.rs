@@ -13,6 +13,8 @@ const READINGS_PER_TIP: u64 = 3;
 const LATENCY: Duration = Duration::from_millis(70);
 const NOISE_G: f64 = 5.0;
 const BEFORE_IT_RELAXES: Duration = Duration::from_millis(300);
+/// Time constant of an object that gives way.
+const GIVES_WAY_S: f64 = 3.0;
 const RANGE: ForceRange = ForceRange {
     least_g: 150.0,
     most_g: 600.0,
@@ -32,6 +34,12 @@ struct Bench {
     /// Reading of the force sensor for a gram.
     reading_per_g: f64,
     load_g: f64,
+    /// Tangential force for each gram with which the finger presses.
+    drag: f64,
+    /// Share of its force that an object loses in the course of time, and what it has lost.
+    gives_way: f64,
+    lost_g: f64,
+    peak_g: f64,
     is_warm: bool,
     steps: Vec<HoldStep>,
 }
@@ -54,12 +62,20 @@ impl Bench {
             orders: VecDeque::new(),
             reading_per_g: 1.0,
             load_g: 0.0,
+            drag: 0.0,
+            gives_way: 0.0,
+            lost_g: 0.0,
+            peak_g: 0.0,
             is_warm: false,
             steps: Vec::new(),
         }
     }
 
     fn force_g(&self) -> f64 {
+        (self.spring_g() - self.lost_g).max(0.0)
+    }
+
+    fn spring_g(&self) -> f64 {
         ((self.touched - self.angle) * self.stiffness).max(0.0)
     }
 
@@ -69,12 +85,15 @@ impl Bench {
             self.now = self.now.plus(READING);
             self.readings += 1;
             self.drive();
+            let to_lose_g = self.gives_way * self.spring_g() - self.lost_g;
+            self.lost_g += to_lose_g * READING.as_secs_f64() / GIVES_WAY_S;
             let force_g = self.force_g();
+            self.peak_g = self.peak_g.max(force_g);
             if self.readings.is_multiple_of(READINGS_PER_TIP) {
                 self.hold.feel(TipForces {
                     at: self.now,
                     normal_g: force_g,
-                    tangential_g: self.load_g,
+                    tangential_g: self.load_g + self.drag * force_g,
                     spot_mm: None,
                 });
             }
@@ -228,4 +247,37 @@ fn a_reduction_that_was_taken_back_is_tried_again_once_the_load_has_changed() {
     let pressed_g = bench.force_g();
     bench.run(Duration::from_secs(10));
     assert!(bench.force_g() < 0.7 * pressed_g, "{} g", bench.force_g());
+}
+
+#[test]
+fn what_a_finger_drags_by_pressing_harder_is_no_load() {
+    let mut bench = Bench::pressing(100.0, 10.0);
+    bench.drag = 0.25;
+    bench.run(Duration::from_secs(10));
+    let causes = bench.causes();
+    assert!(
+        !causes.is_empty() && !causes.contains(&Some(TightenCause::Load)),
+        "{causes:?}"
+    );
+    assert!(bench.peak_g < 1.2 * RANGE.least_g, "{} g", bench.peak_g);
+}
+
+#[test]
+fn an_object_that_gives_way_slowly_is_not_pressed_beyond_at_most() {
+    for (stiffness, gives_way) in [(10.0, 0.6), (25.0, 0.4), (25.0, 0.6)] {
+        let mut bench = Bench::pressing(150.0, stiffness);
+        bench.gives_way = gives_way;
+        for load_g in [60.0, 120.0, 180.0, 240.0] {
+            bench.run(Duration::from_secs(2));
+            bench.load_g = load_g;
+        }
+        bench.run(Duration::from_secs(30));
+        // How fast it gives way is not known while the first load comes.
+        let most_g = 1.1 * RANGE.most_g + stiffness;
+        assert!(
+            bench.peak_g <= most_g,
+            "{stiffness} {gives_way}: {} g",
+            bench.peak_g
+        );
+    }
 }

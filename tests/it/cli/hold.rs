@@ -199,7 +199,10 @@ fn a_wrong_grasp_moves_nothing() {
     let path = folder.path().join("egg.grasp.toml");
     std::fs::write(&path, "format = \"handscope-grasp\"\nversion = 1\n").unwrap();
     let path = path.to_str().unwrap();
+    let too_long = format!("/tmp/{}.grasp.toml", "n".repeat(300));
     for (more, code, words) in [
+        (&["--save", &too_long][..], 1, "File name too long"),
+        (&["--save", "/proc/egg.grasp.toml"], 1, "cannot write /proc"),
         (&["--grasp", path][..], 1, "`name`: it is missing: add it"),
         (
             &["--grasp", "none"],

@@ -146,7 +146,10 @@ fn is_tuned_whatever_its_offset(counts_offset: bool) {
     }
     let words = format!("{claims} claims, {told} told, of {tried}");
     println!("{words}");
-    assert!(tried >= 6 && 18 * claims >= 17 * tried && 18 * told >= 13 * tried, "{words}");
+    assert!(
+        tried >= 6 && 18 * claims >= 17 * tried && 18 * told >= 13 * tried,
+        "{words}"
+    );
 }
 
 #[test]
