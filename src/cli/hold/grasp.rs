@@ -3,8 +3,7 @@
 
 use crate::app::files::settings_file;
 use crate::cli::consent::{self, ConsentFrom, NoConsent};
-use crate::cli::out::failure::FailureKind;
-use crate::cli::out::file::{check_new_file, taken};
+use crate::cli::out::file::{check_folder, check_new_file, taken};
 use crate::cli::out::{WrongUsage, notify};
 use crate::hand::PerDof;
 use crate::motion::grasp::confirm::Agreement;
@@ -85,14 +84,8 @@ impl GraspPlace {
     pub(crate) fn free(&self) -> anyhow::Result<PathBuf> {
         let path = self.path()?;
         check_new_file(&path, "--save")?;
-        let folder = path.parent().filter(|own| *own != Path::new(""));
-        if let (Self::File(_), Some(folder)) = (self, folder)
-            && !folder.is_dir()
-        {
-            let (path, folder) = (path.display(), folder.display());
-            return Err(FailureKind::File.error(format!(
-                "cannot save {path}: {folder} is not a folder; create it first"
-            )));
+        if matches!(self, Self::File(_)) {
+            check_folder(&path, "--save")?;
         }
         Ok(path)
     }

@@ -6,26 +6,56 @@ use anyhow::Context as _;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Checks that a new file can be written at a path, before a long operation on the hand. `option` is the option that names it.
+/// Checks that nothing exists at a path. `option` is the option that names it.
+///
+/// # Errors
+/// The path exists.
+pub(crate) fn nothing_at(path: &Path, option: &str) -> anyhow::Result<()> {
+    if path.symlink_metadata().is_ok() {
+        return Err(taken(path, option));
+    }
+    Ok(())
+}
+
+/// Checks that a new file can be written at a path, before a long operation on the hand.
 ///
 /// # Errors
 /// The path exists, or the I/O error of the system.
 pub(crate) fn check_new_file(path: &Path, option: &str) -> anyhow::Result<()> {
+    nothing_at(path, option)?;
     let cannot = |error: std::io::Error| {
         FailureKind::File.error(format!("cannot write {}: {error}", path.display()))
     };
     match path.symlink_metadata() {
-        Ok(_) => return Err(taken(path, option)),
-        Err(error) if error.kind() == ErrorKind::NotFound => {}
-        Err(error) => return Err(cannot(error)),
+        Err(error) if error.kind() != ErrorKind::NotFound => return Err(cannot(error)),
+        _ => {}
     }
-    let folder = path.parent().filter(|own| *own != Path::new(""));
-    let folder = folder.unwrap_or(Path::new("."));
+    let folder = folder(path);
     // A folder that is missing is created later, where a command does so.
     if folder.is_dir() {
         tempfile::tempfile_in(folder).map_err(cannot)?;
     }
     Ok(())
+}
+
+/// Checks that the folder of a new file is there, for a command that does not create it.
+///
+/// # Errors
+/// It is not.
+pub(crate) fn check_folder(path: &Path, option: &str) -> anyhow::Result<()> {
+    let folder = folder(path);
+    if folder.is_dir() {
+        return Ok(());
+    }
+    Err(FailureKind::File.error(format!(
+        "there is no folder {}: make it, or name another file with {option}",
+        folder.display()
+    )))
+}
+
+fn folder(path: &Path) -> &Path {
+    let folder = path.parent().filter(|own| *own != Path::new(""));
+    folder.unwrap_or(Path::new("."))
 }
 
 /// Writes a new file at the path that `--out` names.

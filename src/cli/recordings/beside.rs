@@ -1,6 +1,6 @@
 //! A recording made alongside another command, in the same format as `record`. Its errors are reported and do not delay the command.
 
-use crate::cli::out::file::check_new_file;
+use crate::cli::out::file::nothing_at;
 use crate::cli::out::notify;
 use crate::cli::recordings::record::{FileReporter, record_parameters};
 use crate::cli::session;
@@ -43,7 +43,7 @@ impl SideRecording {
         let Some(path) = path else {
             return Ok(Self(None));
         };
-        check_new_file(path, "--record")?;
+        nothing_at(path, "--record")?;
         let clock = link.clock();
         let moments = (clock.now(), calendar::since_1970());
         let recorder = Recorder::start(RecordingPlan {

@@ -6,7 +6,7 @@ mod redaction;
 
 use crate::cli::out::Out;
 use crate::cli::out::failure::FailureKind;
-use crate::cli::out::file::{check_new_file, write_file};
+use crate::cli::out::file::{check_folder, check_new_file, write_file};
 use crate::cli::parse::seconds;
 use crate::cli::report::contents::Contents;
 use crate::cli::report::redaction::{COMPUTER, HOME, USER};
@@ -63,16 +63,7 @@ pub(crate) async fn run(out: &mut Out, args: &ReportArgs) -> anyhow::Result<()> 
 /// Fails if the file cannot be created, before the hand is examined.
 fn may_be_written(path: &Path) -> anyhow::Result<()> {
     check_new_file(path, "--out")?;
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
-        return Err(FailureKind::File.error(format!(
-            "there is no folder {}: make it, or name another file with --out",
-            folder.display()
-        )));
-    }
-    Ok(())
+    check_folder(path, "--out")
 }
 
 fn listed(args: &ReportArgs, contents: &Contents) -> serde_json::Value {

@@ -213,7 +213,7 @@ fn a_wrong_grasp_moves_nothing() {
         (
             &["--save", "/nowhere/egg.grasp.toml"],
             1,
-            "/nowhere is not a folder",
+            "there is no folder /nowhere",
         ),
         (
             &["--save", ".grasp.toml"],
