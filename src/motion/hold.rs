@@ -720,7 +720,8 @@ impl HoldRun {
             if let Some((settled_g, angle)) = hold.settled() {
                 self.shown.rests(finger, angle, settled_g);
             }
-            let Some(step) = step.filter(|step| !(is_gone || is_far && step.cause.is_some()))
+            // What has lost the object, or followed it too far, opens at most.
+            let Some(step) = step.filter(|step| step.cause.is_none() || !(is_gone || is_far))
             else {
                 continue;
             };

@@ -241,6 +241,7 @@ impl Bench {
     }
 }
 
+/// A sample whose forces read too much.
 fn drifted(sample: &HandSample, by_g: i16) -> HandSample {
     let mut sample = *sample;
     if let Some(forces) = &mut sample.force {
@@ -504,12 +505,18 @@ fn a_thumb_whose_drive_counts_its_zero_is_turned_before_the_pinch_closes() {
     assert!(rotation < 40.0, "{rotation}");
 }
 
-#[test]
-fn an_object_that_is_taken_away_is_lost_and_stops_the_hand() {
+/// A hold whose object was just taken away.
+fn robbed() -> Bench {
     let mut object = ball(10.0);
     object.loads.taken_away_at_s = Some(3.0);
     let mut bench = Bench::closing_on(object);
     bench.run_until(|own| own.hand.sim.held().lost.is_some());
+    bench
+}
+
+#[test]
+fn an_object_that_is_taken_away_is_lost_and_stops_the_hand() {
+    let mut bench = robbed();
     let taken = bench.hand.now;
     assert_eq!(bench.run_to_end(), Ok(HoldEnd::Lost));
     let waited = bench.hand.now.since(taken);
@@ -519,12 +526,22 @@ fn an_object_that_is_taken_away_is_lost_and_stops_the_hand() {
 
 #[test]
 fn an_object_that_leaves_the_fingertips_is_lost_whatever_the_drives_read() {
-    let mut object = ball(10.0);
-    object.loads.taken_away_at_s = Some(3.0);
-    let mut bench = Bench::closing_on(object);
-    bench.run_until(|own| own.hand.sim.held().lost.is_some());
+    let mut bench = robbed();
     bench.drift_g = AT_LEAST_G;
     assert_eq!(bench.run_to_end(), Ok(HoldEnd::Lost));
+}
+
+#[test]
+fn a_finger_that_lost_the_object_opens_where_its_drive_reads_too_much() {
+    let mut bench = robbed();
+    // The fingertips are read meanwhile.
+    bench.run_for(Duration::from_millis(50));
+    let lost = bench.hand.now;
+    bench.drift_g = 2 * AT_MOST_G;
+    bench.run_to_end().unwrap();
+    let steps = bench.angle_targets().into_iter();
+    let mut later = steps.filter(|(_, _, sent)| sent.at > lost);
+    assert!(later.any(|(dof, to, sent)| to > sent.angles[dof]));
 }
 
 #[test]
