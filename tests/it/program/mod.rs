@@ -16,7 +16,7 @@ mod tuning;
 
 use crate::setup::hand;
 use crate::setup::line::{Dialled, Line, Trouble};
-use crate::setup::link::to_hand_at_pace;
+use crate::setup::link::{to_hand, to_hand_at_pace};
 use crate::setup::program::{env, start};
 use handscope::app::action::Action;
 use handscope::app::env::Env;
@@ -62,6 +62,12 @@ impl Bench {
     async fn live() -> Self {
         let hand = hand::begin(hand::free(SimConfig::default()));
         Self::on(to_hand_at_pace(hand.clone()), hand, "rs485:x").await
+    }
+
+    /// The same on a wire that takes no time.
+    async fn live_without_delay() -> Self {
+        let hand = hand::begin(hand::free(SimConfig::default()));
+        Self::on(to_hand(hand.clone()), hand, "rs485:x").await
     }
 
     async fn on(dial: Arc<dyn Dial>, hand: SharedHand, endpoint: &str) -> Self {

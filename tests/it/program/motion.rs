@@ -366,8 +366,7 @@ async fn gestures_need_arming_a_route_and_free_joints() {
 
 #[tokio::test(start_paused = true)]
 async fn a_flood_of_records_is_taken_a_frame_at_a_time_and_nothing_is_lost() {
-    let hand = hand::begin(hand::free(SimConfig::default()));
-    let mut bench = Bench::on(to_hand(hand.clone()), hand, "rs485:x").await;
+    let mut bench = Bench::live_without_delay().await;
     let before = bench.hand().readings.sample.angle.unwrap().asked;
     sleep(Duration::from_secs(3)).await;
     let now = bench.clock.now();

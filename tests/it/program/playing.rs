@@ -376,7 +376,8 @@ fn shipped(name: &str) -> PoseId {
 
 #[tokio::test(start_paused = true)]
 async fn between_poses_whose_straight_way_crosses_the_thumb_goes_out_first_and_bends_last() {
-    let mut bench = Bench::armed().await;
+    let mut bench = Bench::live_without_delay().await;
+    bench.arm().await;
     bench.act(Action::Recall(shipped("Pinch")));
     bench.run(6000).await;
     assert_eq!(phase(&bench), Some(PlayPhase::Ended(Ok(PlayEnd::Finished))));
@@ -403,7 +404,7 @@ async fn between_poses_whose_straight_way_crosses_the_thumb_goes_out_first_and_b
     bench.act(Action::Recall(shipped("Pinch")));
     bench.run(300).await;
     bench.act(Action::Stop);
-    bench.run(1000).await;
+    bench.run(300).await;
     bench.forget();
     bench.run(8000).await;
     let told = angles_told(&bench);

@@ -55,8 +55,7 @@ pub(crate) fn like(personality: Personality) -> SimConfig {
     }
 }
 
-/// As fast as the hand's own serial line (manual 2.2). A wire in memory is read five times as often, which takes five times the
-/// computing.
+/// The speed of the hand's own serial line (manual 2.2). A wire in memory is read more often, which takes more computing.
 const LINE: LinePace = LinePace {
     baud: 115_200,
     turnaround: Duration::from_millis(1),
