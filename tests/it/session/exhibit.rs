@@ -85,9 +85,9 @@ fn no_way_out_of_an_exhibition_but_the_pin_and_back_after_a_kill() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("booth.toml");
         write_booth(&file);
-        let (hand, other) = (Hand::start(), Hand::start());
+        let hand = Hand::start();
         let before = hand.read("ANGLE_SET");
-        let mut page = Twin::start(&other.endpoint);
+        let mut page = Twin::start();
         page.exhibit(&file);
         let window = Window::exhibit(display.name(), &hand, &file);
         is_shown(&mut page, &display, (WITHIN, "begin"));

@@ -14,9 +14,10 @@ use handscope::ui::View;
 use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
-/// Share of pixels that may differ: lines in plots run on, live numbers flicker, a list of frames scrolls. Which
-/// view it is, the nearest picture tells.
-const TOLERANCE: f64 = 0.03;
+/// Share of pixels that may differ: lines in plots run on, live numbers flicker. A hand that is not armed differs in more.
+const TOLERANCE: f64 = 0.02;
+/// A list of frames scrolls.
+const TRAFFIC_TOLERANCE: f64 = 0.03;
 /// A picture that is not there by then does not come, on a machine with other work.
 const WITHIN: Duration = Duration::from_secs(30);
 
@@ -27,7 +28,8 @@ struct Session {
     hand: Hand,
     window: Window,
     twin: Twin,
-    _other: Hand,
+    /// Where the button that arms stands; armed, it has another name.
+    arm: [f64; 2],
 }
 
 impl Session {
@@ -38,14 +40,14 @@ impl Session {
     }
 
     fn with(display: Display, hand: Hand, window: Window) -> Self {
-        let other = Hand::start();
-        let twin = Twin::start(&other.endpoint);
+        let mut twin = Twin::start();
+        let arm = twin.middle("Arm the hand");
         Self {
             display,
             hand,
             window,
             twin,
-            _other: other,
+            arm,
         }
     }
 
@@ -56,12 +58,16 @@ impl Session {
         if self.twin.view != view {
             among.push((self.twin.view, language));
         }
+        let tolerance = match view {
+            View::Traffic => TRAFFIC_TOLERANCE,
+            _ => TOLERANCE,
+        };
         let begun = Instant::now();
         loop {
             self.twin.pass(Duration::from_millis(200));
             let pixels = self.display.pixels();
             let (nearest, words, differs) = self.twin.nearest(&pixels, &among);
-            if (nearest, words) == (view, language) && differs <= TOLERANCE {
+            if (nearest, words) == (view, language) && differs <= tolerance {
                 println!("{step}: {:.2} % of the pixels differ", differs * 100.0);
                 return;
             }
@@ -87,7 +93,7 @@ impl Session {
                 self.twin.act(Action::Target(Dof::Index, index));
                 return asked;
             }
-            self.click("Arm the hand");
+            self.display.click(self.arm);
             self.twin.act(Action::Arm);
             self.looks("armed", View::Live, Language::En);
         }

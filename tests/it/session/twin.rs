@@ -1,15 +1,18 @@
-//! The same program without a display, in the same state: where things stand in the window, and what it should look like.
+//! The same program without a display, in the same state: where things stand in the window, and what it should look like. Its hand
+//! is built in and its time virtual, so that no other work on this machine holds it up; it catches up with the clock.
 
 use crate::session::display::SIZE;
 use handscope::app::action::Action;
 use handscope::app::exhibit::exhibit_file;
 use handscope::app::recordings::RecordingAction;
 use handscope::app::settings::{Language, Theme};
+use handscope::hand::Moment;
 use handscope::shell::headless::canvas::Picture;
 use handscope::shell::headless::driver::{Driver, Scene};
 use handscope::ui::View;
 use std::path::Path;
-use std::time::Duration;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 /// Pixels that differ by more than this in a channel count as different; edges of letters differ by less.
 const CHANNEL: u8 = 48;
@@ -18,13 +21,15 @@ const CHANNEL: u8 = 48;
 pub(crate) struct Twin {
     driver: Driver,
     pub(crate) view: View,
+    began: Instant,
 }
 
 impl Twin {
     /// Connects to a hand of its own.
-    pub(crate) fn start(hand: &str) -> Self {
+    pub(crate) fn start() -> Self {
+        let began = Instant::now();
         let mut driver = Driver::start(&Scene {
-            endpoint: hand.parse().unwrap(),
+            endpoint: "sim:?scenario=idle".parse().unwrap(),
             size: SIZE,
             scale: 1.0,
             theme: Theme::Dark,
@@ -33,17 +38,28 @@ impl Twin {
         .unwrap();
         driver.connect().unwrap();
         let view = View::Live;
-        Self { driver, view }
+        Self {
+            driver,
+            view,
+            began,
+        }
     }
 
     pub(crate) fn pass(&mut self, time: Duration) {
-        self.driver.run_for(time);
+        sleep(time);
+        self.catch_up();
+    }
+
+    fn catch_up(&mut self) {
+        let passed = self.driver.now().since(Moment::ZERO);
+        self.driver
+            .run_for(self.began.elapsed().saturating_sub(passed));
     }
 
     /// Does what the mouse did in the real window.
     pub(crate) fn act(&mut self, action: Action) {
-        let now = self.driver.now();
-        self.driver.desktop_app().app().act(action, now);
+        self.catch_up();
+        self.driver.act(action);
         self.pass(Duration::from_millis(100));
     }
 
