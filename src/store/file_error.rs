@@ -162,10 +162,10 @@ pub enum FileCause {
     #[error("it is empty")]
     Empty,
     /// The system could not read the file.
-    #[error("it cannot be read: {0}")]
+    #[error("{0}")]
     Unreadable(SystemError),
     /// A file that this one refers to was rejected.
-    #[error("it cannot be read: {path}: {}", .error.reason())]
+    #[error("{path}: {error}")]
     Named { path: String, error: Box<FileError> },
 }
 
@@ -174,15 +174,6 @@ impl FileError {
     pub fn of_named(self, path: String) -> Self {
         let error = Box::new(self);
         FileCause::Named { path, error }.into()
-    }
-
-    /// The error text without the prefix "it cannot be read".
-    fn reason(&self) -> String {
-        match &self.cause {
-            FileCause::Unreadable(why) => why.to_string(),
-            FileCause::Named { path, error } => format!("{path}: {}", error.reason()),
-            _ => self.to_string(),
-        }
     }
 }
 

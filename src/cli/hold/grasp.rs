@@ -243,7 +243,13 @@ pub(crate) fn save(path: &Path, grasp: &Grasp) -> anyhow::Result<()> {
 /// The folder has none, or it is of another hand.
 pub(crate) fn claim(folder: &Path, hand: &Endpoint) -> anyhow::Result<GraspClaim> {
     let shown = folder.display();
-    let session = session::load(folder).map_err(|error| anyhow!("cannot read {shown}: {error}"))?;
+    let session = session::load(folder).with_context(|| {
+        let file = folder.join(session::SESSION_FILE);
+        format!(
+            "cannot read {}; --tuned is the --out folder of a 'handscope tune'",
+            file.display()
+        )
+    })?;
     let head = session.head;
     let is_own = |other: Endpoint| other.place_and_id() == hand.place_and_id();
     if !head.hand.parse().is_ok_and(is_own) {

@@ -50,7 +50,7 @@ const LIBRARY: &str = "handscope ";
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OpenError {
     /// The system could not read it.
-    #[error("it cannot be read: {error}")]
+    #[error("{error}")]
     Unreadable { error: SystemError },
     /// A folder, a device, a pipe.
     #[error("it is not a regular file")]

@@ -46,7 +46,7 @@ const DIRECTION_UNKNOWN: u16 = 65_534;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImportError {
     /// The system could not read it.
-    #[error("it cannot be read: {message}")]
+    #[error("{message}")]
     Unreadable {
         /// The system's error text.
         message: String,

@@ -13,11 +13,10 @@ pub(crate) mod session_tests;
 
 use crate::record::QuirkSheet;
 use crate::store::calendar::day;
-use crate::store::{FileCause, FileError, FileText};
+use crate::store::{FileCause, FileError, FileText, toml_file};
 use crate::trials::plan::TrialPlan;
 use crate::trials::summary::{EarlyEnd, TrialSummary};
 use serde::{Deserialize, Serialize};
-use std::io;
 use std::path::Path;
 use std::time::Duration;
 
@@ -96,9 +95,9 @@ pub struct TrialSessionFile {
 /// An I/O or parse error; another format, or a later version.
 pub fn load(folder: &Path) -> Result<TrialSessionFile, FileError> {
     let path = folder.join(SESSION_FILE);
-    let text = crate::store::read_text(&path, FILE_LEN_MAX)?;
-    let text = text.ok_or_else(|| io::Error::from(io::ErrorKind::NotFound))?;
-    let file: TrialSessionFile = FileText::plain(&text).parse()?;
+    let file = toml_file::load(&path, FILE_LEN_MAX, |text| {
+        FileText::plain(text).parse::<TrialSessionFile>()
+    })?;
     if file.format != FORMAT {
         let (got, wanted) = (file.format, FORMAT);
         return Err(FileCause::Format { got, wanted }.into());

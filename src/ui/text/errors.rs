@@ -768,7 +768,7 @@ mod tests {
         let named = cells.of_named("'trial-1.csv'".into());
         assert_eq!(
             named.to_string(),
-            "it cannot be read: 'trial-1.csv': line 4, 57 cells instead of 58"
+            "'trial-1.csv': line 4, 57 cells instead of 58"
         );
         assert_eq!(
             file(chinese(), &named),

@@ -228,7 +228,11 @@ fn a_wrong_grasp_moves_nothing() {
             1,
             "already exists and is not overwritten",
         ),
-        (&["--save", "new", "--tuned", "/nowhere"], 1, "/nowhere"),
+        (
+            &["--save", "new", "--tuned", "/nowhere"],
+            1,
+            "cannot read /nowhere/session.toml; --tuned is",
+        ),
     ] {
         let ended = run(&[&["hold", "--hand", "sim:", "--arm"], more].concat());
         assert_eq!(ended.code, Some(code), "{more:?} {}", ended.err);

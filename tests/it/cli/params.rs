@@ -230,7 +230,7 @@ fn a_bad_file_is_told_by_its_field_and_nothing_is_written() {
         }
         let ended = bench.words(hand, &["apply", text(&bench.path("none.toml"))]);
         assert!(
-            ended.code == Some(1) && ended.err.contains("cannot be read"),
+            ended.code == Some(1) && ended.err.contains("there is no such file"),
             "{}",
             ended.err
         );

@@ -49,16 +49,16 @@ fn wrong_usage_ends_with_two_and_says_what_is_right() {
         ),
         (
             &["sim", "--tcp", "127.0.0.1:0", "--body", "/nowhere/b.toml"],
-            "the body /nowhere/b.toml cannot be used: it cannot be read",
+            "the body /nowhere/b.toml cannot be used: there is no such file",
         ),
         (
             &["watch", "--hand", "sim:?body=/nowhere/b.toml", "--for", "1"],
-            "the body /nowhere/b.toml cannot be used: it cannot be read",
+            "the body /nowhere/b.toml cannot be used: there is no such file",
         ),
         (&["watch", "--hand", "sim:?body="], "--print-body"),
         (
             &["sim", "--tcp", "127.0.0.1:0", "--object", "rock"],
-            "the object rock cannot be used: it cannot be read",
+            "the object rock cannot be used: there is no such file",
         ),
         (
             &["sim", "--print-object", "rock"],
@@ -72,7 +72,7 @@ fn wrong_usage_ends_with_two_and_says_what_is_right() {
                 "--for",
                 "1",
             ],
-            "the object /nowhere/o.toml cannot be used: it cannot be read",
+            "the object /nowhere/o.toml cannot be used: there is no such file",
         ),
         (
             &["watch", "--hand", "sim:?object=cup&scenario=faults"],

@@ -460,7 +460,7 @@ fn a_file_that_is_wrong_is_refused_in_one_sentence_with_its_line() {
         folder
             .unwrap_err()
             .to_string()
-            .starts_with("it cannot be read")
+            .starts_with("Is a directory")
     );
     trial.import("time_s,event\n1,a\n").unwrap();
     let taken = import(&trial.path("in.csv"), &trial.path("out.mcap"));
