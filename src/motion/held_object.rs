@@ -139,7 +139,7 @@ impl ObjectWatch {
                 .zip(rotation)
                 .filter(|_| holds[Finger::Thumb] && holds[Finger::Index])
                 .and_then(|((index, thumb), rotation)| size(index, thumb, rotation, &self.blocks)),
-            stiffness: Stiffness::of(g_per_angle.map(|own| own.value)),
+            stiffness: g_per_angle.map_or(Stiffness::Unknown, class),
             g_per_angle,
             yields,
             weight_g: tip_loads.and_then(weight),
@@ -254,6 +254,17 @@ fn combined(values: &[Bounded]) -> Option<Bounded> {
     })
 }
 
+/// The class of a stiffness; unknown if its bounds are in different classes.
+fn class(g_per_angle: Bounded) -> Stiffness {
+    let Bounded { value, bound } = g_per_angle;
+    let least = Stiffness::of(Some(value - bound));
+    if least == Stiffness::of(Some(value + bound)) {
+        least
+    } else {
+        Stiffness::Unknown
+    }
+}
+
 /// Size between the pads of index and thumb, whose contacts begin at these angles.
 fn size(index: Bounded, thumb: Bounded, rotation: i16, blocks: &SizeBlocks) -> Option<Bounded> {
     let gap = |index: f64, thumb: f64| {
@@ -332,6 +343,18 @@ mod tests {
             assert!(is_within(said.g_per_angle, g_per_angle), "{said:?}");
             assert_eq!(said.stiffness, Stiffness::of(Some(g_per_angle)));
             assert_eq!(said.yields, Some(false), "{g_per_angle}");
+        }
+    }
+
+    #[test]
+    fn a_class_is_told_only_where_its_bounds_agree() {
+        for (value, bound, told) in [
+            (19.9, 12.9, Stiffness::Unknown),
+            (12.0, 6.0, Stiffness::Firm),
+            (30.0, 9.0, Stiffness::Rigid),
+            (4.0, 1.5, Stiffness::Unknown),
+        ] {
+            assert_eq!(class(Bounded { value, bound }), told, "{value} {bound}");
         }
     }
 
