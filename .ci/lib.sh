@@ -42,3 +42,20 @@ sim_end() {
   kill "$sim"
   wait "$sim" || true
 }
+
+# The integration tests, as built.
+tests() { sed -n 's/.*Executable tests.*(\(.*\)).*/\1/p' "$out/built.txt"; }
+# Runs in the guest, where nothing may be skipped. 125: no guest can be had.
+in_guest() {
+  "$guest" "$@" 2>&1 | tee "$out/guest.txt" || return
+  ! grep skipped: "$out/guest.txt"
+}
+# The same, but what no guest can be had for is skipped: unless_none WHAT WHY ARGUMENTS
+unless_none() {
+  local what=$1 why=$2 status=0
+  shift 2
+  in_guest "$@" || status=$?
+  [ "$status" -ne 125 ] || skipped "$what" "$why"
+  [ "$status" -eq 0 ] || [ "$status" -eq 125 ] || exit "$status"
+  return "$status"
+}
