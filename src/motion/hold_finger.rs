@@ -76,6 +76,12 @@ const JUMP_LEAST_G: f64 = 2.5;
 /// own grams, and the fingertip measures newtons.
 const GAIN: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 const LEARN_GAIN: f64 = 0.3;
+/// Share by which a drive may read less than its fingertip before that is drift of its zero, and the share of a new drift that each
+/// reading shows.
+const DRIFT_DEAD: f64 = 0.1;
+/// Largest drift that is corrected, g: more is a contact that moved onto the fingertip.
+const DRIFT_MAX: f64 = 100.0;
+const LEARN_DRIFT: f64 = 0.02;
 /// Normal force below which a ratio says nothing, g.
 const RATIO_FROM_G: f64 = 30.0;
 /// A step may meet an object that is stiffer by this factor: before its stiffness is known, once the close or a step showed it, and
@@ -172,6 +178,10 @@ pub(crate) struct FingerHold {
     tips: VecDeque<TipForces>,
     /// Force of the drive for each gram on the fingertip; `None` before the fingertip felt the object.
     gain: Option<f64>,
+    /// The same when the hold began.
+    first_gain: Option<f64>,
+    /// By how much the drive reads less since then, g.
+    drift_g: f64,
     /// Tangential and normal force while nothing happens, g.
     base_g: Option<(f64, f64)>,
     /// Largest ratio of tangential to normal force at which the object did not slide.
@@ -213,6 +223,8 @@ impl FingerHold {
             forces: VecDeque::new(),
             tips: VecDeque::new(),
             gain: None,
+            first_gain: None,
+            drift_g: 0.0,
             base_g: None,
             held_ratio: 0.0,
             slid_ratio: None,
@@ -426,6 +438,10 @@ impl FingerHold {
 
     /// Applies a new reading of the drive; returns the next step.
     pub(crate) fn apply(&mut self, reading: FingerReading) -> Option<HoldStep> {
+        let reading = FingerReading {
+            force_g: reading.force_g + self.drift_g,
+            ..reading
+        };
         self.forces.push_back((reading.at, reading.force_g));
         let is_old = |(at, _): &(Moment, f64)| reading.at.since(*at) > SETTLED;
         while self.forces.len() > SETTLED_READINGS && self.forces.front().is_some_and(is_old) {
@@ -447,6 +463,7 @@ impl FingerHold {
         if self.gain.is_none() {
             self.learn_gain(force_g);
         }
+        self.learn_drift();
         if let Some(settled_g) = seen.settled_g {
             self.learn_gain(settled_g);
             self.learn_settled(settled_g, reading.angle);
@@ -483,6 +500,26 @@ impl FingerHold {
         let measured = (force_g / tip.normal_g).clamp(*GAIN.start(), *GAIN.end());
         let gain = self.gain.get_or_insert(measured);
         *gain += (measured - *gain) * LEARN_GAIN;
+    }
+
+    /// Learns by how much the drive reads less than when the hold began, while the fingertip does not: what drifts towards less would press
+    /// harder and harder. The opposite is not corrected: the contact may have left the fingertip.
+    fn learn_drift(&mut self) {
+        let forces: Vec<f64> = self.forces.iter().map(|(_, force)| *force).collect();
+        let load = self.tip_load().filter(|tip| tip.normal_g >= RATIO_FROM_G);
+        let is_known = self.tips.len() >= TIPS && forces.len() >= SETTLED_READINGS;
+        let Some((force_g, tip)) = mean(&forces).zip(load).filter(|_| is_known) else {
+            return;
+        };
+        let first_gain = *self.first_gain.get_or_insert(force_g / tip.normal_g);
+        // Above it more than the fingertip touches; below it the zero has drifted during the close.
+        if first_gain > *GAIN.end() {
+            return;
+        }
+        let by_tip = first_gain.max(*GAIN.start()) * tip.normal_g;
+        let less = by_tip - (force_g - self.drift_g);
+        let dead = DRIFT_DEAD * by_tip + self.settled_dead_g();
+        self.drift_g += ((less - dead).clamp(0.0, DRIFT_MAX) - self.drift_g) * LEARN_DRIFT;
     }
 
     /// Force of the drive at which the fingertip presses with `tip_g`.

@@ -12,6 +12,8 @@ const READING: Duration = Duration::from_millis(10);
 const READINGS_PER_TIP: u64 = 3;
 const LATENCY: Duration = Duration::from_millis(70);
 const NOISE_G: f64 = 5.0;
+/// By how much a zero drifts towards less at most.
+const DRIFT_G: f64 = 120.0;
 const BEFORE_IT_RELAXES: Duration = Duration::from_millis(300);
 /// Time constant of an object that gives way.
 const GIVES_WAY_S: f64 = 3.0;
@@ -33,6 +35,8 @@ struct Bench {
     orders: VecDeque<(Moment, f64, f64)>,
     /// Reading of the force sensor for a gram.
     reading_per_g: f64,
+    /// By how much its zero drifts in a second, g.
+    drift_g_s: f64,
     load_g: f64,
     /// Tangential force for each gram with which the finger presses.
     drag: f64,
@@ -61,6 +65,7 @@ impl Bench {
             angle,
             orders: VecDeque::new(),
             reading_per_g: 1.0,
+            drift_g_s: 0.0,
             load_g: 0.0,
             drag: 0.0,
             gives_way: 0.0,
@@ -73,6 +78,10 @@ impl Bench {
 
     fn force_g(&self) -> f64 {
         (self.spring_g() - self.lost_g).max(0.0)
+    }
+
+    fn zero_g(&self) -> f64 {
+        (self.drift_g_s * self.now.secs()).max(-DRIFT_G)
     }
 
     fn spring_g(&self) -> f64 {
@@ -100,7 +109,7 @@ impl Bench {
             let noise_g = NOISE_G * (self.chance.f64() - 0.5);
             let step = self.hold.apply(FingerReading {
                 at: self.now,
-                force_g: force_g * self.reading_per_g + noise_g,
+                force_g: force_g * self.reading_per_g + noise_g + self.zero_g(),
                 angle: self.hand_angle(),
                 is_warm: self.is_warm,
             });
@@ -131,6 +140,24 @@ impl Bench {
 
     fn causes(&self) -> Vec<Option<TightenCause>> {
         self.steps.iter().map(|step| step.cause).collect()
+    }
+}
+
+#[test]
+fn a_drive_whose_zero_drifts_towards_less_does_not_press_harder() {
+    for drift_g_s in [-10.0, -3.0, -0.5] {
+        let mut bench = Bench::pressing(160.0, 12.0);
+        bench.drift_g_s = drift_g_s;
+        for _ in 0..60 {
+            bench.run(Duration::from_secs(2));
+            let force_g = bench.force_g();
+            assert!(force_g >= RANGE.least_g - NOISE_G, "{drift_g_s}: {force_g}");
+        }
+        assert!(
+            bench.peak_g < 1.6 * RANGE.least_g,
+            "{drift_g_s}: {}",
+            bench.peak_g
+        );
     }
 }
 
