@@ -12,11 +12,14 @@ use std::io::Cursor;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Command;
+use std::time::Duration;
 
 /// Makes this program the one that reads: the file.
 const ORDER: &str = "HANDSCOPE_TEST_READS";
 /// What a file may cost at most.
 const MOST_KIB: u64 = 64 * 1024;
+/// A million chunks take ten seconds, and minutes with other tests beside.
+const PATIENCE: Duration = Duration::from_secs(900);
 /// Close to the longest record that is read at all.
 const LONG: usize = 7 * 1024 * 1024;
 
@@ -61,7 +64,7 @@ fn reads(what: &str, bytes: &[u8]) -> String {
     let child = "record::hostile::child_reads_a_file_and_says_what_it_took";
     command.args([child, "--exact", "--nocapture"]);
     command.env(ORDER, &path);
-    let ended = listen(command).end().ok();
+    let ended = listen(command).end_within(PATIENCE).ok();
     let took = ended.out.lines().find_map(|line| line.split_once("took "));
     let (kib, words) = took.expect(&ended.out).1.split_once(' ').unwrap();
     println!("{what}: {kib} KiB, {words}");

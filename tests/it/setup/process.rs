@@ -178,8 +178,13 @@ impl Running {
     }
 
     /// Waits for the end and takes all that was said.
-    pub(crate) fn end(mut self) -> Ended {
-        let until = Instant::now() + PATIENCE;
+    pub(crate) fn end(self) -> Ended {
+        self.end_within(PATIENCE)
+    }
+
+    /// The same for a program that computes for long.
+    pub(crate) fn end_within(mut self, patience: Duration) -> Ended {
+        let until = Instant::now() + patience;
         let status = loop {
             // The pipes are read by threads, so a program that says much can end.
             if let Some(status) = self.child.try_wait().unwrap() {
