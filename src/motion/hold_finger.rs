@@ -79,9 +79,9 @@ const LEARN_GAIN: f64 = 0.3;
 /// Share by which a drive may read less than its fingertip before that is drift of its zero, and the share of a new drift that each
 /// reading shows.
 const DRIFT_DEAD: f64 = 0.1;
+const LEARN_DRIFT: f64 = 0.02;
 /// Largest drift that is corrected, g: more is a contact that moved onto the fingertip.
 const DRIFT_MAX: f64 = 100.0;
-const LEARN_DRIFT: f64 = 0.02;
 /// Normal force below which a ratio says nothing, g.
 const RATIO_FROM_G: f64 = 30.0;
 /// A step may meet an object that is stiffer by this factor: before its stiffness is known, once the close or a step showed it, and
