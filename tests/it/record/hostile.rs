@@ -44,7 +44,7 @@ fn child_reads_a_file_and_says_what_it_took() {
         }
         Err(error) => error.to_string(),
     };
-    println!("took {} {words}", peak_kib() - before);
+    println!("peak grew by {} {words}", peak_kib() - before);
 }
 
 /// The most memory that this process ever had.
@@ -65,7 +65,7 @@ fn reads(what: &str, bytes: &[u8]) -> String {
     command.args([child, "--exact", "--nocapture"]);
     command.env(ORDER, &path);
     let ended = listen(command).end_within(PATIENCE).ok();
-    let took = ended.out.lines().find_map(|line| line.split_once("took "));
+    let took = ended.out.lines().find_map(|line| line.split_once("peak grew by "));
     let (kib, words) = took.expect(&ended.out).1.split_once(' ').unwrap();
     println!("{what}: {kib} KiB, {words}");
     let kib: u64 = kib.parse().unwrap();
