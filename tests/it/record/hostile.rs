@@ -65,7 +65,10 @@ fn reads(what: &str, bytes: &[u8]) -> String {
     command.args([child, "--exact", "--nocapture"]);
     command.env(ORDER, &path);
     let ended = listen(command).end_within(PATIENCE).ok();
-    let took = ended.out.lines().find_map(|line| line.split_once("peak grew by "));
+    let took = ended
+        .out
+        .lines()
+        .find_map(|line| line.split_once("peak grew by "));
     let (kib, words) = took.expect(&ended.out).1.split_once(' ').unwrap();
     println!("{what}: {kib} KiB, {words}");
     let kib: u64 = kib.parse().unwrap();
