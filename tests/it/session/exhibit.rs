@@ -3,7 +3,7 @@
 use crate::session::display::Display;
 use crate::session::program::{Hand, Window};
 use crate::session::twin::Twin;
-use crate::setup::busy::unless_busy;
+use crate::setup::busy::alone;
 use handscope::app::action::Action;
 use handscope::app::exhibit::ExhibitAction;
 use handscope::hand::Dof;
@@ -78,7 +78,7 @@ fn write_booth(file: &Path) {
 
 #[test]
 fn no_way_out_of_an_exhibition_but_the_pin_and_back_after_a_kill() {
-    unless_busy(|| {
+    alone(|| {
         let Some(display) = Display::start() else {
             return;
         };
@@ -160,7 +160,7 @@ fn unlock(display: &Display, page: &mut Twin) {
 
 #[test]
 fn the_page_has_the_size_of_its_screen_both_ways_also_without_a_window_manager() {
-    unless_busy(|| {
+    alone(|| {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("booth.toml");
         write_booth(&file);

@@ -1,11 +1,11 @@
-//! Tests that depend on real time, on a computer that may have other work: what fails while this computer was busy is tried again,
-//! one test at a time; what fails while it was not has failed.
+//! Tests that depend on real time, on a computer that may have other work: what fails while this computer was busy is tried again
+//! with none of the others beside it; what fails while it was not has failed.
 
 use std::fmt;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{PoisonError, RwLock};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -17,8 +17,8 @@ const STALL: Duration = Duration::from_millis(100);
 const BUSY_SHARE: f64 = 0.3;
 const ATTEMPTS: usize = 4;
 
-/// Tests that are tried again do not disturb each other.
-static AGAIN: Mutex<()> = Mutex::new(());
+/// Shared by the tests that run side by side; exclusive to one that needs the processors for itself.
+static PROCESSORS: RwLock<()> = RwLock::new(());
 
 /// How busy this computer was during a test.
 #[derive(Debug, Clone, Copy, Default)]
@@ -82,20 +82,47 @@ fn with_load<R>(doing: impl FnOnce() -> R) -> (R, Load) {
     })
 }
 
-/// Runs the test; up to three times more while it panics and this computer was busy meanwhile.
-pub(crate) fn unless_busy<R>(mut doing: impl FnMut() -> R) -> R {
-    retried(|| with_load(|| catch_unwind(AssertUnwindSafe(&mut doing))))
+/// Runs the test; up to three times more while it panics and this computer was busy meanwhile. Calls do not nest.
+pub(crate) fn unless_busy<R>(doing: impl FnMut() -> R) -> R {
+    run(Beside::Others, doing)
 }
 
-fn retried<R>(mut attempt: impl FnMut() -> (thread::Result<R>, Load)) -> R {
-    let mut tried = attempt();
+/// The same for a test that needs all processors, such as one that compares what two windows draw.
+pub(crate) fn alone<R>(doing: impl FnMut() -> R) -> R {
+    run(Beside::Nothing, doing)
+}
+
+/// What runs beside the first attempt of a test.
+#[derive(Clone, Copy)]
+enum Beside {
+    Others,
+    Nothing,
+}
+
+fn run<R>(beside: Beside, mut doing: impl FnMut() -> R) -> R {
+    retried(beside, || {
+        with_load(|| catch_unwind(AssertUnwindSafe(&mut doing)))
+    })
+}
+
+fn retried<R>(beside: Beside, mut attempt: impl FnMut() -> (thread::Result<R>, Load)) -> R {
+    let mut tried = match beside {
+        Beside::Others => {
+            let _shared = PROCESSORS.read().unwrap_or_else(PoisonError::into_inner);
+            attempt()
+        }
+        Beside::Nothing => {
+            let _alone = PROCESSORS.write().unwrap_or_else(PoisonError::into_inner);
+            attempt()
+        }
+    };
     for _ in 1..ATTEMPTS {
         let (done, load) = &tried;
         if done.is_ok() || !load.is_busy() {
             break;
         }
         println!("this computer was busy ({load}): tried again");
-        let _alone = AGAIN.lock().unwrap_or_else(PoisonError::into_inner);
+        let _alone = PROCESSORS.write().unwrap_or_else(PoisonError::into_inner);
         tried = attempt();
     }
     tried.0.unwrap_or_else(|panic| resume_unwind(panic))
@@ -118,7 +145,7 @@ fn what_fails_is_tried_again_only_after_a_busy_time() {
     ] {
         let mut attempts = 0;
         let failed = catch_unwind(AssertUnwindSafe(|| {
-            retried(|| {
+            retried(Beside::Others, || {
                 attempts += 1;
                 (Err::<(), _>(Box::new("it fails")), load)
             });
