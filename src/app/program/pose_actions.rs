@@ -98,16 +98,13 @@ pub(super) fn play(state: &mut State, play: Play, env: &Env) {
         .hands
         .with_shown(|hand| plays_along(hand, play, entry))
     {
-        match request_of(hand, play) {
-            PlayRequest::Command(command) => {
-                if let Some(run) = hand.running.sequence() {
-                    run.command(command);
-                }
+        if let Some(command) = command(hand, play) {
+            if let Some(run) = hand.running.sequence() {
+                run.command(command);
             }
-            PlayRequest::Start(entry, pace) => {
-                let library = (&state.poses, &state.settings);
-                start(hand, library, (entry, pace), (env, state.now));
-            }
+        } else if let Some(begun) = begun(play) {
+            let library = (&state.poses, &state.settings);
+            start(hand, library, begun, (env, state.now));
         }
     }
 }
@@ -119,27 +116,27 @@ pub(super) fn preset(hand: &mut Hand, preset: Preset) {
     });
 }
 
-/// Result of a play action at one hand.
-enum PlayRequest {
-    Start(EntryId, PlayMode),
-    Command(PlayCommand),
+/// What an action says to the sequence that runs on a hand; `None` if it begins an entry there.
+fn command(hand: &Hand, play: Play) -> Option<PlayCommand> {
+    match play {
+        Play::Start(_) => None,
+        Play::Step(id) => {
+            let waits = |run: &SequenceRun| run.entry == EntryId::Sequence(id) && run.is_paused();
+            let waits = hand.running.sequence().is_some_and(waits);
+            waits.then_some(PlayCommand::Resume(PlayMode::OneStep))
+        }
+        Play::Pause => Some(PlayCommand::Pause),
+        Play::Resume => Some(PlayCommand::Resume(PlayMode::Through)),
+        Play::End => Some(PlayCommand::End),
+    }
 }
 
-fn request_of(hand: &Hand, play: Play) -> PlayRequest {
+/// Entry that an action begins, and how far it plays.
+const fn begun(play: Play) -> Option<(EntryId, PlayMode)> {
     match play {
-        Play::Start(entry) => PlayRequest::Start(entry, PlayMode::Through),
-        Play::Step(id) => {
-            let entry = EntryId::Sequence(id);
-            let waits = |run: &SequenceRun| run.entry == entry && run.is_paused();
-            if hand.running.sequence().is_some_and(waits) {
-                PlayRequest::Command(PlayCommand::Resume(PlayMode::OneStep))
-            } else {
-                PlayRequest::Start(entry, PlayMode::OneStep)
-            }
-        }
-        Play::Pause => PlayRequest::Command(PlayCommand::Pause),
-        Play::Resume => PlayRequest::Command(PlayCommand::Resume(PlayMode::Through)),
-        Play::End => PlayRequest::Command(PlayCommand::End),
+        Play::Start(entry) => Some((entry, PlayMode::Through)),
+        Play::Step(id) => Some((EntryId::Sequence(id), PlayMode::OneStep)),
+        Play::Pause | Play::Resume | Play::End => None,
     }
 }
 
