@@ -322,9 +322,10 @@ impl Program for HoldRun {
             self.measure_zero(sample);
         }
         self.force_g = PerFinger::from_fn(|finger| {
-            let holds = self.fingers[finger].is_some() && self.gone_since[finger].is_none();
-            let force = self.force_g(sample, finger.bend()).filter(|_| holds)?;
-            Some(whole(force))
+            let hold = self.fingers[finger].as_ref();
+            let hold = hold.filter(|_| self.gone_since[finger].is_none())?;
+            let force = self.force_g(sample, finger.bend())?;
+            Some(whole(force + hold.drift_g()))
         });
     }
 

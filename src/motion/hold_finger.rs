@@ -254,6 +254,11 @@ impl FingerHold {
         (self.stiffness * self.stiffer).max(self.shown)
     }
 
+    /// Force by which its drive reads too little by now, g.
+    pub(crate) const fn drift_g(&self) -> f64 {
+        self.drift_g
+    }
+
     /// Force that it presses with, g; `None` before the first reading.
     pub(crate) fn force_g(&self) -> Option<f64> {
         let recent = self.forces.iter().rev().take(FORCES);

@@ -505,6 +505,27 @@ fn a_thumb_whose_drive_counts_its_zero_is_turned_before_the_pinch_closes() {
     assert!(rotation < 40.0, "{rotation}");
 }
 
+#[test]
+fn the_shown_force_is_the_one_it_holds_with_also_where_the_zeros_drift() {
+    let mut bench = Bench::closing_on(ball(10.0));
+    bench.run_until_held();
+    bench.run_for(Duration::from_secs(5));
+    for _ in 0..90 {
+        bench.drift_g -= 1;
+        bench.run_for(Duration::from_millis(500));
+    }
+    bench.run_for(Duration::from_secs(20));
+    let shown = bench.program.view(bench.hand.now).force_g;
+    for (finger, load_g) in bench.loads_g().iter() {
+        let Some(shown_g) = shown[finger] else {
+            continue;
+        };
+        let differs = (f64::from(shown_g) - load_g).abs();
+        assert!(differs < 45.0, "{finger:?}: {shown_g} of {load_g}");
+    }
+    assert!(shown.as_array().iter().any(Option::is_some));
+}
+
 /// A hold whose object was just taken away.
 fn robbed() -> Bench {
     let mut object = ball(10.0);
