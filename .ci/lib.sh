@@ -28,6 +28,22 @@ apt_install() { apt-get install -y --no-install-recommends $1 >"$out/apt.txt" 2>
 pip_install() { [ -x "$out/python/bin/pip" ] && "$out/python/bin/pip" install -q $1 >"$out/pip.txt" 2>&1; }
 python() { "$out/python/bin/python" "$@"; }
 
+# Microseconds in which some program waited for a processor, since the computer started.
+waited() { awk '/^some/ {sub(/.*total=/, ""); print}' /proc/pressure/cpu 2>/dev/null || echo 0; }
+# Runs a command that talks to a hand in real time; up to three times more while it fails and this computer was busy meanwhile, by the
+# rule of tests/it/setup/busy.rs: unless_busy COMMAND ...
+unless_busy() {
+  local began before percent
+  for _ in 1 2 3; do
+    began=$(date +%s%6N) before=$(waited)
+    if "$@"; then return; fi
+    percent=$((($(waited) - before) * 100 / ($(date +%s%6N) - began)))
+    [ "$percent" -ge 30 ] || return 1
+    echo "this computer was busy (programs waited $percent % of the time): tried again" >&2
+  done
+  "$@"
+}
+
 # Starts a simulated hand and waits until it has named its ports: sim_start LINES ARGUMENTS
 sim_start() {
   local lines=$1

@@ -3,8 +3,8 @@ if ! pip_install "$modbus_python"; then
   skipped pymodbus "not here and not to be had"
   exit
 fi
-python tests/interop/pymodbus_server.py "$handscope" "$out"
+unless_busy python tests/interop/pymodbus_server.py "$handscope" "$out"
 PATH="$out/python/bin:$PATH"
 pip_install "$more_modbus_python" || true
 apt_install "$modbus" || true
-python tests/interop/gateway_clients.py "$handscope"
+unless_busy python tests/interop/gateway_clients.py "$handscope"

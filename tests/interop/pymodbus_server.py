@@ -88,6 +88,7 @@ def line(link):
         tty.setraw(end)
     for way in ((near, far), (far, near)):
         threading.Thread(target=pump, args=way, daemon=True).start()
+    pathlib.Path(link).unlink(missing_ok=True)
     os.symlink(os.ttyname(ours), link)
     return os.ttyname(theirs)
 
