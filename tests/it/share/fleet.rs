@@ -3,6 +3,7 @@
 use crate::setup::busy::unless_busy;
 use crate::setup::link::gentle;
 use crate::setup::process::{run, start};
+use crate::setup::time::Time;
 use crate::share::place::{PATIENCE, Place, config, share, share_as, until};
 use handscope::hand::kinematics::Side;
 use handscope::link::{self, Clock, LinkConfig, LinkHandle, Owner, PollRates, Records};
@@ -167,8 +168,12 @@ async fn told(place: &Place) -> FleetHand {
     hands[0].clone()
 }
 
-#[tokio::test(flavor = "multi_thread", worker_threads = 1)]
-async fn to_watch_a_shared_hand_costs_its_link_nothing() {
+#[test]
+fn to_watch_a_shared_hand_costs_its_link_nothing() {
+    unless_busy(|| Time::Real.runtime().block_on(watching_costs_nothing()));
+}
+
+async fn watching_costs_nothing() {
     let place = share(PollRates::default(), Duration::from_millis(1)).await;
     let states = || place.link.stats().state_reads;
     let asked = async |states_more: u64| {
