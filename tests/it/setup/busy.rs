@@ -84,38 +84,25 @@ fn with_load<R>(doing: impl FnOnce() -> R) -> (R, Load) {
 
 /// Runs the test; up to three times more while it panics and this computer was busy meanwhile. Calls do not nest.
 pub(crate) fn unless_busy<R>(doing: impl FnMut() -> R) -> R {
-    run(Beside::Others, doing)
+    let shared = PROCESSORS.read().unwrap_or_else(PoisonError::into_inner);
+    retried(shared, measured(doing))
 }
 
 /// The same for a test that needs all processors, such as one that compares what two windows draw.
 pub(crate) fn alone<R>(doing: impl FnMut() -> R) -> R {
-    run(Beside::Nothing, doing)
+    let exclusive = PROCESSORS.write().unwrap_or_else(PoisonError::into_inner);
+    retried(exclusive, measured(doing))
 }
 
-/// What runs beside the first attempt of a test.
-#[derive(Clone, Copy)]
-enum Beside {
-    Others,
-    Nothing,
+/// One attempt of a test, with the load during it.
+fn measured<R>(mut doing: impl FnMut() -> R) -> impl FnMut() -> (thread::Result<R>, Load) {
+    move || with_load(|| catch_unwind(AssertUnwindSafe(&mut doing)))
 }
 
-fn run<R>(beside: Beside, mut doing: impl FnMut() -> R) -> R {
-    retried(beside, || {
-        with_load(|| catch_unwind(AssertUnwindSafe(&mut doing)))
-    })
-}
-
-fn retried<R>(beside: Beside, mut attempt: impl FnMut() -> (thread::Result<R>, Load)) -> R {
-    let mut tried = match beside {
-        Beside::Others => {
-            let _shared = PROCESSORS.read().unwrap_or_else(PoisonError::into_inner);
-            attempt()
-        }
-        Beside::Nothing => {
-            let _alone = PROCESSORS.write().unwrap_or_else(PoisonError::into_inner);
-            attempt()
-        }
-    };
+/// Repeats an attempt, with the processors for itself. `first` is its share of them in the first attempt.
+fn retried<R>(first: impl Sized, mut attempt: impl FnMut() -> (thread::Result<R>, Load)) -> R {
+    let mut tried = attempt();
+    drop(first);
     for _ in 1..ATTEMPTS {
         let (done, load) = &tried;
         if done.is_ok() || !load.is_busy() {
@@ -145,7 +132,7 @@ fn what_fails_is_tried_again_only_after_a_busy_time() {
     ] {
         let mut attempts = 0;
         let failed = catch_unwind(AssertUnwindSafe(|| {
-            retried(Beside::Others, || {
+            retried((), || {
                 attempts += 1;
                 (Err::<(), _>(Box::new("it fails")), load)
             });
