@@ -30,8 +30,8 @@ python() { "$out/python/bin/python" "$@"; }
 
 # Microseconds in which some program waited for a processor, since the computer started.
 waited() { awk '/^some/ {sub(/.*total=/, ""); print}' /proc/pressure/cpu 2>/dev/null || echo 0; }
-# Runs a command that talks to a hand in real time; up to three times more while it fails and this computer was busy meanwhile, by the
-# rule of tests/it/setup/busy.rs: unless_busy COMMAND ...
+# Runs a command that talks to a hand in real time; up to three times more while it fails and programs waited for a processor for 30 %
+# of the time, as in tests/it/setup/busy.rs: unless_busy COMMAND ...
 unless_busy() {
   local began before percent
   for _ in 1 2 3; do
